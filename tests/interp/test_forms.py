@@ -114,8 +114,8 @@ def test_a_pocket_comes_out_as_filled_in(form, values, pocket, retract, tmp_path
     proof = prove(program, read_ini(SIM / f"{MILLS[form]}_headless.ini"), tools=TOOLS)
     assert proof.findings == []
     (facts,) = proof.pockets
-    wall, traced = facts.asked.wall, proof.subject.trace
-    floor = wall.height(facts.asked.deepest)
+    wall, traced = facts.commanded.wall, proof.subject.trace
+    floor = wall.height(facts.commanded.deepest)
     assert (*wall.origin[:2], floor, wall.radius) == pytest.approx(pocket, abs=1e-6)
     feeds = {round(move.feed) for move in cut_geometry.in_plane(cut_geometry.cutting(traced.moves))}
     named = {values[name] for name in ("feed", "f", "v") if values.get(name)}

@@ -84,6 +84,18 @@ def test_a_rapid_through_a_finished_hexagon(codes):
     assert findings(codes(FACE + HEXAGON + "G0 X70 Z-3\nX0\nZ5\n", "lathe_mm"))
 
 
+DRILLED = "G0 X70 Z5\no<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120] [0] [0] [0]\n"
+
+
+def test_a_tool_on_the_face_and_in_the_side_is_judged_beside_both(codes):
+    valid = codes(f"{FACE}{HEXAGON}G0 X70 Z5 C0\n{DRILLED}", "lathe_mm")
+    assert findings(valid) == []
+    assert ("rapid-turned", False) in valid
+    assert findings(codes(f"{FACE}{HEXAGON}G0 X70 Z5 C0\n{DRILLED}G0 X0\n", "lathe_mm", "60"))
+    program = FACE + HEXAGON + "G0 X70 Z-3\nX0\nZ5\n" + HEXAGON + DRILLED
+    assert findings(codes(program, "lathe_mm"))
+
+
 def test_c_turned_by_rapid_at_depth(codes):
     slot = "G0 X40 Z2 C0\nG12.1\nG1 Z-2 F200\nX20 F600\nG13.1\n"
     assert findings(codes(FACE + slot + "G0 C180\nZ2\n", "lathe_mm"))

@@ -30,7 +30,7 @@ def proof_of_text(tmp_path, lines, machine="mill_mm", changed=None, **options):
 
 
 def radii_of(proof):
-    return [facts.asked.wall.radius for facts in proof.pockets]
+    return [facts.commanded.wall.radius for facts in proof.pockets]
 
 
 MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6 S3000 M3"]  # a 10 mm cutter
@@ -56,9 +56,9 @@ def test_every_pocket_is_found_and_comes_out_as_printed(manual):
         assert facts.values["rings"] == pytest.approx(
             [ring * INCH for ring in asked["rings"]], abs=1e-5
         )
-        depths = [facts.asked.wall.height(depth) / INCH for depth in facts.asked.depths]
+        depths = [facts.commanded.wall.height(depth) / INCH for depth in facts.commanded.depths]
         assert depths == pytest.approx(asked["depths"], abs=1e-4)
-        assert facts.asked.wall.origin[:2] / INCH == pytest.approx(asked["centre"])
+        assert facts.commanded.wall.origin[:2] / INCH == pytest.approx(asked["centre"])
         assert facts.deviation < 1e-6
 
 
@@ -71,7 +71,7 @@ def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats,
     rough, finish = "G13 I7 K20 Q6 Z-3 D4", f"{distance} G13 I20.5 {repeats} D4"
     proof = proof_of_text(tmp_path, [*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1"])
     assert proof.findings == []
-    depths = [facts.asked.wall.height(facts.asked.deepest) for facts in proof.pockets]
+    depths = [facts.commanded.wall.height(facts.commanded.deepest) for facts in proof.pockets]
     assert depths == pytest.approx([-3, -3])
 
 
@@ -109,7 +109,9 @@ def test_expressions_loops_and_skipped_blocks(tmp_path):
     ]
     proof = proof_of_text(tmp_path, lines)
     assert radii_of(proof) == pytest.approx([12, 13, 14])
-    assert [facts.asked.wall.origin[0] for facts in proof.pockets] == pytest.approx([0, 60, 120])
+    assert [facts.commanded.wall.origin[0] for facts in proof.pockets] == pytest.approx(
+        [0, 60, 120]
+    )
     assert {facts.line for facts in proof.pockets} == {7}
     assert proof.findings == []
 
@@ -156,7 +158,7 @@ def test_next_to_zero_is_not_zero(place, cut, height, tmp_path):
     lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", f"G0 X2 {place}", "G12.1", *cut]
     proof = proof_of_text(tmp_path, [*lines, "G13.1"], "lathe_inch")
     (facts,) = proof.sections
-    assert facts.asked.height == pytest.approx(height * INCH, abs=1e-9)
+    assert facts.commanded.height == pytest.approx(height * INCH, abs=1e-9)
     assert proof.findings == []
 
 
@@ -214,7 +216,7 @@ def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path
     program = tmp_path / "program.ngc"
     program.write_text("\n".join([*MM, "G0 Z1", "o<hole> call", "M2", ""]))
     proof = prove(program, read_ini(here / "mill_mm_headless.ini"))
-    assert (proof.pockets, proof.unseen) == ([], [(4, "G12")])
+    assert (proof.pockets, proof.lines_with("not-measured")) == ([], [(4, "G12")])
 
 
 @pytest.mark.parametrize("body", [["G41 D6 G1 X40 F100", "Y-30", "G40 X80"], ["G41 D6", "G40"]])
@@ -222,7 +224,7 @@ def test_a_d_that_a_sub_in_its_own_file_commanded_is_remembered(body, with_sub):
     body = ["o<offset> sub", *body, "o<offset> endsub"]
     proof = with_sub("offset", body, *MM, "G0 Z1", "o<offset> call", "G0 X0 Y0", "G12 I30 Z-2")
     (facts,) = proof.pockets
-    assert (facts.asked.cutter.named, facts.asked.cutter.radius) == (6, 10)
+    assert (facts.commanded.cutter.named, facts.commanded.cutter.radius) == (6, 10)
     assert "the toolpath" not in str(proof.findings)
 
 
@@ -231,7 +233,7 @@ def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
     lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call [20]"]
     lines += ["G0 X30 C0", "o<flat> call [15]"]
     proof = with_sub("flat", body, *lines, machine="lathe_mm")
-    assert [facts.asked.elements[0].end for facts in proof.sections] == [20, 15]
+    assert [facts.commanded.elements[0].end for facts in proof.sections] == [20, 15]
     assert [(facts.line, facts.last) for facts in proof.sections] == [(2, 5)] * 2
     assert proof.findings == []
     report = as_text(proof, units.MM, full=True).splitlines()
@@ -244,7 +246,7 @@ def test_a_section_of_another_file_that_asks_for_a_position_is_in_doubt(with_sub
     body = ["o<flat> sub", "G12.1", "G1 X[#<_x> - 5] F500", "G13.1", "o<flat> endsub"]
     lines = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40", "o<flat> call"]
     proof = with_sub("flat", body, *lines, machine="lathe_mm")
-    assert [facts.asked.doubt for facts in proof.sections] == ["line 3 asks for a position"]
+    assert [facts.commanded.doubt for facts in proof.sections] == ["line 3 asks for a position"]
 
 
 @pytest.mark.parametrize("mode", ["G90", "G91"])
@@ -254,8 +256,8 @@ def test_the_call_form_goes_from_the_tool_in_incremental_mode(mode, tmp_path):
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
     centre, depth = ([60, 17], -4) if mode == "G91" else ([50, 7], -6)
-    assert facts.asked.wall.origin[:2] == pytest.approx(centre)
-    assert facts.asked.wall.height(facts.asked.deepest) == pytest.approx(depth)
+    assert facts.commanded.wall.origin[:2] == pytest.approx(centre)
+    assert facts.commanded.wall.height(facts.commanded.deepest) == pytest.approx(depth)
     assert proof.findings == []
 
 
@@ -275,7 +277,7 @@ def test_modes_and_work_coordinates_do_not_matter(modes, offset, tmp_path):
     proof = proof_of_text(tmp_path, lines)
     (facts,) = proof.pockets
     assert proof.findings == []
-    assert facts.asked.wall.radius == pytest.approx(20, abs=1e-6)
+    assert facts.commanded.wall.radius == pytest.approx(20, abs=1e-6)
 
 
 FACE = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X30 Z2 C0"]
@@ -294,7 +296,7 @@ def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     assert proof.findings == [] and len(proof.sections) == 1
     (facts,), moves = proof.sections, proof.subject.trace.moves
     assert facts.values["lowest_feed"] == pytest.approx(600, rel=0.01)
-    x0 = moves[facts.asked.at].start[0] - facts.asked.start.real
+    x0 = moves[facts.commanded.at].start[0] - facts.commanded.start.real
     assert proof.subject.part.centre == pytest.approx(x0)
 
 
@@ -347,7 +349,7 @@ FLATS = ["o100 sub", "G0 C#1", "G12.1", "G1 C25 F2000", "G41 X#2 F1000", "Z-5",
 def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
     proof = proof_of_text(tmp_path, FLATS, "lathe_mm")
     assert [facts.line for facts in proof.sections] == [3, 3]
-    assert proof.findings == [] and proof.unseen == []
+    assert proof.findings == []
     assert [facts.values["radii"][0] for facts in proof.sections] == pytest.approx([13.5, 15])
     assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
     assert {facts.values["lowest_feed_line"] for facts in proof.sections} <= {4, 5, 7, 8}
@@ -493,7 +495,7 @@ def test_a_program_that_moves_otherwise_with_the_var_file_is_noted(tmp_path):
 def test_what_a_program_starts_with_can_be_given(tmp_path):
     lines = [*MM, "G0 X0 Y0 Z1", "G12 I#31 Z-1 D4"]
     proof = proof_of_text(tmp_path, lines, parameters={31: 20, 5221: 490})
-    assert proof.pockets[0].asked.wall.radius == 20
+    assert proof.pockets[0].commanded.wall.radius == 20
     assert [text for _, text in proof.findings] == TO_505
 
 

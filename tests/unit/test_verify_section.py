@@ -93,7 +93,7 @@ def test_a_good_section_has_no_findings():
     assert facts.values["radii"] == pytest.approx((20, 20 * math.sqrt(2)), abs=1e-3)
     assert facts.values["reached"] == pytest.approx(facts.values["radii"], abs=1e-3)
     assert np.array(facts.values["across_flats"]) == pytest.approx(np.array([[40, 40], [40, 40]]))
-    assert facts.asked.sides == [-1]
+    assert facts.commanded.sides == [-1]
     assert codes(facts) == []
 
 

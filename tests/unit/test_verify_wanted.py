@@ -152,7 +152,7 @@ def test_haas_words_tell_wall_core_and_depth():
     assert (found.wall.radius, found.cutter.radius, found.wall.cleared) == (20, 5, 0)
     assert np.allclose(found.wall.origin, [3, 4, 5])
     assert found.deepest == pytest.approx(-7)
-    assert (found.asked.turn, found.wall.inside) == (-1, True)
+    assert (found.words.turn, found.wall.inside) == (-1, True)
     assert (found.cutter.tool, found.cutter.loaded, found.cutter.named) == (1, 3, 2)
 
 
@@ -249,7 +249,7 @@ def test_the_turn_is_that_of_the_handler_whatever_the_code(handler, turn):
     moves = Hand().rapid(z=5).line(z=4).moves
     reader = CircleReader(codes, INI, moves, {1: 6.0})
     ((_, found),) = reader.targets([block("G22 I9 Z-1")])
-    assert (found.asked.turn, found.source.code) == (turn, "G22")
+    assert (found.words.turn, found.source.code) == (turn, "G22")
 
 
 def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():
@@ -262,9 +262,9 @@ def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():
 
 
 def test_loops_are_spring_passes_or_further_levels():
-    assert target("G12 I4 Z-2 L3 D1", **HERE).asked.depths == pytest.approx([-7, -7, -7])
-    assert target("G12 G91 I4 Z-2 L3 D1", **HERE).asked.depths == pytest.approx([-2, -4, -6])
-    assert target("G12 G91 I4 L2 D1", **HERE).asked.depths == [0, 0]
+    assert target("G12 I4 Z-2 L3 D1", **HERE).words.depths == pytest.approx([-7, -7, -7])
+    assert target("G12 G91 I4 Z-2 L3 D1", **HERE).words.depths == pytest.approx([-2, -4, -6])
+    assert target("G12 G91 I4 L2 D1", **HERE).words.depths == [0, 0]
 
 
 @pytest.mark.parametrize(
@@ -289,7 +289,7 @@ def test_only_a_helix_that_goes_down_clears_the_core_of_one_ring(line, core):
     ],
 )
 def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
-    asked = target(line, **state).asked
+    asked = target(line, **state).words
     assert (asked.feed, asked.plunge_feed) == (feed, feed)
 
 

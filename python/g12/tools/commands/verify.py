@@ -74,7 +74,7 @@ def main(arguments: list[str]) -> int:
         proof = replace(proof, opened=opened) if opened.is_filtered else proof
         judged = proof.judged  # while the filter's output exists
     tell_whose_lines("verify", opened)
-    if not (any(proof.cuts) or proof.unseen or proof.still):
+    if not (any(proof.cuts) or proof.lines_with("not-measured") or proof.lines_with("not-cut")):
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     text = as_text(proof, unit, full=options.full, strict=options.strict)

@@ -128,7 +128,7 @@ class Material:
         """Remove the area swept by a cutter of a radius along points (n, 3)."""
         if points[:, 2].min() >= self.top:
             return
-        if goes_along_z(points):
+        if _goes_along_z(points):
             points = points[points[:, 2].argmin()][None]
         for portion in portions(points):
             for line in self._unrolled(portion.line, radius):
@@ -207,10 +207,10 @@ class Material:
 
     def covers(self, region: BaseGeometry) -> bool:
         """Tell whether all of a region is solid at some level or cut at some move."""
-        left = [part for part, _ in self._turned(region)]
+        rest = [part for part, _ in self._turned(region)]
         for known in (self._solids, self._cuts):
-            left = [self._without(known, part) for part in left if not part.is_empty]
-        return sum(part.area for part in left) <= LEAST_AREA
+            rest = [self._without(known, part) for part in rest if not part.is_empty]
+        return sum(part.area for part in rest) <= LEAST_AREA
 
     def _without(self, known: _Cuts, region: BaseGeometry) -> BaseGeometry:
         near = known.within(region.bounds, math.inf, math.inf)
@@ -225,7 +225,7 @@ class Material:
             area = self._under(portion, radius - ALLOWED, before)
             if area.area > LEAST_AREA:
                 found.append(area)
-                where += points_in(area, portion, radius)
+                where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
 
     def _under(self, portion: Portion, radius: float, before: float) -> BaseGeometry:
@@ -234,14 +234,13 @@ class Material:
         return self.standing(swept([portion.line], radius), portion.high, before)
 
 
-def goes_along_z(points: np.ndarray) -> bool:
-    """Return whether a path (n, 3) is parallel to the tool's axis."""
+def _goes_along_z(points: np.ndarray) -> bool:
     return bool(np.ptp(points[:, :2], axis=0).max() < ALLOWED)
 
 
 def going(points: np.ndarray) -> np.ndarray:
     """Return the points (n, 3) that can meet new material: of a vertical path the lowest."""
-    if not goes_along_z(points):
+    if not _goes_along_z(points):
         return points
     lowest = int(points[:, 2].argmin())
     return points[lowest : lowest + 1] if lowest or len(points) == 1 else points[:0]
@@ -254,7 +253,7 @@ def portions(points: np.ndarray) -> Iterator[Portion]:
             yield Portion(points[:, :2], points[:, 2].min(), points[:, 2].max())
         return
     band = max(BAND, np.ptp(points[:, 2]) / MOST_BANDS)
-    points = with_levels(points, band)
+    points = _with_levels(points, band)
     low = np.minimum(points[:-1, 2], points[1:, 2])
     ends = 1 + np.flatnonzero(np.diff(np.floor(low / band + 1e-6)))
     for first, last in zip([0, *ends], [*ends, len(points) - 1]):
@@ -262,7 +261,7 @@ def portions(points: np.ndarray) -> Iterator[Portion]:
         yield Portion(own[:, :2], own[:, 2].min(), own[:, 2].max())
 
 
-def with_levels(points: np.ndarray, band: float) -> np.ndarray:
+def _with_levels(points: np.ndarray, band: float) -> np.ndarray:
     """Return a toolpath (n, 3) with points inserted to limit the fall from one to the next."""
     counts = np.maximum(1, np.ceil(np.abs(np.diff(points[:, 2])) / band - 1e-9)).astype(int)
     indices = np.repeat(np.arange(len(counts)), counts)
@@ -271,7 +270,7 @@ def with_levels(points: np.ndarray, band: float) -> np.ndarray:
     return np.stack([np.interp(indices, np.arange(len(points)), axis) for axis in points.T], axis=1)
 
 
-def points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
+def _points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
     """Return the tool's points (3,) along a portion at which it meets an area."""
     steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
     indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / RAPID_STEP))

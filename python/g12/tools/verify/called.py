@@ -32,14 +32,14 @@ from g12.tools.verify.sections.section_motion import SectionAxes, slower_on_face
 
 
 def measure_shape(
-    called: tuple[Block, SubCall],
+    call: SubCall,
     path: Track,
     moves: Sequence[Move],
     axes: SectionAxes,
     tolerance: float,
 ) -> MeasuredCut:
     """Return what was measured of a shape; ``path`` is that of the face about its X0."""
-    block, call = called
+    block = call.block
     plane, expected = FacePlane(*call.zero), shape_path(call)
     segments = ((index, path.positions[path.vertices(index)]) for index in call.moves)
     laid = lay(expected, made_of(segments, moves, plane), tolerance + LAST_DECIMAL)
@@ -56,31 +56,29 @@ def measure_shape(
         "entries": call.given,
         "lowest": min(move.end_level for move in expected),
     }
-    return called_cut(call, call.zero[1], found, values, judged)
+    return _called_cut(call, found, values, judged)
 
 
-def called_cut(
+def _called_cut(
     call: SubCall,
-    face: float | None,
     found: SectionPath,
     values: Mapping[str, Any],
     judged: Iterable[Finding],
 ) -> MeasuredCut:
-    """Return the cut of a call."""
-    told, off = in_file(judged, call.file), {"deviation": finite(found.off)}
     where = call.line, call.file, call.name, call.moves
-    return MeasuredCut(call, *where, face, found.off, {**values, **off}, told)
+    values = {**values, "deviation": finite(found.off)}
+    return MeasuredCut(call, *where, call.zero[1], found.off, values, in_file(judged, call.file))
 
 
 class Clamp(NamedTuple):
-    """The M codes that close and open the clamp, if any; ``seen``: events tell of them."""
+    """The M codes that close and open the clamp, if any; ``traced``: events show them."""
 
     codes: Sequence[str]
-    seen: bool
+    traced: bool
 
 
 def measure_holes(
-    called: tuple[Block, SubCall],
+    call: SubCall,
     moves: Sequence[Move],
     tolerance: float,
     clamp: Clamp,
@@ -91,13 +89,12 @@ def measure_holes(
 
     ``pace`` is a function of all its moves and of those that cut.
     """
-    block, call = called
-    holes, own = holes_of(call), range(block.at, block.end)
+    block, holes, own = call.block, holes_of(call), call.moves
     turns = (moves[i].end[C] - moves[i].start[C] for i in own)
     expected = HolesPath(holes, next((turn for turn in turns if abs(turn) > STILL), 0.0)).toolpath()
-    laid, run = lay(expected, made_of_holes(holes, moves, own), tolerance), None
+    laid, run = lay(expected, _made_of_holes(holes, moves, own), tolerance), None
     if real and not laid.difference and not holes.pitch:
-        run = laid_run(holes, expected, real, own, tolerance)
+        run = _laid_run(holes, expected, real, own, tolerance)
     found = SectionPath(expected, [], laid, run)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
@@ -105,10 +102,10 @@ def measure_holes(
     blended = [i for i in own if moves[i].kind == "rapid" and not moves[i].exact][:1]
     judged = [
         *judge_path(found.laid, call.line, holes.place, holes.words),
-        *passed_over(holes, expected, laid),
+        *_passed_over(holes, expected, laid),
         *(Finding("blended-hole", call.line) for _ in blended),
-        *judge_dwells(holes, block.own_events, moves),
-        *judge_clamp(holes, expected, laid, block, clamp),
+        *_judge_dwells(holes, block.own_events, moves),
+        *_judge_clamp(holes, expected, laid, block, clamp),
         *judge_state(state, texts, call.line),
     ]
     values = {
@@ -118,24 +115,24 @@ def measure_holes(
         "depth": holes.depth,
         "count": holes.count,
         "entries": call.given,
-        **times_of_holes(holes, pace(own, []), real),
+        **_times_of_holes(holes, pace(own, []), real),
     }
-    cut = called_cut(call, call.zero[1], found, values, judged)
+    cut = _called_cut(call, found, values, judged)
     return replace(cut, feeds=() if holes.pitch else None)
 
 
-def times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:
+def _times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:
     """Return the seconds of a call; without a run those of taps, by the spindle, are not known."""
     programmed = None if holes.pitch else pace.expected + holes.count * (holes.dwell or 0.0)
     return {"seconds": pace.seconds if real else programmed, "seconds_programmed": programmed}
 
 
-def laid_run(
+def _laid_run(
     holes: Holes, expected: Sequence[Expected], real: Followed, own: range, tolerance: float
 ) -> Laid:
     """Return the motion of a run laid along the moves, from where they begin.
 
-    Which of its samples are rapids is not known: at the ends of moves they are not told apart.
+    Which of its samples are rapids is not known: at the ends of moves they are not distinguished.
     """
     points = [holes.point(at) for index in own for at in real.positions[real.during(index)]]
     begin, level = expected[0].point(0.0)
@@ -145,7 +142,7 @@ def laid_run(
     return lay(path, [made] if len(made.points) > 1 else [], tolerance)
 
 
-def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
+def _made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[Made]:
     """Yield the moves of a call that go anywhere."""
     for index in own:
         move = moves[index]
@@ -157,25 +154,27 @@ def made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[M
             yield Made(index, ends, curve, feed, rapid, move.feed_mode == "G95")
 
 
-def judge_dwells(holes: Holes, events: Sequence[Event], moves: Sequence[Move]) -> Iterator[Finding]:
+def _judge_dwells(
+    holes: Holes, events: Sequence[Event], moves: Sequence[Move]
+) -> Iterator[Finding]:
     """Yield what is wrong with the dwells at the bottoms, and with the pitches of taps."""
     call = holes.call
-    asked = f"dwell {holes.dwell:g}" if holes.dwell else f"pitch {holes.pitch:.10g} mm"
+    act = f"dwell {holes.dwell:g}" if holes.dwell else f"pitch {holes.pitch:.10g} mm"
     found = [e for e in events if e.text.startswith(("dwell", "pitch")) and e.text != "dwell 0"]
-    others = dict.fromkeys(each.text for each in found if each.text != asked)
+    others = dict.fromkeys(each.text for each in found if each.text != act)
     for text in others:
         yield Finding("extra-event", call.line, {"event": text})
-    same = [each for each in found if each.text == asked]
+    same = [each for each in found if each.text == act]
     if len(same) < holes.count and (holes.dwell or holes.pitch):
-        yield Finding("act-missing", call.line, {"act": asked})
+        yield Finding("act-missing", call.line, {"act": act})
     bottom = -holes.depth if holes.dwell else call.length("retract")
     levels = [holes.point(moves[each.at].start)[1] for each in same]
     if any(abs(level - bottom) > LEVEL for level in levels):
-        yield Finding("act-off-bottom", call.line, {"act": asked})
+        yield Finding("act-off-bottom", call.line, {"act": act})
 
 
-def passed_over(holes: Holes, expected: Sequence[Expected], laid: Laid) -> Iterator[Finding]:
-    """Yield the first move that is not made: a way back and again lies on the way down."""
+def _passed_over(holes: Holes, expected: Sequence[Expected], laid: Laid) -> Iterator[Finding]:
+    """Yield the first move that is missing: a retract and its return lie on the way down."""
     missing = [move for move, made in zip(expected, laid.moves) if not made]
     for move in missing[:1] if not laid.difference else ():
         at = move.point(1.0)
@@ -183,29 +182,29 @@ def passed_over(holes: Holes, expected: Sequence[Expected], laid: Laid) -> Itera
         yield Finding("path-missing", move.line, values, holes.place(at))
 
 
-def judge_clamp(
+def _judge_clamp(
     holes: Holes, expected: Sequence[Expected], laid: Laid, block: Block, clamp: Clamp
 ) -> Iterator[Finding]:
     """Yield the first move of each kind in which the clamp is otherwise, or that it stays so.
 
-    Also that it was not judged, where there are codes of which no event tells.
+    Also that it was not judged, where there are codes that no event shows.
     """
     if not clamp.codes:
         return
     (close, opens), call = clamp.codes, holes.call
-    if not clamp.seen:
+    if not clamp.traced:
         yield Finding("clamp-unseen", call.line, {"codes": f"{close} and {opens}"})
         return
     events = [each for each in block.own_events if each.text.startswith(f"{CLAMP} ")]
-    at, told = [each.at for each in events], ["", *(each.text.split()[1] for each in events)]
+    at, codes = [each.at for each in events], ["", *(each.text.split()[1] for each in events)]
     for closed, name, code in ((True, "clamp-open", close), (False, "clamp-closed", opens)):
         wrong = (
             move.name
             for move, made in zip(expected, laid.moves)
             if holes.clamped(move) is closed
-            and any(told[bisect(at, index)] != code for index in made)
+            and any(codes[bisect(at, index)] != code for index in made)
         )
         for what in islice(wrong, 1):
             yield Finding(name, call.line, {"what": what, "code": code})
-    if told[-1] != opens:
+    if codes[-1] != opens:
         yield Finding("clamp-left", call.line, {"code": opens})

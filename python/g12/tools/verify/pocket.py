@@ -50,27 +50,27 @@ def measure_pocket(
     ``pace`` is a function of all its moves and of those that cut.
     """
     own, source, wall = range(block.at, block.end), target.source, target.wall
-    laid = lay(target.path, made_in(wall, moves, own), tolerance)
-    cutting = [i for i in own if is_cutting(moves[i], wall)]
-    left = uncut(block, target, material, tolerance, real is None)
-    run = run_values(target, laid, cutting, real) if real else {}
+    laid = lay(target.path, _made_in(wall, moves, own), tolerance)
+    cutting = [i for i in own if _is_cutting(moves[i], wall)]
+    remaining = uncut(block, target, material, tolerance, real is None)
+    run = _run_values(target, laid, cutting, real) if real else {}
     too_far = run.get("too_far", 0.0)
     judged = [
-        *judge_cutter(target),
-        *judge_depth(target, tolerance),
+        *_judge_cutter(target),
+        *_judge_depth(target, tolerance),
         *judge_path(laid, source.line, wall.machine),
-        *judge_cut(target, left, too_far, tolerance),
-        *judge_left(block, target, laid),
+        *_judge_cut(target, remaining, too_far, tolerance),
+        *_judge_state_after(block, target, laid),
     ]
     sizes = (each.size for each in laid.differences if each.kind == OFF)
     deviation = max([laid.deviation, too_far, *sizes])
     lengths = [moves[index].length for index in cutting] or [0.0]
     took = pace(own, cutting)
     values = {
-        **pocket_values(target),
+        **_pocket_values(target),
         "reached": reached(target, laid, moves),
         "deviation": finite(deviation),
-        "left": left.area,
+        "left": remaining.area,
         "shortest": min(lengths),
         "longest": max(lengths),
         "off_circles": None,
@@ -94,7 +94,7 @@ def measure_pocket(
     )
 
 
-def pocket_values(target: Target) -> dict[str, Any]:
+def _pocket_values(target: Target) -> dict[str, Any]:
     """Return what the words of a pocket ask for as plain values; ``z`` is that of other planes."""
     wall, cutter = target.wall, target.cutter
     rings = list(dict.fromkeys(round(arc.radius, 6) for arc in target.arcs))
@@ -113,12 +113,12 @@ def pocket_values(target: Target) -> dict[str, Any]:
         "depths": [wall.height(depth) for depth in target.depths],
         "lowest": wall.height(target.deepest),
         "z": None if wall.plane == Z else [level - reach, level + reach],
-        "entry": entry_values(target),
-        "stepover": target.asked.stepover,
+        "entry": _entry_values(target),
+        "stepover": target.words.stepover,
     }
 
 
-def entry_values(target: Target) -> dict[str, Any]:
+def _entry_values(target: Target) -> dict[str, Any]:
     """Return how the tool goes down: the helices' count, radius and greatest angle, or straight."""
     falls = [move.name == "helix" for move in target.path]
     falling = [move for move in target.path if move.name == "helix"]
@@ -131,7 +131,7 @@ def entry_values(target: Target) -> dict[str, Any]:
     return {"way": "helix", "count": count, "radius": curve.radius, "angle": angle}
 
 
-def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
+def _made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
     """Yield moves, by their indices, as seen from a wall's centre, but for those of no length."""
     starts, ends = (
         wall.local(np.array([getattr(moves[i], end)[:3] for i in own])).tolist()
@@ -157,12 +157,11 @@ def made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
         yield Made(index, points, curve, feed, rapid, move.feed_mode == "G95")
 
 
-def is_cutting(move: Move, wall: Wall) -> bool:
-    """Tell whether a move feeds across the wall's plane."""
+def _is_cutting(move: Move, wall: Wall) -> bool:
     if move.kind != "feed":
         return move.kind == "arc"
-    way = np.subtract(move.end[:3], move.start[:3])
-    return bool(np.abs(wall.axes[:2] @ way).max() > SAME_AXIS)
+    along = np.subtract(move.end[:3], move.start[:3])
+    return bool(np.abs(wall.axes[:2] @ along).max() > SAME_AXIS)
 
 
 def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
@@ -180,7 +179,7 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
     return max(made) + cutter if target.wall.inside else min(made) - cutter
 
 
-def run_values(
+def _run_values(
     target: Target, laid: Laid, cutting: Sequence[int], real: Followed
 ) -> Mapping[str, float]:
     """Return a run's largest deviations, and how far it went beyond the wall."""
@@ -196,7 +195,7 @@ def run_values(
     return {**off, "too_far": max(0.0, float(far))}
 
 
-def judge_cutter(target: Target) -> Iterator[Finding]:
+def _judge_cutter(target: Target) -> Iterator[Finding]:
     """Yield what is to know of the cutter: that of D, the loaded one, or none."""
     cutter, wall, line = target.cutter, target.wall, target.source.line
     values = {
@@ -207,7 +206,7 @@ def judge_cutter(target: Target) -> Iterator[Finding]:
     }
     if cutter.word:
         yield Finding("centre-on-circle", line)
-    if is_wrong_tool(cutter):
+    if _is_wrong_tool(cutter):
         cut = wall.radius - cutter.radius + cutter.loaded
         values |= {"wall": wall.radius, "cut": cut}
         yield Finding("wrong-cutter", line, values, wall.machine((0j, target.deepest)))
@@ -217,38 +216,37 @@ def judge_cutter(target: Target) -> Iterator[Finding]:
         yield Finding("worn-cutter", line, values)
 
 
-def is_wrong_tool(cutter: Cutter) -> bool:
+def _is_wrong_tool(cutter: Cutter) -> bool:
     """Tell whether D names another cutter than the loaded one, by more than wear."""
     known = cutter.named is not None and cutter.loaded > 0.0
     return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
 
 
-def judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
-    """Yield that a circle lies above where the tool comes from; an event begins at its W."""
+def _judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
     if target.source.dialect != EVENT and target.deepest > tolerance:
         values = {"depth": target.wall.height(target.deepest), "start": target.wall.height(0.0)}
         yield Finding("cuts-air", target.source.line, values)
 
 
-def judge_cut(
-    target: Target, left: BaseGeometry, too_far: float, tolerance: float
+def _judge_cut(
+    target: Target, remaining: BaseGeometry, too_far: float, tolerance: float
 ) -> Iterator[Finding]:
     """Yield material that remains, and a wall that a run cut too far."""
     wall, deepest, line = target.wall, target.deepest, target.source.line
-    if left.area > AREA:
-        values = {"area": left.area, "shape": left, "floor": wall.height(deepest)}
+    if remaining.area > AREA:
+        values = {"area": remaining.area, "shape": remaining, "floor": wall.height(deepest)}
         yield Finding("uncut", line, values, wall.machine((0j, deepest)))
     if too_far > tolerance + RUN:
         place = wall.machine((complex(wall.radius), deepest))
         yield Finding("wall-run", line, {"size": too_far, "at": place}, place)
 
 
-def judge_left(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
-    """Yield the state that a pocket leaves otherwise; of another feed no more is said."""
+def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
+    """Yield the wrong modal state after a pocket; a wrong feed is reported once."""
     other_feed = any(each.kind == FEED for each in laid.differences)
     state = state_differences(block.left, target.leaves)
-    told = [each for each in state if not (other_feed and each.name == "_feed")]
-    yield from judge_state(told, extra_events(block), target.source.line)
+    others = [each for each in state if not (other_feed and each.name == "_feed")]
+    yield from judge_state(others, extra_events(block), target.source.line)
 
 
 def uncut(
@@ -259,13 +257,13 @@ def uncut(
     ``as_emitted``: its circles are those of its moves, not what a run made of them.
     """
     wall, (inner, outer) = target.wall, reach(target, tolerance)
-    known = as_emitted and clears(target, inner, outer)
+    known = as_emitted and _clears(target, inner, outer)
     if wall.plane != Z or not target.cutter.radius or known:
         return Polygon()
-    wanted = disc((0, 0), outer, FINE)
+    region = disc((0, 0), outer, FINE)
     if inner > LEAST_CORE:
-        wanted = wanted.difference(disc((0, 0), inner, FINE))
-    there = translate(wanted, *wall.origin[:2])
+        region = region.difference(disc((0, 0), inner, FINE))
+    there = translate(region, *wall.origin[:2])
     return material.standing(there, wall.height(target.deepest), block.end)
 
 
@@ -277,17 +275,17 @@ def reach(target: Target, tolerance: float) -> tuple[float, float]:
     wall, cutter = target.wall, target.cutter
     if not wall.inside:
         return wall.radius + tolerance, wall.radius + 2 * cutter.radius - tolerance
-    worn = 0.0 if is_wrong_tool(cutter) else max(0.0, cutter.radius - cutter.loaded)
+    worn = 0.0 if _is_wrong_tool(cutter) else max(0.0, cutter.radius - cutter.loaded)
     return wall.cleared + tolerance, wall.radius - tolerance - worn * bool(cutter.loaded)
 
 
-def clears(target: Target, inner: float, outer: float) -> bool:
+def _clears(target: Target, inner: float, outer: float) -> bool:
     """Tell whether the circles of the deepest level surely leave nothing between two distances.
 
     To ask the material takes five times as long.
     """
     cutter, floor = target.cutter, target.deepest
-    edge = cutter.loaded if is_wrong_tool(cutter) else cutter.radius
+    edge = cutter.loaded if _is_wrong_tool(cutter) else cutter.radius
     there = [m for m in target.path if m.start_level == m.end_level == floor and not m.rapid]
     spans = [(0.0, edge)] if any(abs(move.curve.start) < FINE for move in there) else []
     arcs = (m.curve for m in target.circles if m.end_level == floor)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Everything a program's pockets, shapes and sections can be held to, in one value.
 
-What is asked for is read from the program's words, what is cut is measured from the motion that
-LinuxCNC makes of it; the cycles' own planning has no part in it.
+What is expected is read from the program's words. What is actual is measured from the motion that
+LinuxCNC makes of it. The planners have no part in it.
 """
 
 from collections.abc import Iterator, Sequence
@@ -24,8 +24,8 @@ from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Tell, counted, silent
 from g12.tools.units import Unit
-from g12.tools.verify.asked import Asked, asked_of, moves_there
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
+from g12.tools.verify.commanded import Commanded, commanded_by, moves_there
 from g12.tools.verify.compare.section import x0_of
 from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.mistakes.tool import (
@@ -73,17 +73,13 @@ class Cuts(NamedTuple):
 class Proof:
     """What was measured, and ``judged`` of it: findings, notes, what was not, in order of lines.
 
-    ``workpiece`` is what is cut. ``still`` are the lines and codes of cycles that move nothing,
-    ``unseen`` those of blocks that make a cycle cut which belongs to nothing measured. ``opened``
-    is the user's file, None where that is what was read.
+    ``workpiece`` is what is cut, ``opened`` the user's file, None where that is what was read.
     """
 
     subject: Subject
     workpiece: Workpiece
     tolerances: Tolerances
     cuts: Cuts
-    still: Sequence[tuple[int, str]]
-    unseen: Sequence[tuple[int, str]]
     judged: Sequence[Finding]
     opened: OpenedProgram | None = None
 
@@ -111,6 +107,10 @@ class Proof:
         text = finding.text(unit)
         return self.opened.in_source(text) if self.opened and not finding.file else text
 
+    def lines_with(self, code: str) -> list[tuple[int, str]]:
+        """Return the lines with a finding, each with the program's code that it names."""
+        return [(each.line, each.values["code"]) for each in self.judged if each.code == code]
+
     @property
     def findings(self) -> list[tuple[int, str]]:
         """Return everything that is not as programmed: the line, and what is wrong."""
@@ -132,7 +132,7 @@ def prove(
 
     ``parameters`` is what the program starts with; see ``Tracer.trace``. ``tolerance`` in mm
     replaces both that of pockets and that of sections, ``stock`` is what is cut. ``tell`` is
-    told what is being done.
+    called with the name of each step.
     """
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, explained(tracer.trace(program, parameters=parameters), ini.path))
@@ -150,32 +150,32 @@ def prove_traced(
     tell: Tell = silent,
 ) -> Proof:
     """Return the proof of a program that has been traced; see ``prove``."""
-    asked = asked_of(tracer, subject, tools, parameters)
+    commanded = commanded_by(tracer, subject, tools, parameters)
     there = moves_there(tracer, subject, parameters)
-    for first in [each for each in asked.sections if not each.surface][:1]:
+    for first in [each for each in commanded.sections if not each.surface][:1]:
         subject = subject.about(x0_of(first, subject.trace.moves[first.at]))
-    allowed = tolerances_of(subject, tolerance)
-    workpiece = workpiece_of(subject, asked, stock)
-    cuts = measured(subject, asked, workpiece, allowed, tell)
+    allowed = _tolerances_of(subject, tolerance)
+    workpiece = workpiece_of(subject, commanded, stock)
+    cuts = measured(subject, commanded, workpiece, allowed, tell)
     tell("looking for rapids through material")
     known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
-    unseen = unseen_in(subject, known)
+    unmeasured = _unmeasured_in(subject, known)
     run = {cut.line for kind in cuts for cut in kind if not cut.file}
-    run |= {line for line, _ in (*unseen, *asked.still)}
+    run |= {line for line, _ in (*unmeasured, *commanded.idle)}
     found = [
         *(each for kind in cuts for cut in kind for each in cut.judged),
         *judge_material(workpiece),
-        *(Finding("not-measured", line, {"code": code}) for line, code in unseen),
-        *(Finding("not-cut", line, {"code": code}) for line, code in asked.still),
-        *judge_travel(asked.circles, there, subject.trace.events, subject.ini),
-        *mistakes(subject, cuts, known),
+        *(Finding("not-measured", line, {"code": code}) for line, code in unmeasured),
+        *(Finding("not-cut", line, {"code": code}) for line, code in commanded.idle),
+        *judge_travel(commanded.circles, there, subject.trace.events, subject.ini),
+        *_mistakes(subject, cuts, known),
         *judge_unrun(read_lines(subject.program), Codes(subject.ini), run),
     ]
     judged = sorted(found, key=lambda finding: finding.line)
-    return Proof(subject, workpiece, allowed, cuts, asked.still, unseen, judged)
+    return Proof(subject, workpiece, allowed, cuts, judged)
 
 
-def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
+def _tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
     """Return what walls and contours may be off: of a run RUN more than POLAR_TOLERANCE."""
     if tolerance is not None:
         return Tolerances(tolerance, tolerance)
@@ -184,34 +184,32 @@ def tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
 
 
 def measured(
-    subject: Subject, asked: Asked, workpiece: Workpiece, allowed: Tolerances, tell: Tell
+    subject: Subject, commanded: Commanded, workpiece: Workpiece, allowed: Tolerances, tell: Tell
 ) -> Cuts:
     """Return what is measured of a program's cuts."""
     moves, real, ini, polar = subject.trace.moves, subject.real, subject.ini, allowed.polar
     pace = partial(pace_of, path=subject.path, real=real)
-    axes = axes_of_section(ini) if asked.sections or asked.shapes else None
-    clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], asked.clamp_is_seen)
+    axes = axes_of_section(ini) if commanded.sections or commanded.shapes else None
+    clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], commanded.clamp_is_traced)
     return Cuts(
         [
             measure_pocket(*circle, moves, workpiece.material, allowed.pocket, pace, real)
-            for circle in counted(asked.circles, "measuring pocket", tell)
+            for circle in counted(commanded.circles, "measuring pocket", tell)
         ],
         [
             measure_section(each, view.path, moves, subject.trace.diameters, axes, polar, view.real)
-            for each in counted(asked.sections, "measuring section", tell)
+            for each in counted(commanded.sections, "measuring section", tell)
             for view in [subject.of_section(each)]
         ],
         [
-            measure_shape(
-                each, subject.about(each[1].zero[0], each[1].moves).path, moves, axes, polar
-            )
-            for each in counted(asked.shapes, "measuring shape", tell)
+            measure_shape(each, subject.about(each.zero[0], each.moves).path, moves, axes, polar)
+            for each in counted(commanded.shapes, "measuring shape", tell)
         ],
-        [measure_holes(each, moves, polar, clamp, pace, real) for each in asked.holes],
+        [measure_holes(each, moves, polar, clamp, pace, real) for each in commanded.holes],
     )
 
 
-def unseen_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
+def _unmeasured_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
     """Return each line and code that makes moves of a cycle which is not measured."""
     codes = Codes(subject.ini)
     found = (
@@ -222,7 +220,7 @@ def unseen_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
     return list(dict.fromkeys(found))
 
 
-def mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
+def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
     """Yield what the rules about words find; ``known`` are the moves of cuts."""
     trace, ini, moves = subject.trace, subject.ini, subject.trace.moves
     cuts = [*found.pockets, *found.sections, *found.holes]
@@ -230,7 +228,7 @@ def mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
-    yield from judge_reversals([each.asked for each in found.sections])
+    yield from judge_reversals([each.commanded for each in found.sections])
     yield from not_judged(moves, known)
     if part_of(ini).turning:
         texts = read_lines(subject.program)

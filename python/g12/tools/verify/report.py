@@ -111,10 +111,12 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
     findings = [each for each in judged if each.is_finding or (strict and each.is_note)]
     notes = [each for each in judged if each.is_note and not strict]
     others = [each for each in judged if each.is_not_judged]
-    cuts = paragraphs_of(proof, unit) if full else ["\n".join(_in_columns(cut_lines(proof, unit)))]
+    cuts = (
+        _paragraphs_of(proof, unit) if full else ["\n".join(_in_columns(_cut_lines(proof, unit)))]
+    )
     messages = (m._replace(line=proof.user_line(m.line)) for m in proof.subject.trace.messages)
     parts = [
-        zero_text(proof, unit),
+        _zero_text(proof, unit),
         *cuts,
         _listed("findings", findings, proof, unit),
         _listed("notes", notes, proof, unit),
@@ -128,7 +130,7 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
 def as_json(proof: Proof, strict: bool = False) -> str:
     """Return the proof for a program to read; with ``strict`` it is not good with a note."""
     judged = {
-        name: [judged_values(each, proof) for each in proof.judged if getattr(each, kind)]
+        name: [_judged_values(each, proof) for each in proof.judged if getattr(each, kind)]
         for name, kind in KINDS.items()
     }
     cuts, line = proof.cuts._asdict(), proof.user_line
@@ -136,22 +138,24 @@ def as_json(proof: Proof, strict: bool = False) -> str:
         "program": str(proof.opened.source if proof.opened else proof.subject.program),
         "ini": str(proof.subject.ini.path),
         "real": proof.subject.real is not None,
-        **{kind: [values_of(kind, cut, proof) for cut in cuts[kind]] for kind in ROWS},
-        "rapids": [judged_values(each, proof) for each in proof.judged if "path" in each.values],
-        "stock": proof.given and stock_values(proof.given),
-        "unseen": [{"line": line(at), "code": code} for at, code in proof.unseen],
+        **{kind: [_values_of(kind, cut, proof) for cut in cuts[kind]] for kind in ROWS},
+        "rapids": [_judged_values(each, proof) for each in proof.judged if "path" in each.values],
+        "stock": proof.given and _stock_values(proof.given),
+        "unseen": [
+            {"line": line(at), "code": code} for at, code in proof.lines_with("not-measured")
+        ],
         "messages": [
             {"line": line(message.line), "text": message.text}
             for message in proof.subject.trace.messages
         ],
-        "still": [{"line": line(at), "code": code} for at, code in proof.still],
+        "still": [{"line": line(at), "code": code} for at, code in proof.lines_with("not-cut")],
         **judged,
         "good": not (judged["findings"] or (strict and judged["notes"])),
     }
     return json.dumps(values, indent=2)
 
 
-def judged_values(found: Finding, proof: Proof) -> dict:
+def _judged_values(found: Finding, proof: Proof) -> dict:
     """Return a finding or a note as plain values, its sentence in mm."""
     return {
         "code": found.code,
@@ -162,19 +166,19 @@ def judged_values(found: Finding, proof: Proof) -> dict:
     }
 
 
-def values_of(kind: str, cut: MeasuredCut, proof: Proof) -> dict[str, Any]:
+def _values_of(kind: str, cut: MeasuredCut, proof: Proof) -> dict[str, Any]:
     """Return the measures of a cut with the user's lines; entries are in program units."""
     first, last = (proof.user_line(line, cut.file) for line in (cut.line, cut.last))
     lines = {"lines": [first, last]} if cut.last else {"line": first}
     values = {**lines, "file": cut.file or None, "code": cut.code, **cut.values}
     if "lowest_feed_line" in values:
         values["lowest_feed_line"] = proof.user_line(values["lowest_feed_line"], cut.file)
-    return values | section_values(cut, proof.subject.ini) if kind == "sections" else values
+    return values | _section_values(cut, proof.subject.ini) if kind == "sections" else values
 
 
-def section_values(cut: MeasuredCut, ini: Ini) -> dict[str, Any]:
+def _section_values(cut: MeasuredCut, ini: Ini) -> dict[str, Any]:
     """Return why X words of a section are read so, and about how long kinematics would take."""
-    section, reading = cut.asked, ini.settings.polar_x
+    section, reading = cut.commanded, ini.settings.polar_x
     by_mode = section.surface or reading == "inherit"
     modal = "G7" if section.diameters else "G8"
     times = times_of_section(section, cut.path, ini)
@@ -182,13 +186,12 @@ def section_values(cut: MeasuredCut, ini: Ini) -> dict[str, Any]:
     return {**by, "seconds_planned": times and times._asdict()}
 
 
-def stock_values(workpiece: Workpiece) -> dict[str, Any]:
-    """Return the stock as plain values."""
+def _stock_values(workpiece: Workpiece) -> dict[str, Any]:
     bounds = list(workpiece.shape.bounds)
     return {"text": workpiece.stock.text, "bounds": bounds, "top": workpiece.top}
 
 
-def zero_text(proof: Proof, unit: Unit) -> str:
+def _zero_text(proof: Proof, unit: Unit) -> str:
     """Return where the program's zero is on the machine, "" where they are the same.
 
     Places of a section are as far from the spindle as the program's; those on a cylinder are the
@@ -202,38 +205,37 @@ def zero_text(proof: Proof, unit: Unit) -> str:
     return "; ".join(filter(None, [moved, x0]))
 
 
-def paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
+def _paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
     """Yield every measure of each pocket, shape and section, and of the stock."""
     for kind in ("pockets", "shapes", "holes", "sections"):
         for cut in proof.cuts._asdict()[kind]:
             yield paragraph_of(kind, cut, proof, unit)
     if proof.given:
-        values = stock_values(proof.given)
+        values = _stock_values(proof.given)
         yield paragraph(f"stock: {values['text']}", rows_of(STOCK, values, unit))
 
 
 def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     """Return the paragraph of a cut."""
-    values = {"seconds": None, "across_flats": (), **values_of(kind, cut, proof)}
+    values = {"seconds": None, "across_flats": (), **_values_of(kind, cut, proof)}
     reckoned = values["seconds"] == values.get("seconds_programmed")  # knows no acceleration
-    values |= {"allowed": allowed_of(kind, proof)}
+    values |= {"allowed": _allowed_of(kind, proof)}
     values |= {"real_seconds": None if reckoned else values["seconds"]}
     flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in values["across_flats"])
     values |= dict(zip(("flats", "flats_reached"), zip(*flats)))
     call = proof.subject.trace.moves[cut.own.start].block
     inside = not cut.last or (not cut.file and cut.line <= call <= cut.last)
     called = "" if inside else f", called in line {proof.user_line(call)}"
-    title = f"{where_text(cut, proof)}{called}: {code_text(cut)}"
+    title = f"{_where_text(cut, proof)}{called}: {_code_text(cut)}"
     return paragraph(title, rows_of(ROWS[kind], values, unit))
 
 
-def allowed_of(kind: str, proof: Proof) -> float:
+def _allowed_of(kind: str, proof: Proof) -> float:
     """Return how far off a cut of a kind may be, mm."""
     return proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
 
 
-def code_text(cut: MeasuredCut) -> str:
-    """Return the code of a cut and its dialect, if it has one."""
+def _code_text(cut: MeasuredCut) -> str:
     dialect = cut.values.get("dialect")
     return f"{cut.code} ({dialect})" if dialect else cut.code
 
@@ -251,15 +253,14 @@ def paragraph(title: str, rows: Iterable[Row]) -> str:
     return "\n".join([title, *(f"  {name:{NAMES}}  {text}".rstrip() for name, text in rows)])
 
 
-def where_text(cut: MeasuredCut, proof: Proof) -> str:
-    """Return the user's lines of a cut in words."""
+def _where_text(cut: MeasuredCut, proof: Proof) -> str:
     if not cut.last:
-        return line_text(proof, cut.line, cut.file)
+        return _line_text(proof, cut.line, cut.file)
     first, last = (proof.user_line(line, cut.file) for line in (cut.line, cut.last))
     return f"lines {first} to {last}{f' of {cut.file}' if cut.file else ''}"
 
 
-def line_text(proof: Proof, line: int, file: str) -> str:
+def _line_text(proof: Proof, line: int, file: str) -> str:
     """Return the user's line in words, with the file of the sub in which it is."""
     return f"line {proof.user_line(line, file)}{f' of {file}' if file else ''}"
 
@@ -268,13 +269,13 @@ def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> s
     """Return findings under a title, "" without any; what is the same of several lines once."""
     lines: dict[str, list[str]] = {}
     for each in found:
-        where = line_text(proof, each.line, each.file) if each.line else ""
+        where = _line_text(proof, each.line, each.file) if each.line else ""
         lines.setdefault(proof.text(each, unit), []).append(where)
-    rows = [f"{GAP}{first_of_lines(where)}{text}" for text, where in lines.items()]
+    rows = [f"{GAP}{_first_of_lines(where)}{text}" for text, where in lines.items()]
     return "\n".join([title, *rows]) if rows else ""
 
 
-def first_of_lines(where: Sequence[str]) -> str:
+def _first_of_lines(where: Sequence[str]) -> str:
     """Return the lines of a sentence: the first, how many more, how often if not once in each."""
     named = [each for each in dict.fromkeys(where) if each]
     more = [f"and {counted_as(len(named) - 1, 'line')} more"] if len(named) > 1 else []
@@ -298,37 +299,35 @@ def _in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
         yield GAP.join(cells).rstrip()
 
 
-def cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
+def _cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
     """Yield the columns of each cut: where, which code, what, how far off, how long.
 
     The section in a shape's sub is measured with its shape.
     """
-    of_shapes = {each.own for shape in proof.cuts.shapes for each in sections_of(shape, proof)}
+    of_shapes = {each.own for shape in proof.cuts.shapes for each in _sections_of(shape, proof)}
     for kind in ("pockets", "shapes", "holes", "sections"):
-        allowed = unit.fine(allowed_of(kind, proof))
+        allowed = unit.fine(_allowed_of(kind, proof))
         for cut in proof.cuts._asdict()[kind]:
             if kind == "sections" and cut.own in of_shapes:
                 continue
-            what = in_words(WHAT[kind], {**cut.values, **what_words(kind, cut)}, unit)
-            inside = sections_of(cut, proof) if kind == "shapes" else []
+            what = in_words(WHAT[kind], {**cut.values, **_what_words(kind, cut)}, unit)
+            inside = _sections_of(cut, proof) if kind == "shapes" else []
             worst = max(each.deviation for each in (cut, *inside))
             off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
             off = "not judged" if math.isnan(worst) else off
             seconds = [each.values.get("seconds") for each in inside or [cut]]
             time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
-            yield where_text(cut, proof), code_text(cut), what, off, time
+            yield _where_text(cut, proof), _code_text(cut), what, off, time
 
 
-def sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
-    """Return the sections that a shape's sub cuts."""
+def _sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
     return [section for section in proof.sections if section.own.start in shape.own]
 
 
-def what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
-    """Return what the line of a cut has in words."""
+def _what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
     if kind == "sections":
-        return {"third": "XYZ"[cut.asked.third]}
+        return {"third": "XYZ"[cut.commanded.third]}
     if kind == "holes":
-        side = "round" if cut.asked.is_side else "on"
+        side = "round" if cut.commanded.is_side else "on"
         return {"holes": counted_as(cut.values["count"], "hole"), "side": side}
     return {}

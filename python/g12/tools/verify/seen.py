@@ -68,7 +68,7 @@ def seen_of_proof(proof: Proof) -> Seen:
 
     It is that of a cylinder's surface where all sections are cut on one.
     """
-    radii = [cut.asked.surface for cut in proof.sections]
+    radii = [cut.commanded.surface for cut in proof.sections]
     return Seen(
         tuple(each for each in proof.judged if each.is_finding),
         proof.given,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The material that a program assumes where no stock is given, and the holes in it.
 
-A wall stands round a pocket, a boss inside a perimeter. They are solid below the program's Z0, or,
+A pocket has a wall around it, a perimeter a boss inside. Both are solid below the program's Z0, or,
 where the program first goes below that by rapid and feeds down from there, below that level; with a
 Z0 that lies lower, below the lowest level from which a circle is fed down to. Where it is not known
 how the tool comes down, nothing is.
@@ -123,12 +123,12 @@ def holes_entered(
     ``radius`` gives that of a move's cutter.
     """
     found: list[AssumedHole] = []
-    seen: list[complex] = []
+    positions: list[complex] = []
     for (_, target), approach in zip(circles, approaches):
         place, index = complex(*target.wall.origin[:2]), approach.move
-        if any(abs(place - other) < SAME_PLACE for other in seen):
+        if any(abs(place - other) < SAME_PLACE for other in positions):
             continue
-        seen.append(place)
+        positions.append(place)
         if index is not None:
             end = np.array([moves[index].end[:3]])
             below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
@@ -156,8 +156,8 @@ def add_sections(
 ) -> None:
     """Make solid what sections on a face are cut in, or those on one ``surface`` of a cylinder."""
     keys = [surface_key(section, moves) for section in sections]
-    solids, axis = (cylinder_solids, X) if surface else (face_solids, Z)
-    for section, key, span in zip(sections, keys, spans(sections, keys, moves, axis)):
+    solids, axis = (_cylinder_solids, X) if surface else (_face_solids, Z)
+    for section, key, span in zip(sections, keys, _spans(sections, keys, moves, axis)):
         if surface in (None, key):
             for area, top in solids(section, moves, radius(section.at)):
                 material.add(area, top, *span)
@@ -169,7 +169,7 @@ def surface_key(section: SectionContour, moves: Sequence[Move]) -> SurfaceKey:
     return SurfaceKey(round(section.surface, 6), round(face, 6))
 
 
-def spans(
+def _spans(
     sections: Sequence[SectionContour], keys: Sequence[SurfaceKey], moves: Sequence[Move], axis: int
 ) -> Iterator[tuple[int, float]]:
     """Yield the moves for which the material of each section counts: from it on.
@@ -188,7 +188,7 @@ def spans(
         yield section.at, next(up, begin)
 
 
-def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
     """Yield what a section on a face is cut in, each area with its top."""
     plane = Plane(section, moves[section.at])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
@@ -199,7 +199,7 @@ def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -
         return
     for outline in outlines_of(section):
         if outline.depth < -SAME_LEVEL:
-            yield material_side(outline, plane), top
+            yield _material_side(outline, plane), top
     if not any(element.side for element in section.elements):
         deep = [element for element in section.elements if element.depth < -SAME_LEVEL]
         ends = [abs(place) for element in deep for place in (element.start, element.end)]
@@ -207,7 +207,7 @@ def face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -
         yield disc((0.0, 0.0), reach) if reach > 0.0 else Polygon(), top
 
 
-def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+def _cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
     """Yield what a section on a cylinder is cut in, with its top."""
     first = moves[section.at]
     top = min(surface_key(section, moves).face, first.start[X])
@@ -220,7 +220,7 @@ def cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: floa
         yield box(-FAR, low, FAR, high), top
 
 
-def material_side(outline: Outline, plane: Plane) -> BaseGeometry:
+def _material_side(outline: Outline, plane: Plane) -> BaseGeometry:
     """Return what a compensated contour leaves of the part beside it, nothing without a side."""
 
     def on_part(xs: np.ndarray, ys: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

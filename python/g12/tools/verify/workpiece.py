@@ -6,10 +6,12 @@ every cylinder whose unrolled surface is cut. Lengths are mm in machine coordina
 """
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import groupby
+from operator import itemgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +25,7 @@ from g12.tools.path.part import Part, X, Z, disc, is_sideways, part_of
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.units import unit_of
-from g12.tools.verify.asked import Asked
+from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import BlockInMm, SubCall
 from g12.tools.verify.subject import Subject
@@ -93,6 +95,26 @@ class Program:
         }
 
     @cached_property
+    def points_sideways(self) -> list[bool | None]:
+        """Whether the tool of each move points at the axis, as in its cuts before and after.
+
+        None where those differ, and for a tool that cuts neither a section nor a hole.
+        """
+        cuts = [(each.at, each.end, each.surface > 0.0) for each in self.sections]
+        cuts += [(each.moves.start, each.moves.stop, each.is_side) for each in self.holes]
+        of_tool: dict[int, list[tuple[int, int, bool]]] = {}
+        for cut in sorted(cuts):
+            of_tool.setdefault(self.moves[cut[0]].tool, []).append(cut)
+        found: list[bool | None] = []
+        for index, move in enumerate(self.moves):
+            own = of_tool.get(move.tool, [])
+            last = bisect_right(own, index, key=itemgetter(0)) - 1
+            following = bisect_right(own, index, key=itemgetter(1))
+            sides = {side for *_, side in own[max(last, 0) : following + 1]}
+            found.append(sides.pop() if len(sides) == 1 else None)
+        return found
+
+    @cached_property
     def widest(self) -> float:
         """The largest radius of a cutter."""
         return max((self.radius(index) for index in range(len(self.moves))), default=0.0)
@@ -105,7 +127,7 @@ class Program:
     def zero(self) -> np.ndarray:
         """Return the program's zero where it first cuts; on a lathe X is that of the spindle.
 
-        A section on a cylinder tells nothing of it.
+        A section on a cylinder does not define it.
         """
         for section in self.on_face:
             return np.array([0.0, 0.0, self.moves[section.at].start[Z] - section.height])
@@ -124,7 +146,7 @@ class Program:
 
 
 class PartView(NamedTuple):
-    """The part as it is seen by some tools, all without ``tools``, and its material there.
+    """The part as some tools cut it, all without ``tools``, and its material there.
 
     ``surface`` is the radius of a cylinder, 0 of a plane. The material is known for the moves up to
     ``until``.
@@ -136,9 +158,12 @@ class PartView(NamedTuple):
     surface: float = 0.0
     until: float = math.inf
 
-    def judges(self, move: Move) -> bool:
-        """Tell whether a move is one of its tools'."""
-        return self.tools is None or move.tool in self.tools
+    def judges(self, program: Program, index: int) -> bool:
+        """Tell whether a move is one of its tools', while they point at it from this side."""
+        if self.tools is None:
+            return True
+        sideways = program.points_sideways[index]
+        return program.moves[index].tool in self.tools and sideways is (self.surface > 0.0)
 
 
 @dataclass(frozen=True)
@@ -191,19 +216,19 @@ class Workpiece:
         return self.top - self.stock.size[Z] if self.stock and self.stock.size else None
 
 
-def workpiece_of(subject: Subject, asked: Asked, stock: StockText | None) -> Workpiece:
+def workpiece_of(subject: Subject, commanded: Commanded, stock: StockText | None) -> Workpiece:
     """Return what a program is cut from, assumed where no stock is given.
 
     Raises UsageError for a text that is no stock of the machine's.
     """
-    trace, circles, sections = subject.trace, asked.circles, asked.sections
-    real, holes = subject.real, [call for _, call in asked.holes]
+    trace, circles, sections = subject.trace, commanded.circles, commanded.sections
+    real, holes = subject.real, commanded.holes
     cuts = (circles, sections, trace.diameters, real, holes)
     program = Program(trace.moves, subject.part, *cuts)
     if stock is None:
         return assumed_workpiece(program)
     unit = unit_of(trace.modes.gcodes, stock.units)
-    return given_workpiece(program, read_stock(stock.text, part_of(subject.ini).turning, unit))
+    return _given_workpiece(program, read_stock(stock.text, part_of(subject.ini).turning, unit))
 
 
 def assumed_workpiece(program: Program) -> Workpiece:
@@ -213,18 +238,18 @@ def assumed_workpiece(program: Program) -> Workpiece:
     approaches = [approach_to(block, moves) for block, _ in walls]
     add_circles(material, walls, approaches)
     add_sections(material, program.on_face, moves, program.radius)
-    add_drilled(material, program)
+    _add_drilled(material, program)
     bores = list(holes_of_words(walls))
     entered = holes_entered(walls, approaches, moves, material, program.radius)
     for hole in bores:
         material.open(disc(hole.place, hole.radius), hole.place[Z])
     for hole in entered:
         material.open(disc(hole.place, hole.radius))
-    views = views_of(program, material, face_tools(program))
+    views = _views_of(program, material, _face_tools(program))
     return Workpiece(program, views, [*bores, *entered])
 
 
-def add_drilled(material: Material, program: Program) -> None:
+def _add_drilled(material: Material, program: Program) -> None:
     """Make solid what holes are drilled in: the face round them."""
     for call in (each for each in program.holes if not each.is_side):
         face = call.zero[1]
@@ -235,7 +260,7 @@ def add_drilled(material: Material, program: Program) -> None:
                 material.add(disc(place, program.radius(index) + WALL), face)
 
 
-def given_workpiece(program: Program, stock: Stock) -> Workpiece:
+def _given_workpiece(program: Program, stock: Stock) -> Workpiece:
     """Return the stock; of a bore alone the pockets are known to be in something."""
     material, zero = Material(), program.zero()
     flat = [(block, target) for block, target in program.circles if target.wall.plane == Z]
@@ -247,29 +272,24 @@ def given_workpiece(program: Program, stock: Stock) -> Workpiece:
         add_circles(material, flat, [approach_to(block, program.moves) for block, _ in flat])
         for _, target in flat:
             material.open(disc(target.wall.origin, stock.bore / 2))
-    views = views_of(program, material, face_tools(program) if stock.diameter else None)
+    views = _views_of(program, material, _face_tools(program) if stock.diameter else None)
     if stock.diameter:
-        views.append(bar_from_side(program, stock.diameter / 2, program.face()))
+        views.append(_bar_from_side(program, stock.diameter / 2, program.face()))
     return Workpiece(program, views, (), stock, shape, float(zero[Z]))
 
 
-def views_of(program: Program, material: Material, tools: frozenset[int] | None) -> list[PartView]:
+def _views_of(program: Program, material: Material, tools: frozenset[int] | None) -> list[PartView]:
     """Return the views of the part with what the program cuts of each."""
-    views = [PartView(program.part, material, tools), *cylinders(program)]
+    views = [PartView(program.part, material, tools), *_cylinders(program)]
     for view in views:
-        add_cuts(view, program)
+        _add_cuts(view, program)
     return views
 
 
-def face_tools(program: Program) -> frozenset[int] | None:
-    """Return the tools that cut sections and holes on a face, None for all of a mill's.
-
-    One that drills the side points at the axis.
-    """
-    if not program.sections and not program.part.turning:
-        return None
-    drilled = frozenset(program.moves[c.moves.start].tool for c in program.holes if c.is_side)
-    return tools_of(program, side=False) - drilled
+def _face_tools(program: Program) -> frozenset[int] | None:
+    """Return the tools that cut sections and holes on a face, None for all of a mill's."""
+    is_mill = not program.sections and not program.part.turning
+    return None if is_mill else tools_of(program, side=False)
 
 
 def tools_of(program: Program, side: bool) -> frozenset[int]:
@@ -279,24 +299,26 @@ def tools_of(program: Program, side: bool) -> frozenset[int]:
     return frozenset(program.moves[at].tool for at, its in cuts if its is side)
 
 
-def bar_from_side(program: Program, radius: float, face: float) -> PartView:
-    """Return a bar as the tools see it that point at its axis alone, up to the first other cut."""
+def _bar_from_side(program: Program, radius: float, face: float) -> PartView:
+    """Return a bar as the tools see it that point at its axis, up to the first other cut."""
     material, centre = Material(period=2 * math.pi * radius), program.part.centre
     material.add(box(-FAR, -FAR, FAR, face), centre + radius)
-    tools = tools_of(program, side=True) - tools_of(program, side=False)
+    tools = tools_of(program, side=True)
     others = (
         index
         for index, move in enumerate(program.moves)
-        if move.kind != "rapid" and move.tool not in tools and move.end[Z] < face - SAME_LEVEL
+        if move.kind != "rapid"
+        and not program.points_sideways[index]
+        and move.end[Z] < face - SAME_LEVEL
         if math.hypot(*program.end(index)[:2]) - program.radius(index) < radius - SAME_LEVEL
     )
     part = Surface(turning=True, centre=centre, radius=radius)
     view = PartView(part, material, tools, radius, next(others, math.inf))
-    add_cuts(view, program)
+    _add_cuts(view, program)
     return view
 
 
-def cylinders(program: Program) -> Iterator[PartView]:
+def _cylinders(program: Program) -> Iterator[PartView]:
     """Yield a view of each cylinder that sections are cut on."""
     moves, sections = program.moves, [each for each in program.sections if each.surface]
     for surface in dict.fromkeys(surface_key(section, moves) for section in sections):
@@ -308,24 +330,24 @@ def cylinders(program: Program) -> Iterator[PartView]:
         yield PartView(part, material, tools, surface.radius)
 
 
-def add_cuts(view: PartView, program: Program) -> None:
+def _add_cuts(view: PartView, program: Program) -> None:
     """Cut what moves at feed sweep; a cutter nobody knows is as wide as the widest."""
     moves = program.moves
-    for (rapid, level, *_), group in groupby(range(len(moves)), partial(kind_of_cut, view, moves)):
+    for (rapid, level, *_), group in groupby(range(len(moves)), partial(_kind_of_cut, view, moves)):
         own = list(group)
-        if rapid or (view.surface and not view.judges(moves[own[0]])):
+        if rapid or (view.surface and not view.judges(program, own[0])):
             continue
         radius = program.radius(own[0]) or program.widest
-        points = partial(points_along, program, view.part, own)
+        points = partial(_points_along, program, view.part, own)
         if level is None:
             view.material.cut(own[-1], points(), radius)
         else:
-            bounds = bounds_of_level([moves[index] for index in own])
+            bounds = _bounds_of_level([moves[index] for index in own])
             draw = partial(across, points, program.real is not None)
             view.material.cut_level(own[-1], bounds, level, draw, radius)
 
 
-def kind_of_cut(view: PartView, moves: Sequence[Move], index: int) -> tuple:
+def _kind_of_cut(view: PartView, moves: Sequence[Move], index: int) -> tuple:
     """Return what the moves of one cut have in common: rapid or not, their level, and more.
 
     The level is None where it may change.
@@ -339,7 +361,7 @@ def kind_of_cut(view: PartView, moves: Sequence[Move], index: int) -> tuple:
     return rapid, move.end[Z], move.tool, move.block
 
 
-def points_along(program: Program, part: Part, own: Sequence[int]) -> np.ndarray:
+def _points_along(program: Program, part: Part, own: Sequence[int]) -> np.ndarray:
     """Return the tool's points (n, 3) along moves that follow each other."""
     return np.concatenate([program.points(index, part) for index in own])
 
@@ -351,7 +373,7 @@ def across(points: partial, sampled: bool) -> np.ndarray:
     return np.array(LineString(drawn).simplify(SAMPLED).coords) if many else drawn
 
 
-def bounds_of_level(moves: Sequence[Move]) -> tuple[float, ...]:
+def _bounds_of_level(moves: Sequence[Move]) -> tuple[float, ...]:
     """Return the bounds of moves in the plane XY; an arc counts as its circle."""
     ends = [place[:2] for move in moves for place in (move.start, move.end)]
     for move in moves:

@@ -4,9 +4,9 @@
 A cursor goes along the expected moves and never back. Each point that was made takes it to a point
 within reach, which is as far as the tool can have come since the point before: to the one where
 neither that point nor what the cursor passes on the way is farther from what was made than need be.
-So a path that crosses, repeats or retraces itself is followed, a move that is left out is a
+So a path that crosses, repeats or retraces itself is followed, a missing move is a
 difference, and into how many segments a move was split does not matter. Emitted moves and the
-samples of a run are laid alike. Where the path is left, nothing more is known of the rest.
+samples of a run are laid alike. Beyond a difference of the path nothing is compared.
 
 Lengths are mm, in the frame of the expected moves.
 """
@@ -22,13 +22,13 @@ from g12.tools.verify.expected.toolpath import Expected
 from g12.tools.verify.result.finding import Finding
 
 Point = tuple[complex, float]  # in the plane, and the level
-AHEAD = 100  # moves after a difference that are looked at to tell its size
+AHEAD = 100  # moves after a difference that are searched for its size
 SLACK = 0.25  # mm that a point may be ahead: at a corner that is blended
 TIE = 1e-7  # mm: of two points as near as that the earlier one counts
 ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
 ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
 COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
-SAME_FEED = 1e-5  # relative; a trace tells feeds with nine decimals
+SAME_FEED = 1e-5  # relative; a trace prints feeds with nine decimals
 OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid", "feed", "mode"
 ToMachine = Callable[[Point], Sequence[float]]
 InWords = Callable[[Point], Sequence[tuple[str, Any]]]
@@ -57,7 +57,7 @@ class Made:
         """Yield the stretches of the move, those of an arc short enough to be followed."""
         points = self.points
         if isinstance(self.curve, Arc) and len(points) == 2:
-            points = along_the_arc(self.curve, *points)
+            points = _along_the_arc(self.curve, *points)
         return zip(points, points[1:])
 
     def off_as_a_whole(self, expected: Expected) -> float:
@@ -85,7 +85,7 @@ class Made:
         return max(0.0, away - _apart(first, last) / 2) if self.sampled else away
 
 
-def along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
+def _along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
     """Return points of an arc that climbs, short steps apart."""
     count = math.ceil(abs(arc.sweep) / ARC_STEP) + 1
     shares = [step / count for step in range(1, count)]
@@ -152,7 +152,7 @@ class _Cursor:
     slack: float
     index: int = 0
     share: float = 0.0
-    _end_seen: tuple[int, float] = (-1, math.inf)  # a move, how near its end what was made came
+    _nearest_end: tuple[int, float] = (-1, math.inf)  # a move, how near its end what was made came
     _lengths: list[float] = field(default_factory=list)
     _ends: list[float] = field(default_factory=list)  # lengths of the path up to each move's end
 
@@ -166,7 +166,7 @@ class _Cursor:
         return self._ends[-1] - self._ends[self.index] + self._rest() if self.path else 0.0
 
     def next_move(self) -> Expected:
-        """Return the first move of which more is left than rounding, the last one without any."""
+        """Return the first move that is not made up to rounding, the last one without any."""
         at = self.index if self._rest() > TIE else self.index + 1
         return self.path[min(at, len(self.path) - 1)]
 
@@ -240,9 +240,9 @@ class _Cursor:
         """
         if index != self.index:
             return distance
-        seen = self._end_seen[1] if self._end_seen[0] == index else math.inf
-        self._end_seen = index, min(seen, distance)
-        return self._end_seen[1]
+        nearest = self._nearest_end[1] if self._nearest_end[0] == index else math.inf
+        self._nearest_end = index, min(nearest, distance)
+        return self._nearest_end[1]
 
     def _within(
         self, move: Made, ends: tuple[Point, Point], index: int, begin: float, end: float
@@ -269,11 +269,11 @@ def lay(
     laid = Laid([[] for _ in path])
     cursor, moves = _Cursor(path, slack), iter(made)
     for move in moves:
-        left = _lay_move(cursor, move, tolerance, laid)
-        if left:
-            is_segment = left.kind == OFF and move.curve is None
+        off = _lay_move(cursor, move, tolerance, laid)
+        if off:
+            is_segment = off.kind == OFF and move.curve is None
             rest = chain([move], moves)
-            laid.add(_at_its_worst(path, left, rest, tolerance) if is_segment else left)
+            laid.add(_at_its_worst(path, off, rest, tolerance) if is_segment else off)
             return laid
     if cursor.remaining > tolerance:
         missing = cursor.next_move()

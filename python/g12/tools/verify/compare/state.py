@@ -105,15 +105,15 @@ def _text(name: str, value: float) -> str:
 
 
 class Done(NamedTuple):
-    """An act as it came, or as it is asked for, and the line cut before it (0: none)."""
+    """An act, actual or expected, and the line cut before it (0: none)."""
 
     text: str
-    behind: int
+    after: int
 
     @property
     def place(self) -> str:
         """Where it comes in words."""
-        return f"after line {self.behind}" if self.behind else "at the start"
+        return f"after line {self.after}" if self.after else "at the start"
 
 
 def judge_section_state(section: SectionContour, moves: Sequence[Move]) -> Iterator[Finding]:
@@ -130,7 +130,7 @@ def judge_section_state(section: SectionContour, moves: Sequence[Move]) -> Itera
 
 def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Finding]:
     """Yield the first act of a section that is missing, in another place or not in the words."""
-    told = [
+    actual = [
         Done(event.text, moves[event.at - 1].line if event.at > section.at else 0)
         for event in section.told
         if ACTS.match(event.text)
@@ -139,18 +139,18 @@ def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Findi
     lines = [
         [e.line for e in section.elements[: act.drawn] if e.line in cut] for act in section.acts
     ]
-    asked = [
+    commanded = [
         Done(act.text, before[-1] if before else 0) for act, before in zip(section.acts, lines)
     ]
-    pairs = zip_longest(told, asked)
+    pairs = zip_longest(actual, commanded)
     at = next((at for at, (one, other) in enumerate(pairs) if one != other), None)
     if at is None:
         return
-    found, expected = told[at:], asked[at:]
+    found, expected = actual[at:], commanded[at:]
     moved = bool(found and expected) and expected[0] in found
     if not expected or (moved and expected[0].text != found[0].text):
         values = {"act": found[0].text, "found": found[0].place}
-        yield Finding("act-extra", found[0].behind, values)
+        yield Finding("act-extra", found[0].after, values)
         return
     values = {"act": expected[0].text, "asked": expected[0].place}
     same = [done for done in found if done.text == expected[0].text]

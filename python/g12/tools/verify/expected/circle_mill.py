@@ -75,7 +75,7 @@ class EventWords(CircleWords):
         return self.entries["R"] + self.side * self.cutter
 
     def cleared(self, cutter: float) -> float:
-        """Return the radius within which something may stand."""
+        """Return the radius within which material may remain."""
         return 0.0 if self.pocket else max(0.0, self.rings[-1] - cutter)
 
     @property

@@ -52,7 +52,7 @@ class HaasWords(CircleWords):
         return cls(
             view.seen_from(view.centre()),
             [first, last] if is_spiral and step else rings_between(first, last, step),
-            pass_depths(view),
+            _pass_depths(view),
             turn,
             feed,
             None if feed is None else feed * settings.plunge_feed / 100,
@@ -70,7 +70,7 @@ class HaasWords(CircleWords):
         return self.rings[-1]
 
     def cleared(self, cutter: float) -> float:
-        """Return the radius within which something may stand: with one ring only."""
+        """Return the radius within which material may remain: with one ring only."""
         if len(self.rings) > 1:
             return 0.0
         goes_down = min(self.depths) < 0.0 and self.helix < self.final
@@ -138,14 +138,14 @@ class HaasWords(CircleWords):
 
     def _spiral(self, writer: Writer, ahead: complex) -> complex:
         """Write half turns that grow by half the pitch, and the last ring."""
-        for radius, larger in half_turns(self.rings[0], self.rings[-1], self.pitch):
+        for radius, larger in _half_turns(self.rings[0], self.rings[-1], self.pitch):
             writer.arc("spiral", ahead * (radius - larger) / 2, self._half, self.feed)
             ahead = -ahead
         writer.arc("ring", 0j, 2 * self._half, self.feed)
         return ahead
 
 
-def half_turns(first: float, last: float, pitch: float) -> Iterator[tuple[float, float]]:
+def _half_turns(first: float, last: float, pitch: float) -> Iterator[tuple[float, float]]:
     """Yield the radii at both ends of each half turn of a spiral."""
     radius = first
     while radius < last - ROUNDING:
@@ -175,7 +175,7 @@ def rings_between(first: float, last: float, step: float) -> list[float]:
     return [first + index * step for index in range(count)] + [last]
 
 
-def pass_depths(view: BlockInMm) -> list[float]:
+def _pass_depths(view: BlockInMm) -> list[float]:
     """Return the depth of each pass, from where the tool stands."""
     passes = int(view.words.get("L", 1))
     repeated = view.absolute or "Z" not in view.words

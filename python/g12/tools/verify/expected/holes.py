@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The toolpath of a call of holes with C, by ngc/holes.md.
 
-The plane is that of the tool's approach: across is the slide that stands still in a hole (X of the
+The plane is that of the tool's approach: across is the slide that does not move in a hole (X of the
 face, Z of the side), upwards C as millimetres round the circle of holes. The level is the height
 above the face or the surface. Lengths are mm, angles degrees unless a name says otherwise.
 """
@@ -25,7 +25,7 @@ DRILL, TAP_RIGHT, TAP_LEFT, BORE = range(4)
 
 @dataclass(frozen=True)
 class Holes:
-    """What a call asks for: its holes' places, and how each is drilled.
+    """What a call commands: the positions of its holes, and how each is drilled.
 
     ``x`` and ``angle`` are those of the first one (in the side ``x`` is that of the surface),
     ``z`` is 0 on the face. ``turn`` leads from one hole to the next. ``pitch`` is a tap's, else 0.
@@ -100,7 +100,7 @@ class Holes:
         return there.real, there.imag, z + self.call.zero[1]
 
 
-def shorter(angle: float, made: float) -> float:
+def _shorter(angle: float, made: float) -> float:
     """Return a turn as the shorter way; a half turn goes as it is ``made``."""
     short = math.remainder(angle, 360.0)
     if abs(abs(short) - HALF_TURN) < SAME_TURN:
@@ -109,11 +109,11 @@ def shorter(angle: float, made: float) -> float:
 
 
 def holes_of(call: SubCall) -> Holes:
-    """Return what a call asks for."""
+    """Return the holes that a call commands."""
     given, side = call.given, call.is_side
     count, kind = round(given.get("count", 1)), round(given.get("kind", DRILL))
     step = given.get("step_angle", 360.0 / count)
-    turn = shorter(step, step) if count > 1 else 0.0
+    turn = _shorter(step, step) if count > 1 else 0.0
     if side:
         x, z = call.length("surface_diameter") / 2, call.length("z")
         return Holes(call, side, count, x, z, given.get("first_angle", 0.0), turn, kind)
@@ -139,7 +139,7 @@ class HolesPath:
         self._writer = Writer(there, level, call.line, per_rev)
         self._retract = call.length("retract")
         self._top = max(level, self._retract)
-        self._turns = [shorter(holes.angle - c, turned), *[holes.turn] * (holes.count - 1)]
+        self._turns = [_shorter(holes.angle - c, turned), *[holes.turn] * (holes.count - 1)]
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves."""

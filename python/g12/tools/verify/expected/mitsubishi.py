@@ -27,7 +27,7 @@ class MitsubishiWords(CircleWords):
         return cls(final, turn, view.feed(), view.line, view.rev, word)
 
     def cleared(self, cutter: float) -> float:
-        """Return the radius within which something may stand."""
+        """Return the radius within which material may remain."""
         return core_within(self.final, cutter)
 
     def toolpath(self) -> list[Expected]:

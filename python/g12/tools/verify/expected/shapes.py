@@ -215,8 +215,7 @@ class Rings:
         self._radius = radius
 
 
-def slot_path(call: SubCall) -> list[Expected]:
-    """Return the expected moves of a slot."""
+def _slot_path(call: SubCall) -> list[Expected]:
     shape = ShapePath(call, call.given.get("angle", 0.0))
     width = call.length("width")
     reach = (call.length("length") - width) / 2
@@ -228,8 +227,7 @@ def slot_path(call: SubCall) -> list[Expected]:
     return shape.path
 
 
-def pocket_path(call: SubCall) -> list[Expected]:
-    """Return the expected moves of a round pocket."""
+def _pocket_path(call: SubCall) -> list[Expected]:
     centre = complex(call.x(), call.length("c"))
     shape = ShapePath(call, math.degrees(cmath.phase(centre)) if centre else 0.0)
     away = abs(centre)
@@ -247,4 +245,4 @@ def shape_path(call: SubCall) -> list[Expected]:
     """Return the expected moves of a shape's call."""
     if call.name == "polar_polygon":
         return Polygon(call).toolpath()
-    return (slot_path if call.name == "polar_slot" else pocket_path)(call)
+    return (_slot_path if call.name == "polar_slot" else _pocket_path)(call)

@@ -143,14 +143,14 @@ def kept_state(state: Mapping[str, float], codes: Iterable[float]) -> dict[str, 
 class SubCall:
     """One call: its entries, the tool and its place when it begins, and how the sub reads it.
 
-    ``given`` has the entries that are not left out, in program units. ``moves`` are those of the
-    call, ``cutter`` is the cutter's radius, ``at`` X, Z and C of the tool, ``beside`` how far it
-    stands from the X line, ``turned`` by how much the first move turns C.
+    ``given`` has the entries that are not left out, in program units. ``moves`` are those of its
+    ``block``, ``cutter`` is the cutter's radius, ``at`` X, Z and C of the tool, ``beside`` its
+    distance from the X line, ``turned`` by how much the first move turns C.
     """
 
     def __init__(self, block: Block, first: Move, cutter: float, ini: Ini) -> None:
         self.name, self.line, self.file = block.text.call, block.text.number, block.text.file
-        self.moves = range(block.at, block.end)
+        self.block, self.moves = block, range(block.at, block.end)
         names = ENTRIES[self.name]
         values = (*block.arguments, *[0.0] * len(names))  # LinuxCNC makes up for those that lack
         self.given = {n: value for n, value in zip(names, values) if value != LEFT_OUT}

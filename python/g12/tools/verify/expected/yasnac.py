@@ -70,7 +70,7 @@ class YasnacWords(CircleWords):
         return self.hole + (cutter if self.hole and self.word else 0.0)
 
     def cleared(self, cutter: float) -> float:
-        """Return the radius within which something may stand.
+        """Return the radius within which material may remain.
 
         A spiral has gone all round when it has grown by Q.
         """
@@ -97,13 +97,13 @@ class YasnacWords(CircleWords):
         return writer.path
 
     def _growths(self) -> Iterator[float]:
-        """Yield what each half turn grows by: whole turns, the last one by what is left."""
-        left = abs(self.radius - self.first) if self.pitch else 0.0
-        while left > ROUNDING:
-            growth = self.pitch if left > self.pitch + ROUNDING else left
+        """Yield what each half turn grows by: whole turns, the last one by the rest."""
+        rest = abs(self.radius - self.first) if self.pitch else 0.0
+        while rest > ROUNDING:
+            growth = self.pitch if rest > self.pitch + ROUNDING else rest
             yield growth / 2
             yield growth / 2
-            left -= growth
+            rest -= growth
 
     def _fast(self, writer: Writer, place: float) -> None:
         if self.traverse:

@@ -29,27 +29,27 @@ TURNS = 1e-6  # degrees or mm
 def judge_spindle(
     cuts: Sequence[MeasuredCut], events: Sequence[Event], ini: Ini
 ) -> Iterator[Finding]:
-    """Yield the first cut of each kind with a spindle that stands, or turns as it should not."""
+    """Yield the first cut of each kind whose spindle is off, or turns the wrong way."""
     reported: set[str] = set()
     several = ini.number("TRAJ", "SPINDLES", 1) > 1
     for cut in cuts:
-        told = [event.text for event in events if event.at < cut.own.stop]
-        code = _unusual_spindle(cut.turning, told, several)
+        texts = [event.text for event in events if event.at < cut.own.stop]
+        code = _unusual_spindle(cut.turning, texts, several)
         if code and code not in reported:
             reported.add(code)
             yield Finding(code, cut.line, {"code": cut.code}, file=cut.file)
 
 
-def _unusual_spindle(turning: bool, told: Sequence[str], several: bool) -> str:
+def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
     """Return the code of what is unusual about the spindle in front of a cut, "" if nothing.
 
-    ``told`` are the events before it. A trace tells of the first spindle alone: of a machine with
+    ``texts`` are the events before it. A trace shows the first spindle alone: of a machine with
     ``several`` that is the main one, and nothing is known of the tool's.
     """
-    if any(USER_CODE.fullmatch(text) for text in told):
+    if any(USER_CODE.fullmatch(text) for text in texts):
         return ""
-    spindle = next((text for text in reversed(told) if text in ("M3", "M4", "M5")), "")
-    speed = next((text for text in reversed(told) if SPEED.fullmatch(text)), "")
+    spindle = next((text for text in reversed(texts) if text in ("M3", "M4", "M5")), "")
+    speed = next((text for text in reversed(texts) if SPEED.fullmatch(text)), "")
     runs = spindle in ("M3", "M4") and speed != "S0"
     if several:
         return "main-spindle-turns" if turning and runs else ""
@@ -75,8 +75,8 @@ def judge_tool_length(
         if abs(deeper) < SIZE or (first.tool, deeper) in reported:
             continue
         reported.add((first.tool, deeper))
-        told = (event.text for event in reversed(events) if event.at <= at)
-        last = next((text for text in told if text.startswith(("tool ", "G43", "G49"))), "")
+        texts = (event.text for event in reversed(events) if event.at <= at)
+        last = next((text for text in texts if text.startswith(("tool ", "G43", "G49"))), "")
         code = "length-deeper" if deeper > 0.0 else "length-higher"
         code = code if compensated and last != "G49" else "length-not-used"
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
@@ -99,15 +99,15 @@ def judge_feeds(
     for cut in cuts:
         fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
         per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
-        asked = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
+        feeds = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
         if max(per_turn, default=0.0) > MOST_PER_TURN:
             values = {"feed": max(per_turn)}
             yield Finding("feed-per-revolution", cut.line, values, file=cut.file)
-        if min(asked, default=LEAST_PER_MINUTE) < LEAST_PER_MINUTE:
-            yield Finding("feed-per-minute", cut.line, {"feed": min(asked)}, file=cut.file)
-        if most < CUT_DOWN * max(asked, default=0.0):
-            values = {"feed": max(asked), "most": most}
+        if min(feeds, default=LEAST_PER_MINUTE) < LEAST_PER_MINUTE:
+            yield Finding("feed-per-minute", cut.line, {"feed": min(feeds)}, file=cut.file)
+        if most < CUT_DOWN * max(feeds, default=0.0):
+            values = {"feed": max(feeds), "most": most}
             yield Finding("feed-cut-down", cut.line, values, file=cut.file)
 
 
@@ -116,7 +116,7 @@ def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Itera
     found = [
         index
         for index, move in enumerate(moves)
-        if index not in known and move.kind == "feed" and turns_and_goes(move)
+        if index not in known and move.kind == "feed" and _turns_and_goes(move)
     ]
     for _, group in groupby(enumerate(found), lambda pair: pair[1] - pair[0]):
         indices = [index for _, index in group]
@@ -125,7 +125,7 @@ def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Itera
         yield Finding("native-c", moves[indices[0]].block, values, moves[indices[0]].end[:3])
 
 
-def turns_and_goes(move: Move) -> bool:
+def _turns_and_goes(move: Move) -> bool:
     """Tell whether C turns together with X or Z."""
     change = [abs(end - start) > TURNS for start, end in zip(move.start, move.end)]
     return change[C] and (change[X] or change[Z]) and move.feed_mode != "G93"

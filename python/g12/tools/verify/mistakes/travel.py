@@ -50,7 +50,7 @@ def judge_travel(
         for _, target in circles:
             yield Finding("travel-unknown", target.source.line, file=target.source.file)
         return
-    extents = [extent_of(block, moves) for block, _ in circles]
+    extents = [_extent_of(block, moves) for block, _ in circles]
     offsets = {event.text for event in events if event.text.startswith(WORK_OFFSETS)}
     ends: dict[tuple[float, ...], list[np.ndarray]] = {}
     for extent in extents:
@@ -62,11 +62,11 @@ def judge_travel(
     for (_, target), extent in zip(circles, extents):
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
-        for code, values in overruns(extent, width, ini):
+        for code, values in _overruns(extent, width, ini):
             yield Finding(code, target.source.line, values, file=target.source.file)
 
 
-def overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple[str, dict]]:
+def _overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple[str, dict]]:
     """Yield where a block leaves the travel: the finding's code and values.
 
     ``width`` is how wide all blocks of its zero are.
@@ -85,7 +85,7 @@ def overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple
             yield "travel" if certain else "travel-perhaps", values
 
 
-def extent_of(block: Block, moves: Sequence[Move]) -> BlockExtent:
+def _extent_of(block: Block, moves: Sequence[Move]) -> BlockExtent:
     """Return how far a block reaches, of moves with the machine's work offsets.
 
     An arc counts as its circle, which no cycle leaves by its full circles.

@@ -33,7 +33,7 @@ POCKET_HANDLER = "circle_mill_pocket"
 FULL = 2 * math.pi - 1e-9
 DYNAMIC = (41.1, 42.1)  # compensation whose D is a diameter
 
-Asked = HaasWords | YasnacWords | MitsubishiWords | EventWords
+Words = HaasWords | YasnacWords | MitsubishiWords | EventWords
 
 
 @dataclass(frozen=True)
@@ -115,13 +115,13 @@ class Target:
     source: Source
     wall: Wall
     cutter: Cutter
-    asked: Asked
+    words: Words
     leaves: Mapping[str, float] = field(default_factory=dict)
 
     @cached_property
     def path(self) -> list[Expected]:
         """The expected toolpath as seen from the wall's centre."""
-        return self.asked.toolpath()
+        return self.words.toolpath()
 
     @cached_property
     def circles(self) -> list[Expected]:
@@ -149,7 +149,7 @@ class Target:
         return [
             move
             for move in self.circles
-            if isinstance(move.curve, Arc) and abs(move.curve.radius - self.asked.final) < TOUCHING
+            if isinstance(move.curve, Arc) and abs(move.curve.radius - self.words.final) < TOUCHING
         ]
 
 
@@ -180,17 +180,17 @@ class CircleReader:
         source = Source(block.text.number, block.text.file, name, cycle.dialect)
         if cycle.dialect == EVENT:
             offset, number = self._radius(view.tool), None
-            asked: Asked = self._event(view, cycle, offset)
+            words: Words = self._event(view, cycle, offset)
         else:
             offset, number = self._offset(view, cycle.dialect)
             own = self.moves[block.at : block.end]  # of a handler of the machine's own
             turn = next((move.turns for move in own if move.kind == "arc"), 1)
-            asked = self._circle(view, cycle, cycle.turn or turn, offset)
-        loaded, circle = self._radius(view.tool), asked.final if asked.word else 0.0
+            words = self._circle(view, cycle, cycle.turn or turn, offset)
+        loaded, circle = self._radius(view.tool), words.final if words.word else 0.0
         named = number if offset else None
-        cutter = Cutter(offset or loaded, view.tool, loaded, named, asked.word, circle)
-        leaves = view.leaves(asked.feed, self.moves[block.end - 1])
-        return Target(source, wall_of(view, asked, cutter.radius), cutter, asked, leaves)
+        cutter = Cutter(offset or loaded, view.tool, loaded, named, words.word, circle)
+        leaves = view.leaves(words.feed, self.moves[block.end - 1])
+        return Target(source, wall_of(view, words, cutter.radius), cutter, words, leaves)
 
     def _offset(self, view: BlockInMm, dialect: str) -> tuple[float, int | None]:
         """Return the radius by which the tool's centre stays off, and the tool that it is of."""
@@ -204,7 +204,7 @@ class CircleReader:
             return 0.0, None
         return self._radius(view.tool) if self.offset is None else self.offset, self.number
 
-    def _circle(self, view: BlockInMm, cycle: Cycle, turn: int, offset: float) -> Asked:
+    def _circle(self, view: BlockInMm, cycle: Cycle, turn: int, offset: float) -> Words:
         if cycle.dialect == "haas":
             return HaasWords.of(view, turn, offset, self.ini.settings)
         if cycle.dialect == "yasnac":
@@ -230,14 +230,14 @@ class CircleReader:
         return self.diameters.get(round(tool), 0.0) / 2
 
 
-def wall_of(view: BlockInMm, asked: Asked, cutter: float) -> Wall:
+def wall_of(view: BlockInMm, words: Words, cutter: float) -> Wall:
     """Return the wall that the last circle of the tool's centre makes."""
     return Wall(
         view.centre(),
         view.axes,
-        asked.final + (cutter if asked.inside else -cutter),
-        asked.cleared(cutter),
-        asked.inside,
-        asked.bore(cutter),
+        words.final + (cutter if words.inside else -cutter),
+        words.cleared(cutter),
+        words.inside,
+        words.bore(cutter),
         view.zero()[2],
     )

@@ -14,7 +14,7 @@ from g12.tools.verify.result.finding import Finding
 
 @dataclass(frozen=True)
 class MeasuredCut:
-    """What was ``asked``, how far the tool's centre was off (mm), and more.
+    """What was ``commanded``, how far the tool's centre was off (mm), and more.
 
     It is infinite if part is missing, nan if the words could not be read.
 
@@ -26,7 +26,7 @@ class MeasuredCut:
     seconds; None is not known.
     """
 
-    asked: Any
+    commanded: Any
     line: int
     file: str
     code: str

@@ -88,7 +88,7 @@ class _Writer(string.Formatter):
                 letter + (plain(at, 3) if letter == "C" else unit.text(at)) for letter, at in words
             ),
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
-            "xyz": lambda value: words_of_place(value, unit),
+            "xyz": lambda value: _words_of_place(value, unit),
             "twice": lambda value: unit.text(2 * value),
             "turns": lambda angles: ", ".join(plain(angle, 3) for angle in angles),
             "words": lambda words: ", ".join(
@@ -106,7 +106,6 @@ class _Writer(string.Formatter):
         return plain(value, int(format_spec)) if format_spec.isdigit() else str(value)
 
 
-def words_of_place(place: Sequence[Any], unit: Unit) -> str:
-    """Return a place in words: its letters and values."""
+def _words_of_place(place: Sequence[Any], unit: Unit) -> str:
     words = place if isinstance(place[0], Sequence) else zip("XYZ", place)
     return " ".join(a + (at if isinstance(at, str) else unit.text(at)) for a, at in words)

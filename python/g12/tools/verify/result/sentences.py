@@ -99,10 +99,6 @@ NOTES = {
         "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
         "is its C a diameter? ([G12] CYLINDER_WORD)"
     ),
-    "in-the-bar": (
-        "it goes by rapid to ⌀ {level:mm}, where the bar of ⌀ {bar:mm} is, unless that is turned "
-        "off before"
-    ),
     "below-block": "the lowest cut is {size:fine} below the block",
     "zero-line-unknown": (
         "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
@@ -177,6 +173,7 @@ NOT_JUDGED = {
     "rapid-after-cuts": (
         "rapids from the side to where the bar was, which another tool cut before: line {lines}"
     ),
+    "rapid-turned": ("rapids of a tool between its cuts on the face and in the side: line {lines}"),
     "rapid-by-machine": (
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),

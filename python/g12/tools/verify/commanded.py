@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Everything that a program's words ask for: circles, sections, shapes and holes, in order."""
+"""Everything that a program's words command: circles, sections, shapes and holes, in order."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
@@ -21,47 +21,50 @@ from g12.tools.verify.subject import Subject
 PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 
 
-class Asked(NamedTuple):
-    """What a program asks for: circles, shapes and holes each with the block that does.
+class Commanded(NamedTuple):
+    """What a program commands; each circle has its block.
 
-    ``still`` are the line and the code of each cycle that moves nothing, though it should.
+    ``idle`` are the line and the code of each cycle that moves nothing, though it should.
+    ``clamp_is_traced`` says that events show the codes of C's clamp.
     """
 
     circles: Sequence[tuple[Block, Target]] = ()
     sections: Sequence[SectionContour] = ()
-    still: Sequence[tuple[int, str]] = ()
-    shapes: Sequence[tuple[Block, SubCall]] = ()
-    holes: Sequence[tuple[Block, SubCall]] = ()
-    clamp_is_seen: bool = False
+    idle: Sequence[tuple[int, str]] = ()
+    shapes: Sequence[SubCall] = ()
+    holes: Sequence[SubCall] = ()
+    clamp_is_traced: bool = False
 
 
-def asked_of(tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters) -> Asked:
-    """Return what a program's words ask for."""
+def commanded_by(
+    tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters
+) -> Commanded:
+    """Return what a program's words command."""
     codes, program, trace = Codes(subject.ini), subject.program, subject.trace
-    blocks, clamp_is_seen = executed_everywhere(tracer, program, trace, codes, tools, parameters)
+    blocks, clamp_is_traced = executed_everywhere(tracer, program, trace, codes, tools, parameters)
     reader = CircleReader(codes, subject.ini, trace.moves, trace.diameters)
     pens = {kind: partial(pen, ini=subject.ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
-    still = [*still_blocks(blocks, codes)]
-    still += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
+    idle = [*_idle_blocks(blocks, codes)]
+    idle += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
     cut = [each for each in found if each.end > each.at]
     cut = with_zero_lines(cut, trace.moves, program, codes, subject.ini)
     shapes, holes = (list(calls(blocks, subject, sub)) for sub in (codes.shape_of, codes.holes_of))
-    return Asked(list(reader.targets(blocks)), cut, still, shapes, holes, clamp_is_seen)
+    return Commanded(list(reader.targets(blocks)), cut, idle, shapes, holes, clamp_is_traced)
 
 
 def calls(
     blocks: Sequence[Block], subject: Subject, named: Callable[[Text], str]
-) -> Iterator[tuple[Block, SubCall]]:
+) -> Iterator[SubCall]:
     """Yield each call of the subs that are ``named`` which moves anything."""
     for block in blocks:
         if named(block.text) and block.end > block.at:
             first = subject.trace.moves[block.at]
             radius = subject.trace.diameters.get(first.tool, 0.0) / 2
-            yield block, SubCall(block, first, radius, subject.ini)
+            yield SubCall(block, first, radius, subject.ini)
 
 
-def still_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str]]:
+def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str]]:
     """Yield the line and the code of each cycle and shape that moves nothing."""
     for block in (each for each in blocks if each.at == each.end):
         if codes.cycle_of(block.text.call, block.codes):
