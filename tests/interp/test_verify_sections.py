@@ -79,12 +79,12 @@ def test_a_sub_that_is_called_outside_too_is_read(begin, end, call, found):
     assert found(*lines, begin, "G1 X24 F900", "C3", end, "") == []
 
 
-def test_a_section_that_asks_for_a_position_is_not_judged(tmp_path):
+def test_a_section_that_asks_for_a_position_is_a_note(tmp_path):
     program = tmp_path / "program.ngc"
     program.write_text("\n".join([*HEAD, "G1 X30 F800", "X[#<_x>-5]", *OUT]))
     proof = prove(program, read_ini(SIM / "lathe_mm_headless.ini"))
     (each,) = [each for each in proof.judged if each.code == "contour-unread"]
-    assert (each.line, each.is_not_judged) == (5, True)
+    assert (each.line, each.is_note) == (5, True)
     assert proof.findings == [] and proof.sections[0].sound
 
 

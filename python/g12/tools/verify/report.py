@@ -30,7 +30,7 @@ PACE: tuple[Row, ...] = (
     ("time", "{real_seconds:1} s, {seconds_programmed:1} s at the programmed feeds"),
     ("time", "{seconds_programmed:1} s at the programmed feeds"),
 )
-DEVIATION = ("deviation", "{deviation:fine} (allowed {allowed:fine})"), ("deviation", "∞")
+DEVIATION = ("deviation", "{deviation:fine} (allowed {allowed:fine})"), ("deviation", "{unknown}")
 POCKET: tuple[Row, ...] = (
     ("centre", "X{centre[0]:mm} Y{centre[1]:mm}, cutter ⌀ {cutter:mm}"),
     (
@@ -220,6 +220,7 @@ def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     values = {"seconds": None, "across_flats": (), **_values_of(kind, cut, proof)}
     reckoned = values["seconds"] == values.get("seconds_programmed")  # knows no acceleration
     values |= {"allowed": _allowed_of(kind, proof)}
+    values |= {"unknown": "not judged" if math.isnan(cut.deviation) else "∞"}
     values |= {"real_seconds": None if reckoned else values["seconds"]}
     flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in values["across_flats"])
     values |= dict(zip(("flats", "flats_reached"), zip(*flats)))

@@ -100,6 +100,9 @@ NOTES = {
         "is its C a diameter? ([G12] CYLINDER_WORD)"
     ),
     "below-block": "the lowest cut is {size:fine} below the block",
+    "contour-unread": (
+        "nothing of the section is judged: its contour cannot be read from the words, {why}"
+    ),
     "zero-line-unknown": (
         "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
     ),
@@ -158,7 +161,6 @@ NOTES = {
     ),
 }
 NOT_JUDGED = {
-    "contour-unread": "the contour, which cannot be read from the words: {why}",
     "clamp-unseen": (
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
