@@ -330,7 +330,10 @@ def emergency_stop(machine):
 
 
 def jog_mode(machine):
+    """Once the abort is done: LinuxCNC drops what it still had to do at a change to MDI."""
     machine.abort()
+    machine.wait_for(lambda _: not on_the_face(machine), timeout=SOON)
+    time.sleep(0.5)
     machine.manual()
     machine.mdi("G4 P0")
 
