@@ -212,30 +212,6 @@ def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, code)
     assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx([0.375])
 
 
-CLEAR, FINISH = "G13 I.3 K1.5 Q.2 Z-.5 D1", "G13 I.25 K1.51 Q1.26 Z-.5 D1"
-
-
-@pytest.mark.parametrize(
-    ("blocks", "warned"),
-    [
-        ([CLEAR, FINISH, FINISH.replace("I.25", "I1.4")], []),
-        ([FINISH, CLEAR, FINISH], [2]),
-        (["G13 I.3 K1.2 Q.2 Z-.5 D1", FINISH], [3]),  # a ring remains between the two
-        (["G13 I.75 Z-.5 D1", FINISH], [3]),  # its own core remains
-        (["G13 I.3 K1.5 Q.2 Z-.5 D0", "G13 I.25 K1.51 Q1.26 Z-.5 D1"], [3]),
-        ([CLEAR, "G13 I.25 K1.51 Q1.26 Z-.6"], [3]),
-        ([CLEAR, "G0 X.01", FINISH], [4]),
-        ([CLEAR, "G92 X1 Y2", FINISH, "G0 X0 Y0", FINISH], [6]),
-        (["o1 repeat [2]", CLEAR, "o1 endrepeat", "o2 repeat [2]", FINISH, "o2 endrepeat"], []),
-        (["o1 sub", "G13 I#1 K1.5 Q.2 Z-.5 D1", FINISH, "o1 endsub", "o1 call [.3]"], []),
-    ],
-)
-def test_a_pass_over_what_the_program_has_cleared_leaves_nothing(inch, blocks, warned):
-    for _ in range(2):  # a run does not know the one before
-        traced = cut(inch, *blocks)
-        assert [message.line for message in traced.messages] == warned
-
-
 def test_the_program_goes_on_after_an_operator_message(inch):
     traced = cut(inch, "G12 I.3 K1 Q.4 Z-.1 D1", "G0 Z1")
     assert traced.position[2] == pytest.approx(INCH)

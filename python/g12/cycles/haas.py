@@ -61,17 +61,12 @@ class Pocket(NamedTuple):
     spiral: bool
     down: PocketDescent
     commanded_radius: float | None  # of the cutter that D names, None without D
-    cleared_radius: float  # of the disc in which nothing remains after it, 0 if something does
     message: str | None  # for the operator, never a refusal
-
-    def floor(self) -> tuple[float, float, float]:
-        """Return the centre at the last level."""
-        return self.x, self.y, self.z + self.z_step * (self.levels - 1)
 
     def extent(self) -> CycleExtent:
         """Return the extent of the cycle."""
-        heights = self.z, self.floor()[2]
-        return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, heights)
+        deepest = self.z + self.z_step * (self.levels - 1)
+        return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, (self.z, deepest))
 
     def locals(self) -> dict[str, float]:
         """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
@@ -118,12 +113,6 @@ def plan_pocket(
     z = coordinate(depth, context.z, context)
     z_step = depth or 0.0 if context.incremental else 0.0
     heights = context.z - z, -z_step
-    lost_sign = upward(words, depth, context)
-    remaining = uncut_material(words, outward, first, cutter, context, CLEARED * entry.helix)
-    deepest = x, y, z + z_step * (levels - 1)
-    inner_edge = finished - 2 * cutter.radius - context.length(ROUNDING_MM)  # of the last ring
-    if remaining and context.cleared(*deepest) >= inner_edge:
-        remaining = None
     down = pocket_descent(words, context, entry, first - cutter.radius, cutter.radius, heights)
     return Pocket(
         x=x,
@@ -140,8 +129,8 @@ def plan_pocket(
         spiral=clearing == "spiral",
         down=down,
         commanded_radius=cutter.radius if with_d else None,
-        cleared_radius=finished if cutter.radius and not (lost_sign or remaining) else 0.0,
-        message=lost_sign or (remaining if outward else None),
+        message=upward(words, depth, context)
+        or uncut_material(words, outward, first, cutter, context, CLEARED * entry.helix),
     )
 
 
@@ -227,15 +216,16 @@ def uncut_material(
     context: Context,
     helix: float,
 ) -> str | None:
-    """Return what a pocket leaves uncut, as a message for the operator, or None.
+    """Return the operator message of a pocket that leaves material uncut, or None.
 
-    ``helix`` is the greatest radius of a helix in tool radii, 0 without. The control's own sample
-    programs do this, so it is no error. With D0 the cutter's size is not known.
+    ``helix`` is the greatest radius of a helix in tool radii, 0 without.
+
+    The control's own sample programs do this, so it is no error. With D0 the cutter's size
+    is not known, and a single circle may well finish a bored hole: no message then.
     """
-    finished, stepover = outward or (first, 0.0)
-    rounding = context.length(ROUNDING_MM)
-    if cutter.radius == 0:
+    if outward is None or cutter.radius == 0:
         return None
+    (finished, stepover), rounding = outward, context.length(ROUNDING_MM)
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
         return (
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"

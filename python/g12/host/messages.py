@@ -113,16 +113,6 @@ def message_once(interp: Interp, key: object, text: str) -> None:
         message(text)
 
 
-def main_block(interp: Interp) -> tuple[tuple[str, int], int] | None:
-    """Return the main program and the position in it that is executed, None in MDI."""
-    program = main_program(interp)
-    if not program or in_mdi(interp):
-        return None
-    if interp.call_level < 2:
-        return program, interp.blocks[interp.remap_level].offset
-    return program, interp.sub_context[0].position
-
-
 def main_program(interp: Interp) -> tuple[str, int] | None:
     """Return the file at the bottom of the call stack and when it was last written.
 

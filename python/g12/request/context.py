@@ -24,9 +24,8 @@ class Context(NamedTuple):
     ``speed`` is the commanded spindle speed in rpm. ``offset_pending``: G40 came after the last
     move, and the tool is still offset from the programmed point by its radius. ``last_radius`` is
     the cutter radius of the last D commanded (None: none ever was), ``tool_in_table(n)`` gives tool
-    n or None. ``cleared(x, y, z)`` gives the radius of the largest disc about a point that the
-    program has cleared already down to that Z. ``unit`` is the program's where the machine has
-    another, "mm" or "in": for sizes of the tool table in messages.
+    n or None. ``unit`` is the program's where the machine has another, "mm" or "in": for sizes of
+    the tool table in messages.
     """
 
     inch: bool
@@ -45,7 +44,6 @@ class Context(NamedTuple):
     last_radius: float | None
     tool_in_table: Callable[[int], Tool | None]
     unit: str = ""
-    cleared: Callable[[float, float, float], float] = lambda x, y, z: 0.0
 
     def length(self, millimetres: float) -> float:
         """Return a length given in mm in program units."""

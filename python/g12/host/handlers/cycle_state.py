@@ -8,13 +8,11 @@ from __future__ import annotations
 
 import functools
 import itertools
-import math
-from typing import NamedTuple
 
 from g12.cycles.entry import PocketEntry
 from g12.host.interp import NO_CODE, Block, Interp, ToolEntry
 from g12.host.machine import MACHINE
-from g12.host.messages import code_of_block, main_block, main_program, message_once
+from g12.host.messages import code_of_block, main_program, message_once
 from g12.host.modes import (
     INCH,
     diameter_mode,
@@ -24,9 +22,8 @@ from g12.host.modes import (
     spindle_speed,
 )
 from g12.lengths import converts
-from g12.request.common import ROUNDING_MM
 from g12.request.context import XY, XZ, YZ, Context, Tool
-from g12.request.travel import CycleExtent, MachineFrame, Point, check_travel
+from g12.request.travel import CycleExtent, MachineFrame, check_travel
 from g12.request.words import Words
 
 # indices into a block's g_modes
@@ -64,8 +61,7 @@ class CycleState:
     path control and ``spindle`` the number of the spindle in use before holes. ``radius_commanded``
     distinguishes a D of radius 0 from no D at all, which the interpreter's own last compensation
     radius does not. ``first_plane`` is the circle mill's modal reference plane in mm, with the
-    program that commanded it and its time of change. ``cleared`` are the Haas pockets in which
-    nothing remains.
+    program that commanded it and its time of change.
     """
 
     def __init__(self) -> None:
@@ -73,19 +69,6 @@ class CycleState:
         self.feed, self.path, self.spindle = 0.0, "", 0
         self.radius_commanded = False
         self.first_plane: tuple[float, tuple[str, int] | None] | None = None
-        self.cleared: set[ClearedPocket] = set()
-
-
-class ClearedPocket(NamedTuple):
-    """A pocket in which nothing remains: machine position of its floor, its radius, all in mm.
-
-    ``block`` is the position in the main program of the block that cuts it.
-    """
-
-    program: tuple[str, int]
-    block: int
-    position: Point
-    radius: float
 
 
 def state_of(interp: Interp) -> CycleState:
@@ -210,42 +193,6 @@ def remember_first_plane(interp: Interp, height: float) -> None:
     state_of(interp).first_plane = plane
 
 
-def remember_cleared(interp: Interp, floor: Point, radius: float) -> None:
-    """Store a pocket as cleared; nothing is stored in MDI."""
-    block = main_block(interp)
-    if block and radius:
-        scale = millimetres_per_unit(interp)
-        done = ClearedPocket(*block, machine_mm(interp, floor), radius * scale)
-        state_of(interp).cleared.add(done)
-
-
-def cleared_radius(interp: Interp, x: float, y: float, z: float) -> float:
-    """Return the radius of the largest disc about a point that the program has cleared.
-
-    Pockets of later blocks belong to the run before this one.
-    """
-    block, state = main_block(interp), state_of(interp)
-    if not block:
-        return 0.0
-    program, at = block
-    state.cleared = {c for c in state.cleared if c.program == program and c.block <= at}
-    *place, level = machine_mm(interp, (x, y, z))
-    radii = [
-        each.radius
-        for each in state.cleared
-        if math.dist(place, each.position[:2]) < ROUNDING_MM
-        and each.position[2] < level + ROUNDING_MM
-    ]
-    return max(radii, default=0.0) / millimetres_per_unit(interp)
-
-
-def machine_mm(interp: Interp, point: Point) -> Point:
-    """Return a point of the program in machine coordinates in mm."""
-    scale = millimetres_per_machine_unit()
-    x, y, z = machine_frame(interp).position(point)
-    return x * scale, y * scale, z * scale
-
-
 def snapshot(interp: Interp) -> Context:
     """Return the state before the block: modes, units, position, tools."""
     return Context(
@@ -265,7 +212,6 @@ def snapshot(interp: Interp) -> Context:
         last_radius=last_radius(interp),
         tool_in_table=functools.partial(tool_in_table, interp),
         unit=other_unit(interp),
-        cleared=functools.partial(cleared_radius, interp),
     )
 
 

@@ -34,7 +34,6 @@ def prepare_haas(interp: Interp, arc: int) -> int:
     cycle_state.report_other_cutter(interp, context, other)
     if pocket.commanded_radius is not None:
         cycle_state.remember_radius(interp, pocket.commanded_radius)
-    cycle_state.remember_cleared(interp, pocket.floor(), pocket.cleared_radius)
     if pocket.message:
         messages.message(pocket.message)
     return INTERP_OK
