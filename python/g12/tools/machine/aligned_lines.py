@@ -1,39 +1,33 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Maps each line of a filter's output to its line in the source, by comparing both texts.
 
-Lines are equal with the same block number, or the same text apart from blanks and case. Inserted
-lines belong to the line before them, and the lines that replace one line belong to it. An equal
-number of lines that differ is mapped one to one; otherwise the mapping is unknown.
+Anchors are lines that occur once in each text with the same block number, or the same text apart
+from blanks and case; the longest run of them in order counts. An equal number of lines between two
+anchors is mapped one to one. Inserted lines belong to the line before them, and the lines that
+replace one line belong to it. Where a stretch has another number of lines, the mapping is unknown.
 """
 
 import re
-from collections.abc import Sequence
-from difflib import SequenceMatcher
-from itertools import takewhile
+from collections.abc import Iterator, Sequence
+
+from patiencediff import unique_lcs
 
 BLOCK_NUMBER = re.compile(rb"/?N[0-9]+")
-MOST_COMPARED = 1000  # lines of which repeated ones are compared each with each
 
 
 def aligned_lines(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...] | None:
     """Return the source line (from 1) of each line of the output, None where it is unknown."""
     before, after = [_key(row) for row in source], [_key(row) for row in written]
-    if not before:
-        return None if after else ()
-    head = _equal(before, after)
-    tail = _equal(before[head:][::-1], after[head:][::-1])
-    end = len(before) - tail
-    middle = before[head:end], after[head : len(after) - tail]
-    many = max(map(len, middle)) > MOST_COMPARED
-    found = list(range(head))
-    for _, first, last, at, to in SequenceMatcher(None, *middle, autojunk=many).get_opcodes():
-        lines, count = list(range(head + first, head + last)), to - at
-        if len(lines) != count:
-            if len(lines) > 1 and count:
-                return None
-            lines = [max(0, head + last - 1)] * count
-        found += lines
-    return tuple(line + 1 for line in (*found, *range(end, len(before))))
+    found: list[int] = []
+    last = (-1, -1)
+    for pair in [*_anchors(before, after), (len(before), len(after))]:
+        stretch = range(last[0] + 1, pair[0])
+        lines = _lines_of_stretch(stretch, range(last[1] + 1, pair[1]), before, after)
+        if lines is None or (not source and written):
+            return None
+        found += [*lines, pair[0]]
+        last = pair
+    return tuple(line + 1 for line in found[: len(written)])
 
 
 def _key(row: bytes) -> bytes:
@@ -42,6 +36,35 @@ def _key(row: bytes) -> bytes:
     return number[0] if number else text
 
 
-def _equal(before: Sequence[bytes], after: Sequence[bytes]) -> int:
-    """Return how many lines are equal at the start."""
-    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(before, after)))
+def _anchors(before: Sequence[bytes], after: Sequence[bytes]) -> list[tuple[int, int]]:
+    """Return the indices of lines that occur once in both texts, in the order of both."""
+    return unique_lcs([key or at for at, key in enumerate(before)], after)  # not empty lines
+
+
+def _lines_of_stretch(
+    stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
+) -> list[int] | None:
+    """Return the index of the source's line for each line between two anchors."""
+    head = list(_same(stretch, written, before, after))
+    stretch, written = stretch[len(head) :], written[len(head) :]
+    tail = list(_same(stretch[::-1], written[::-1], before, after))[::-1]
+    left, count = stretch[: len(stretch) - len(tail)], len(written) - len(tail)
+    if len(left) == count:
+        middle = list(left)
+    elif len(left) <= 1:
+        middle = [left[0] if left else max(0, left.start - 1)] * count
+    elif count == 0:
+        middle = []
+    else:
+        return None
+    return [*head, *middle, *tail]
+
+
+def _same(
+    stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
+) -> Iterator[int]:
+    """Yield the equal lines at the start."""
+    for at, there in zip(stretch, written):
+        if before[at] != after[there]:
+            return
+        yield at
