@@ -25,18 +25,17 @@ SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a mach
 def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     """Return the warnings of `check` for the plan; refuse if it causes a problem.
 
-    Another INI of the folder that includes a changed file is tried as well. What is wrong in it
-    without the plan, and forms of codes that it does not have, are warnings.
+    Another INI of the folder that includes a changed file has to load as well; forms of codes that
+    it does not have are warnings.
     """
     tried = trial(plan, plan.text)
     others = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
     warnings = others + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
     included = [path for path in plan.changes() if path in plan.text.files]
     for path, shared in others_including(plan.text, included):
-        before = {each.kind for each in check_config(IniText(path))[1] if each.level == PROBLEM}
         found = [of_other(each, path, shared) for each in trial(plan, with_changes(path, plan))]
-        refuse_problems([each for each in found if each.kind not in before | SHOWN_ONLY])
-        own = (each for each in found if each.kind in before - SHOWN_ONLY | {"form"})
+        refuse_problems([each for each in found if each.kind not in SHOWN_ONLY | {OWN_FILTER}])
+        own = (each for each in found if each.kind in ("form", OWN_FILTER))
         warnings += [replace(each, level=WARNING) for each in own]
     return warnings
 

@@ -226,7 +226,7 @@ def pins_taken(
 
 def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
     """Find signals connected to the pins that G12.1 sets; LinuxCNC allows one writer."""
-    nets = [line for line in lines if line.text.startswith("net ")]
+    nets = [line for line in lines if line.text.split()[:1] in (["net"], ["linksp"], ["linkps"])]
     cure = "take that pin out of the line: G12.1 sets it for each section and restores it"
     yield from pins_taken(nets, ACCELERATIONS, "is set by G12.1, which is refused then", cure)
 

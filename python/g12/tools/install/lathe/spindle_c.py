@@ -7,7 +7,7 @@ HAL files have already, with the inputs of its drive. The owner names these in a
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -140,7 +140,8 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
     if joints(config).count("C") != 1:
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
                       f"coordinates=XZC, or by hand: {PAGE}")  # fmt: skip
-    found = signals(all_hal(config))
+    lines = all_hal(config)
+    found = signals(lines)
     for pin, _ in (SIGNALS[key] for key in ENCODER):
         if pin not in found:
             yield problem(
@@ -148,6 +149,8 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
                 f"no HAL file connects {pin}",
                 f"connect the spindle's encoder first: G33 has to work ({PAGE})",
             )
+    if not config.ini.get("SPINDLE_C", "JOINT"):  # a file of the user's may have our file's name
+        yield from in_the_way(lines)
 
 
 def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[str]]:
@@ -297,7 +300,11 @@ def components_of(module: str) -> str:
 
 def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
     """Find modules and pins of spindle_c.hal that other HAL files use."""
-    lines = other_lines(config)
+    yield from in_the_way(other_lines(config))
+
+
+def in_the_way(lines: Sequence[HalLine]) -> Iterator[ConfigFinding]:
+    """Find modules and pins of spindle_c.hal in HAL lines."""
     yield from modules_twice(lines)
     yield from pins_taken(lines, TAKEN, "is what the spindle becomes C by", "use another pin here")
 
