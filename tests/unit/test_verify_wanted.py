@@ -379,9 +379,11 @@ def lines_of(*lines):
     return section_lines(texts, lines)
 
 
-def flattened(lines, drawn=(), sub=""):
+def flattened(lines, drawn=None, sub=""):
     """Return the copy's lines, without those that tell of blocks."""
-    flat = [line for some in section_reading.flattened(lines, CODES, drawn, sub) for line in some]
+    flat = [
+        line for some in section_reading.flattened(lines, CODES, drawn or {}, sub) for line in some
+    ]
     return [line for line in flat if "DEBUG" not in line and "#<@" not in line]
 
 
@@ -395,14 +397,14 @@ def test_motion_is_taken_out_of_the_copy_and_control_stays():
 def test_sections_call_copies_of_subs_without_motion():
     flat = ["o<flat> sub", "M8 X1", "M98 P1000", "o<flat> return", "o<flat> endsub"]
     calls = ["G12.1", "o<flat> call [1]", "G13.1", "o<flat> call [2]"]
-    lines = lines_of(*flat, "O1000", "G1 X5", "M99", *calls)
+    lines = lines_of(*flat, "O1000", "G1 X5", "M99", *calls, "o99002 call")
     bodies = bodies_of(lines)
     drawn = drawn_subs(lines, CODES, bodies)
-    assert drawn == {"flat", "1000"}
-    assert flattened(lines, drawn)[len(flat) + 3 :] == ["o<99flat>call[1]", "o<flat> call [2]"]
-    own = ["o<99flat>sub", "M8", "m98p991000", "o<99flat>return", "o<99flat>endsub"]
+    assert drawn == {"1000": "99001", "flat": "99003"}
+    assert flattened(lines, drawn)[len(flat) + 3 : -1] == ["o<99003>call[1]", "o<flat> call [2]"]
+    own = ["o<99003>sub", "M8", "m98p99001", "o<99003>return", "o<99003>endsub"]
     assert flattened(bodies["flat"], drawn, "flat") == own
-    assert flattened(bodies["1000"], drawn, "1000") == ["o991000", "M99"]
+    assert flattened(bodies["1000"], drawn, "1000") == ["o99001", "M99"]
 
 
 # ---------------------------------------------------------------- contours on a cylinder

@@ -10,9 +10,9 @@ program commands C in between, or gives it another zero.
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import accumulate, chain, islice
+from itertools import accumulate, chain, count, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -45,8 +45,8 @@ Pens = Mapping[str, Callable[[Block], Any]]
 SUB_LINE = re.compile(
     r"(/?(?:n[0-9.]+)?o<?)((?<=<)[^>]+|[0-9.]+)>?(sub|endsub|return|call|$).*"
 )  # and the O1000 of a body that M98 calls
-NUMBER_OF_M98 = re.compile(r"(?<=p)(?=[0-9])")
-DRAWN = "99"  # what the names of subs that sections call begin with in the copy
+NUMBER_OF_M98 = re.compile(r"(?<=p)[0-9]+")
+FIRST_NAME = 99001  # in the copy, of the subs that sections call: free numbers from here on
 POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
 SAME_ANGLE = 1e-3  # degree
 
@@ -64,14 +64,14 @@ class SectionLine(NamedTuple):
         """Whether it decides which line is next."""
         return self.text.control or bool(self.text.call) or returns(self.text)
 
-    def with_drawn(self, subs: Collection[str]) -> str:
-        """Return it with the copy's name for one of ``subs``."""
+    def with_drawn(self, subs: Mapping[str, str]) -> str:
+        """Return it with the copy's name for one of ``subs``, by their names."""
         code = bare(self.written)
         named = SUB_LINE.fullmatch(code)
         if named and named[2] in subs:
-            return code[: named.end(1)] + DRAWN + code[named.end(1) :]
+            return code[: named.end(1)] + subs[named[2]] + code[named.end(2) :]
         by_m98 = not self.text.control and self.text.call in subs
-        return NUMBER_OF_M98.sub(DRAWN, code) if by_m98 else self.written
+        return NUMBER_OF_M98.sub(subs[self.text.call], code) if by_m98 else self.written
 
 
 Bodies = Mapping[str, Sequence[SectionLine]]
@@ -108,8 +108,8 @@ def bodies_of(lines: Sequence[SectionLine]) -> dict[str, list[SectionLine]]:
     return {sub: body for sub, body in found.items() if sub}
 
 
-def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> set[str]:
-    """Return the subs that sections call, directly or not."""
+def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[str, str]:
+    """Return the subs that sections call, directly or not, each with its name in the copy."""
     flagged = zip(lines, codes.with_switches(line.text for line in lines))
     called = [line.text.call for line, (_, _, inside) in flagged if inside]
     found: set[str] = set()
@@ -118,7 +118,9 @@ def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> se
         if sub in bodies and sub not in found:
             found.add(sub)
             called += [line.text.call for line in bodies[sub]]
-    return found
+    taken = {name for line in lines for name in (line.sub, line.text.call)}
+    free = (name for name in map(str, count(FIRST_NAME)) if name not in taken)
+    return dict(zip(sorted(found), free))
 
 
 def doubt_of(line: SectionLine, bodies: Bodies) -> str:
@@ -134,7 +136,7 @@ def doubt_of(line: SectionLine, bodies: Bodies) -> str:
         return f"line {number} calls o<{text.call}>"
     if text.too_long:
         return f"line {number} is too long"
-    asks = any(name in line.written.replace(" ", "") for name in POSITION)
+    asks = any(name in bare(line.written) for name in POSITION)
     return f"line {number} asks for a position" if asks else ""
 
 
@@ -172,7 +174,7 @@ def sections(
     lines = section_lines(copies.texts, copies.lines)
     bodies = bodies_of(lines)
     drawn = drawn_subs(lines, codes, bodies)
-    more = {f"{DRAWN}{sub}.ngc": flattened(bodies[sub], codes, drawn, sub) for sub in drawn}
+    more = {f"{name}.ngc": flattened(bodies[sub], codes, drawn, sub) for sub, name in drawn.items()}
     copy = copies.trace(tracer, flattened(lines, codes, drawn), more, tools, parameters)
     copied = blocks_in(copy, copies.texts)
     groups = list(grouped(copied, codes))
@@ -193,7 +195,7 @@ def sections(
 
 
 def flattened(
-    lines: Sequence[SectionLine], codes: Codes, drawn: Collection[str], sub: str = ""
+    lines: Sequence[SectionLine], codes: Codes, drawn: Mapping[str, str], sub: str = ""
 ) -> list[list[str]]:
     """Return the lines that stand for each line in the copy without the sections' motion.
 
@@ -201,6 +203,7 @@ def flattened(
     sections call: their copies, of which ``sub`` is one, are in a section from the first line on.
     """
     found = []
+    own = {name: copied for name, copied in drawn.items() if name == sub}
     flagged = codes.with_switches((line.text for line in lines), bool(sub))
     for line, (text, switch, inside) in zip(lines, flagged):
         if switch or (inside and text.words and not line.is_control and not text.too_long):
@@ -209,7 +212,8 @@ def flattened(
             kept = [slash + words for words in (acting, *text.assignments) if words]
             found.append([*before(text, line.skip), *kept, *after(text, line.skip)])
         else:
-            found.append([line.with_drawn(drawn if inside else {sub} - {line.text.call})])
+            named = drawn if inside else {} if line.text.call == sub else own
+            found.append([line.with_drawn(named)])
     return found
 
 
