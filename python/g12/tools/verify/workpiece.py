@@ -98,7 +98,8 @@ class Program:
     def points_sideways(self) -> list[bool | None]:
         """Whether the tool of each move points at the axis, as in its cuts before and after.
 
-        None where those differ, and for a tool that cuts neither a section nor a hole.
+        The moves next to a cut are made as it is. None where cuts differ otherwise, and for a tool
+        that cuts neither a section nor a hole.
         """
         cuts = [(each.at, each.end, each.surface > 0.0) for each in self.sections]
         cuts += [(each.moves.start, each.moves.stop, each.is_side) for each in self.holes]
@@ -111,6 +112,7 @@ class Program:
             last = bisect_right(own, index, key=itemgetter(0)) - 1
             following = bisect_right(own, index, key=itemgetter(1))
             sides = {side for *_, side in own[max(last, 0) : following + 1]}
+            sides = next(({side} for at, end, side in own if index in (at - 1, end)), sides)
             found.append(sides.pop() if len(sides) == 1 else None)
         return found
 
