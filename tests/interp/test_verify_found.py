@@ -88,7 +88,7 @@ DRILLED = "G0 X70 Z5\no<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120
 
 
 def test_a_tool_on_the_face_and_in_the_side_is_judged_beside_both(codes):
-    valid = codes(f"{FACE}{HEXAGON}G0 X70 Z5 C0\n{DRILLED}", "lathe_mm")
+    valid = codes(f"{FACE}{HEXAGON}G0 X70 Z5 C0\nX80\n{DRILLED}", "lathe_mm")
     assert findings(valid) == []
     assert ("rapid-turned", False) in valid
     assert findings(codes(f"{FACE}{HEXAGON}G0 X70 Z5 C0\n{DRILLED}G0 X0\n", "lathe_mm", "60"))
@@ -140,10 +140,12 @@ def test_a_rapid_into_the_bar_before_a_groove(codes):
     assert findings(codes(into.replace("X44", "X52"), "lathe_mm", "50")) == []
 
 
-def test_what_another_tool_cuts_of_a_bar_is_not_known_from_the_side(codes):
+@pytest.mark.parametrize(("depth", "found"), [("Z-15", []), ("Z-5", ["rapid-into"])])
+def test_a_bar_is_known_from_the_side_below_what_is_cut_from_the_face(depth, found, codes):
     holes = "T2 M6\nG0 X70 Z-3 C0\n" + HOLES.format(surface=30).replace("-15", "-3") + "G0 X80\n"
-    judged = codes(FACE + HEXAGON + "G0 X70 Z5\n" + holes, "lathe_mm", "40")
-    assert findings(judged) == [] and ("rapid-after-cuts", False) in judged
+    hexagon = HEXAGON.replace("Z-5", depth)
+    judged = codes(FACE + hexagon + "G0 X70 Z5\n" + holes, "lathe_mm", "40")
+    assert findings(judged) == found and (("rapid-after-cuts", False) in judged) is not bool(found)
 
 
 # ---------------------------------------------------------------- valid programs

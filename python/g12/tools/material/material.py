@@ -119,10 +119,10 @@ class Material:
             self._solids.add(_Given(area, until), -top, since)
             self.top = max(self.top, top)
 
-    def open(self, area: BaseGeometry, level: float = -math.inf) -> None:
-        """Remove material that never existed: a hole, down to a level."""
+    def open(self, area: BaseGeometry, level: float = -math.inf, since: int = ALWAYS) -> None:
+        """Remove material down to a level, for the moves after one: it never existed before all."""
         if not area.is_empty:
-            self._cuts.add(_Given(area), level, ALWAYS)
+            self._cuts.add(_Given(area), level, since)
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3)."""

@@ -105,7 +105,7 @@ def _unjudged_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     for view in workpiece.views:
         own = [index for index in rapids if view.judges(program, index)]
         ends_known = [index for index in own if index in known]
-        after = (i for i in ends_known if i > view.until and workpiece.touched(view, i))
+        after = (i for i in ends_known if view.whole and _may_touch(workpiece, view, i))
         yield from _listed("rapid-after-cuts", program, after)
         if not (stock and (stock.diameter or stock.size)):
             yield from _listed(
@@ -118,6 +118,13 @@ def _unjudged_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     yield from _listed(
         "rapid-turned", program, (i for i in turned if program.moves[i].tool in both)
     )
+
+
+def _may_touch(workpiece: Workpiece, view: PartView, index: int) -> bool:
+    """Tell whether a rapid only goes through what cuts of another view may have removed."""
+    whole = view._replace(material=view.whole or view.material)
+    judged = index <= view.until and workpiece.touched(view, index)
+    return not judged and workpiece.touched(whole, index) is not None
 
 
 def _listed(code: str, program: Program, moves: Iterable[int]) -> Iterator[Finding]:

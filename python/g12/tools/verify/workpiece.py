@@ -151,7 +151,7 @@ class PartView(NamedTuple):
     """The part as some tools cut it, all without ``tools``, and its material there.
 
     ``surface`` is the radius of a cylinder, 0 of a plane. The material is known for the moves up to
-    ``until``.
+    ``until``; ``whole`` is it without what cuts of another view may have removed, if there are any.
     """
 
     part: Part
@@ -159,6 +159,7 @@ class PartView(NamedTuple):
     tools: frozenset[int] | None = None
     surface: float = 0.0
     until: float = math.inf
+    whole: Material | None = None
 
     def judges(self, program: Program, index: int) -> bool:
         """Tell whether a move is one of its tools', while they point at it from this side."""
@@ -302,21 +303,33 @@ def tools_of(program: Program, side: bool) -> frozenset[int]:
 
 
 def _bar_from_side(program: Program, radius: float, face: float) -> PartView:
-    """Return a bar as the tools see it that point at its axis, up to the first other cut."""
-    material, centre = Material(period=2 * math.pi * radius), program.part.centre
-    material.add(box(-FAR, -FAR, FAR, face), centre + radius)
-    tools = tools_of(program, side=True)
-    others = (
+    """Return a bar as the tools see it that point at its axis.
+
+    What tools along Z cut may be all of the bar down to there; of others nothing is known.
+    """
+    period, centre = 2 * math.pi * radius, program.part.centre
+    material, whole = Material(period=period), Material(period=period)
+    for each in (material, whole):
+        each.add(box(-FAR, -FAR, FAR, face), centre + radius)
+    others = [
         index
         for index, move in enumerate(program.moves)
         if move.kind != "rapid"
         and not program.points_sideways[index]
         and move.end[Z] < face - SAME_LEVEL
         if math.hypot(*program.end(index)[:2]) - program.radius(index) < radius - SAME_LEVEL
-    )
+    ]
+    until = next((index for index in others if not program.radius(index)), math.inf)
+    lowest = face
+    for index in others:
+        level = min(program.moves[index].start[Z], program.moves[index].end[Z])
+        if level < lowest - SAME_LEVEL:
+            material.open(box(-FAR, level, FAR, FAR), since=index)
+            lowest = level
     part = Surface(turning=True, centre=centre, radius=radius)
-    view = PartView(part, material, tools, radius, next(others, math.inf))
+    view = PartView(part, material, tools_of(program, side=True), radius, until, whole)
     _add_cuts(view, program)
+    _add_cuts(view._replace(material=whole), program)
     return view
 
 

@@ -173,7 +173,7 @@ NOT_JUDGED = {
         "--stock gives what stands there"
     ),
     "rapid-after-cuts": (
-        "rapids from the side to where the bar was, which another tool cut before: line {lines}"
+        "rapids from the side to where other cuts may have removed the bar before: line {lines}"
     ),
     "rapid-turned": ("rapids of a tool between its cuts on the face and in the side: line {lines}"),
     "rapid-by-machine": (
