@@ -301,10 +301,17 @@ def test_a_file_that_is_deleted_while_its_program_runs(lathe, tmp_path):
 
 
 def test_a_signal_on_an_acceleration_that_a_section_sets_is_named(monkeypatch):
-    def connected(pin, value):
-        raise RuntimeError("set_p: connected")
+    pins = dict.fromkeys(kinematics_switch.ACCELERATIONS, 707.0)
 
-    monkeypatch.setattr(kinematics_switch.hal, "set_p", connected)
-    interp = SimpleNamespace(task=1, g12_accelerations=[707.0, 707.0])
-    with pytest.raises(BlockRefusal, match=r"G12\.1: ini\.x\.max_acceleration is connected"):
+    def set_p(pin, value):
+        if pin == "ini.y.max_acceleration":
+            raise RuntimeError("set_p: connected")
+        pins[pin] = float(value)
+
+    monkeypatch.setattr(kinematics_switch.hal, "set_p", set_p)
+    monkeypatch.setattr(kinematics_switch.hal, "get_value", pins.get)
+    interp = SimpleNamespace(task=1)
+    with pytest.raises(BlockRefusal, match=r"G12\.1: ini\.y\.max_acceleration is connected"):
         kinematics_switch.accelerate(interp, 0.5)
+    kinematics_switch.restore_accelerations(interp)  # as an abort does
+    assert set(pins.values()) == {707.0}

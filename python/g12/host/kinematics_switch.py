@@ -56,18 +56,34 @@ def adaptive_feed(interp: Interp) -> str:
 
 
 def accelerate(interp: Interp, share: float) -> None:
-    """Set X's and Y's acceleration to a share of the INI's, from the next wait on."""
+    """Set X's and Y's acceleration to a share of the INI's, from the next wait on.
+
+    Refuses a pin that is connected to a signal before the first one is changed.
+    """
     if not interp.task:
         return
     of_ini = getattr(interp, "g12_accelerations", None)
     if not of_ini:
-        of_ini = interp.g12_accelerations = [hal.get_value(pin) for pin in ACCELERATIONS]
+        of_ini = [hal.get_value(pin) for pin in ACCELERATIONS]
+        for pin, acceleration in zip(ACCELERATIONS, of_ini):
+            _try_to_set(pin, acceleration)
+        interp.g12_accelerations = of_ini
     for pin, acceleration in zip(ACCELERATIONS, of_ini):
-        try:
-            hal.set_p(pin, repr(share * acceleration))
-        except RuntimeError:
-            rule = f"{pin} is connected to a HAL signal: G12.1 has to set it, take it off that net"
-            raise BlockRefusal("G12.1", rule) from None
+        hal.set_p(pin, repr(share * acceleration))
+
+
+def _try_to_set(pin: str, acceleration: float) -> None:
+    try:
+        hal.set_p(pin, repr(acceleration))
+    except RuntimeError:
+        rule = f"{pin} is connected to a HAL signal: G12.1 has to set it, take it off that net"
+        raise BlockRefusal("G12.1", rule) from None
+
+
+def restore_accelerations(interp: Interp) -> None:
+    """Set X's and Y's acceleration to the INI's, if they were ever set."""
+    for pin, acceleration in zip(ACCELERATIONS, getattr(interp, "g12_accelerations", ())):
+        hal.set_p(pin, repr(acceleration))
 
 
 def limit_override(interp: Interp, machine_unit: float, most: float) -> None:
@@ -107,7 +123,7 @@ def to_axes(interp: Interp) -> Iterator[str]:
     """Switch back to X, Z and C; yield the block to wait for."""
     interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
     yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
-    accelerate(interp, 1.0)  # only now, after the wait: LinuxCNC reads ahead
+    restore_accelerations(interp)  # only now, after the wait: LinuxCNC reads ahead
 
 
 def has_switched(interp: Interp) -> bool:

@@ -24,12 +24,12 @@ from g12.host.kinematics_switch import (
     NO_MOVES,
     OFF,
     ON_THE_FACE,
-    accelerate,
     face_in_force,
     has_switched,
     modes_found,
     not_switched,
     other_module,
+    restore_accelerations,
     to_axes,
     to_face,
     y_offset,
@@ -95,7 +95,7 @@ def abort(interp: Interp) -> None:
     change. The canonical function makes the request: M68 is refused while compensation is on.
     """
     by_hand = _unlock(interp)
-    accelerate(interp, 1.0)
+    restore_accelerations(interp)
     emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(NO_MOVES if by_hand else OFF))
     if by_hand:
         interp.g12_by_hand = by_hand._replace(ended=True)
