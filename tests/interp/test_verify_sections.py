@@ -79,6 +79,15 @@ def test_a_sub_that_is_called_outside_too_is_read(begin, end, call, found):
     assert found(*lines, begin, "G1 X24 F900", "C3", end, "") == []
 
 
+def test_a_sub_that_calls_itself_is_read(tmp_path):
+    body = ["o1 if [#1 gt 0]", "G1 X30 F800", "C[#1]", "X40", "C0", "o100 call [#1-1]", "o1 endif"]
+    program = tmp_path / "program.ngc"
+    lines = ["o100 sub", *body, "o100 endsub", *HEAD, "o100 call [3]", *OUT]
+    program.write_text("\n".join(lines))
+    (section,) = prove(program, read_ini(SIM / "lathe_mm_headless.ini")).sections
+    assert section.deviation < 0.005 and section.judged == ()
+
+
 def test_a_section_that_asks_for_a_position_is_a_note(tmp_path):
     program = tmp_path / "program.ngc"
     program.write_text("\n".join([*HEAD, "G1 X30 F800", "X[#<_x>-5]", *OUT]))

@@ -368,12 +368,6 @@ def test_what_cannot_be_followed_is_a_doubt(line, why):
     assert why in doubts[lines[0].text]
 
 
-def test_a_sub_that_calls_itself_cannot_be_followed():
-    lines = lines_of("o7 sub", "o7 call", "o7 endsub", "G12.1", "o7 call", "G13.1")
-    (doubt,) = section_reading.doubts_of(lines, CODES, bodies_of(lines)).values()
-    assert doubt == "line 5 calls o<7>"
-
-
 def lines_of(*lines):
     texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
     return section_lines(texts, lines)

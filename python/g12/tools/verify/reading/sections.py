@@ -10,7 +10,7 @@ program commands C in between, or gives it another zero.
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import accumulate, chain, count, islice
 from pathlib import Path
@@ -111,33 +111,38 @@ def bodies_of(lines: Sequence[SectionLine]) -> dict[str, list[SectionLine]]:
 def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[str, str]:
     """Return the subs that sections call, directly or not, each with its name in the copy."""
     flagged = zip(lines, codes.with_switches(line.text for line in lines))
-    called = [line.text.call for line, (_, _, inside) in flagged if inside]
-    found: set[str] = set()
-    while called:
-        sub = called.pop()
-        if sub in bodies and sub not in found:
-            found.add(sub)
-            called += [line.text.call for line in bodies[sub]]
+    called = subs_from([line.text.call for line, (_, _, inside) in flagged if inside], bodies)
     taken = {name for line in lines for name in (line.sub, line.text.call)}
     free = (name for name in map(str, count(FIRST_NAME)) if name not in taken)
-    return dict(zip(sorted(found), free))
+    return dict(zip(sorted(called & bodies.keys()), free))
+
+
+def subs_from(calls: Iterable[str], bodies: Bodies) -> set[str]:
+    """Return the subs that are called, directly or not."""
+    waiting, found = [*calls], {""}
+    while waiting:
+        sub = waiting.pop()
+        if sub not in found:
+            found.add(sub)
+            waiting += [line.text.call for line in bodies.get(sub, ())]
+    return found - {""}
 
 
 def doubt_of(line: SectionLine, bodies: Bodies) -> str:
-    """Return why the copy cannot follow a line of a section, "" if it can.
+    """Return why the copy cannot follow a line of a section, "" if it can."""
+    called = subs_from([line.text.call], bodies)
+    lines = [each for sub in called for each in bodies.get(sub, ())]
+    if called - bodies.keys() or any(map(own_doubt, lines)):
+        return f"line {line.text.number} calls o<{line.text.call}>"
+    return own_doubt(line)
 
-    Nor can it follow a sub that calls itself.
-    """
-    text, number = line.text, line.text.number
-    others = {sub: body for sub, body in bodies.items() if sub != text.call}
-    if text.call and (
-        text.call not in bodies or any(doubt_of(each, others) for each in bodies[text.call])
-    ):
-        return f"line {number} calls o<{text.call}>"
-    if text.too_long:
-        return f"line {number} is too long"
+
+def own_doubt(line: SectionLine) -> str:
+    """Return why the copy cannot follow a line, its calls aside."""
+    if line.text.too_long:
+        return f"line {line.text.number} is too long"
     asks = any(name in bare(line.written) for name in POSITION)
-    return f"line {number} asks for a position" if asks else ""
+    return f"line {line.text.number} asks for a position" if asks else ""
 
 
 def doubts_of(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[Text, str]:
