@@ -36,6 +36,12 @@ def test_the_line_of_a_call_has_its_time_but_for_taps(tmp_path, capsys):
     assert tap.endswith("allowed)")
 
 
+@pytest.mark.parametrize("call", [FACE, SIDE])
+def test_a_tool_without_a_diameter_is_a_note(call, tmp_path):
+    proof = prove(written(tmp_path, call), read_ini(SIM / "lathe_mm_headless.ini"), tools={1: 0.0})
+    assert ("no-diameter", 6) in [(each.code, each.line) for each in proof.judged]
+
+
 def findings(path, ini, **options):
     proof = prove(path, ini, tools={1: 6.0}, **options)
     others = ("not-", "rapid-turned")

@@ -106,6 +106,7 @@ def measure_holes(
         *(Finding("blended-hole", call.line) for _ in blended),
         *_judge_dwells(holes, block.own_events, moves),
         *_judge_clamp(holes, expected, laid, block, clamp),
+        *([] if call.cutter else [Finding("no-diameter", call.line)]),
         *judge_state(state, texts, call.line),
     ]
     values = {
