@@ -134,6 +134,12 @@ def test_a_rapid_into_the_bar_from_the_side(text, codes):
     assert findings(codes(SIDE + text + "G0 X80\n", "lathe_mm", "9")) == []
 
 
+def test_a_rapid_into_the_bar_between_cuts_of_one_tool_on_the_face_and_in_the_side(codes):
+    groove = "G0 X70 Z-20 C0\nX{x}\nG7.1 C25\nG1 X36 F200\nZ-40 C60\nX70\nG7.1 C0\n"
+    assert findings(codes(FACE + HEXAGON + groove.format(x=36), "lathe_mm", "50")) == ["rapid-into"]
+    assert findings(codes(FACE + HEXAGON + groove.format(x=56), "lathe_mm", "50")) == []
+
+
 def test_a_rapid_into_the_bar_before_a_groove(codes):
     into = FACE + GROOVE.replace("C0\n", "C0\nX44\n", 1) + "G1 X60\nG7.1 C0\n"
     assert findings(codes(into, "lathe_mm", "50")) == ["rapid-into"]

@@ -98,8 +98,8 @@ class Program:
     def points_sideways(self) -> list[bool | None]:
         """Whether the tool of each move points at the axis, as in its cuts before and after.
 
-        The moves next to a cut are made as it is. None where cuts differ otherwise, and for a tool
-        that cuts neither a section nor a hole.
+        Next to a cut it points as in that one. None where cuts differ, and for a tool that cuts
+        neither a section nor a hole.
         """
         cuts = [(each.at, each.end, each.surface > 0.0) for each in self.sections]
         cuts += [(each.moves.start, each.moves.stop, each.is_side) for each in self.holes]
@@ -111,8 +111,9 @@ class Program:
             own = of_tool.get(move.tool, [])
             last = bisect_right(own, index, key=itemgetter(0)) - 1
             following = bisect_right(own, index, key=itemgetter(1))
-            sides = {side for *_, side in own[max(last, 0) : following + 1]}
-            sides = next(({side} for at, end, side in own if index in (at - 1, end)), sides)
+            near = own[max(last, 0) : following + 1]
+            beside = {side for at, end, side in near if index in (at - 1, end)}
+            sides = beside or {side for *_, side in near}
             found.append(sides.pop() if len(sides) == 1 else None)
         return found
 
