@@ -35,7 +35,6 @@ from g12.tools.preview.tracer import (
 
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
 MARGIN = 10.0  # s that an answer may take beyond the requested timeout
-NS_PER_S = 1e9
 LOG_LINES = 60
 FAREWELL = "LinuxCNC terminated with an error"  # after it only where to read the same
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
@@ -177,9 +176,8 @@ class Machine:
     def _samples(self, rows: bytes, lost: int) -> Samples:
         columns = np.frombuffer(rows).reshape(-1, len(self.axes) + 4).T
         velocity, requested, line, kind = columns[len(self.axes) :]
-        period = self.ini.number("EMCMOT", "SERVO_PERIOD", 1e6) / NS_PER_S
         return Samples(
-            time=np.arange(len(velocity)) * period,
+            time=np.arange(len(velocity)) * self.ini.servo_period,
             axes=dict(zip(self.axes, columns)),
             velocity=velocity,
             requested=requested,

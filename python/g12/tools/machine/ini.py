@@ -27,6 +27,7 @@ from g12.settings import Settings, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 
+NS_PER_S = 1e9
 SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
@@ -76,6 +77,11 @@ class Ini:
     def settings(self) -> Settings:
         """The settings of section [G12]."""
         return self._asked(lambda: settings_from_lines(self.lines))
+
+    @property
+    def servo_period(self) -> float:
+        """The servo period in seconds, LinuxCNC's 1 ms without an entry."""
+        return self.number("EMCMOT", "SERVO_PERIOD", 1e6) / NS_PER_S
 
     @property
     def tool_beside(self) -> float:

@@ -49,7 +49,6 @@ LESS_ON_FACE, LEAST_ON_FACE = 0.86, 0.05  # of the feed: what C cannot follow is
 FEED_STEP = 0.8  # of a feed: a portion of a move may be made at so much less than can be followed
 FOLLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
 NEARLY = 0.95  # of a limit
-SERVO_PERIOD = 1e-3  # s: LinuxCNC's without one in the INI
 TURN = 1e-6  # mm along the part: C turns in place
 HALF_TURN = 180.01  # the shorter way is no longer
 WINDOW = 0.01  # s of a run, over which C's speed is taken: samples lie a servo period apart
@@ -73,7 +72,7 @@ class SectionAxes(NamedTuple):
     surface: float = 0.0
     slide: float = 0.0
     slide_speed: float = math.inf
-    period: float = SERVO_PERIOD
+    period: float = 1e-3
 
     @property
     def most_c_speed(self) -> float:
@@ -134,8 +133,14 @@ def axes_of_section(ini: Ini) -> SectionAxes:
     """Return what the axes of an INI can do."""
     x, z, c = (ini.axis_limits[letter].acceleration for letter in "XZC")
     speed, face = ini.axis_limits["C"].velocity, face_of(ini.get)
-    own = SectionAxes(x * ini.mm, z * ini.mm, math.radians(c), speed, beside=ini.tool_beside)
-    own = own._replace(period=1e-9 * ini.number("EMCMOT", "SERVO_PERIOD", 1e9 * SERVO_PERIOD))
+    own = SectionAxes(
+        x * ini.mm,
+        z * ini.mm,
+        math.radians(c),
+        speed,
+        beside=ini.tool_beside,
+        period=ini.servo_period,
+    )
     if not face:
         return own
     slide, most = face.slide.acceleration * ini.mm, face.slide.velocity * ini.mm
