@@ -120,7 +120,7 @@ class Material:
             self.top = max(self.top, top)
 
     def open(self, area: BaseGeometry, level: float = -math.inf, since: int = ALWAYS) -> None:
-        """Remove material down to a level, for the moves after one: it never existed before all."""
+        """Remove material down to a level, for all moves or for those after one."""
         if not area.is_empty:
             self._cuts.add(_Given(area), level, since)
 

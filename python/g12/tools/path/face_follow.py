@@ -19,8 +19,8 @@ import numpy as np
 from g12.tools.path.part import C, X, Y
 from g12.tools.preview.moves import Move
 
-PLACES = 48  # on a move that are looked at, and those where a line's C is accelerated most
-SHORTEST = 4e-3  # mm: a shorter line is not looked at
+PLACES = 48  # samples of a move, beside those where a line's C is accelerated most
+SHORTEST = 4e-3  # mm: a shorter line is not sampled
 AT_CENTRE = 1e-6  # mm: there C has no angle, and a line that ends there needs none
 Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
 
@@ -49,7 +49,7 @@ class FaceDemand(NamedTuple):
 
 
 def crosses_face(move: Move) -> bool:
-    """Tell whether a move goes across the face, and is long enough to be looked at."""
+    """Tell whether a move goes across the face, and is long enough to be sampled."""
     way = [move.end[axis] - move.start[axis] for axis in (X, Y)]
     across = move.kind == "arc" or (move.kind == "feed" and math.hypot(*way) > SHORTEST)
     return across and move.start[C] == move.end[C]
@@ -77,7 +77,7 @@ def followed_along(
     move: Move, bend: float, centre: float, beside: float
 ) -> tuple[Derivatives, Derivatives]:
     """Return the derivatives of the slide's place and C's angle, per mm of a move."""
-    points, heading, flat = _looked_at(move, centre)
+    points, heading, flat = _sampled(move, centre)
     radius = np.maximum(np.abs(points), 1e-12)
     seen = heading * points.conj() / radius
     slide, c = axis_derivatives(radius, seen.real, seen.imag, bend, beside)
@@ -110,8 +110,8 @@ def axis_derivatives(
     return (first, second), (turn, turned)
 
 
-def _looked_at(move: Move, centre: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return places (complex) on a move seen from the pole, headings there, the length across."""
+def _sampled(move: Move, centre: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return points (complex) of a move seen from the pole, headings there, the length across."""
     start, end = (complex(place[X] - centre, place[Y]) for place in (move.start, move.end))
     parts = np.linspace(0.0, 1.0, PLACES)
     if move.kind == "arc":

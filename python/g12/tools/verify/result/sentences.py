@@ -180,7 +180,8 @@ NOT_JUDGED = {
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),
     "travel-unplaced": (
-        "the travel, as no work offset is set: line {lines}; --var gives those of the machine"
+        "whether pockets are within the travel, as no work offset is set: line {lines}; "
+        "--var gives the machine's"
     ),
     "tool-spindle": (
         "whether the driven tool turns: the program has no M3 or M4 with an S; "
