@@ -56,12 +56,9 @@ def judge_travel(
     for extent in extents:
         ends.setdefault(extent.zero, []).extend((extent.low, extent.high))
     widths = {zero: np.ptp(both, axis=0) for zero, both in ends.items()}
-    unplaced = {t.source for (_, t), e in zip(circles, extents) if not e.is_placed}
-    for file in sorted({source.file for source in unplaced}):
-        lines = sorted(source.line for source in unplaced if source.file == file)
-        values = {"lines": ", ".join(map(str, lines))}
-        yield Finding("travel-unplaced", lines[0], values, file=file)
     for (_, target), extent in zip(circles, extents):
+        if not extent.is_placed:
+            yield Finding("travel-unplaced", target.source.line, file=target.source.file)
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
         for code, values in _overruns(extent, width, ini):

@@ -180,8 +180,7 @@ NOT_JUDGED = {
         "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
     ),
     "travel-unplaced": (
-        "whether pockets are within the travel, as no work offset is set: line {lines}; "
-        "--var gives the machine's"
+        "whether it is within the travel: no work offset is set; --var gives the machine's"
     ),
     "tool-spindle": (
         "whether the driven tool turns: the program has no M3 or M4 with an S; "
