@@ -253,6 +253,13 @@ def test_a_rapid_that_is_seen_end_on_has_a_mark():
         assert warned(shown) == said and drawn_in_red(shown) == (True, down in said)
 
 
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_a_short_rapid_is_a_line_in_either_unit(units):
+    hit = rapid_through([9, 0, 5], [9.1, 0, 5])
+    shown = replace(scene(pocket(), units=units), seen=Seen((hit,)))
+    assert warned(shown) == ["rapid through material"] and drawn_in_red(shown) == (1, 0)
+
+
 @pytest.mark.parametrize(("surface", "shown_at"), [(20.0, 5.5), (22.0, 5.0), (0.0, None)])
 def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     """The path may be unrolled on a bar's radius; one that is found on the face is not shown."""

@@ -223,15 +223,15 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
         style.draw(axes, [line[:, pair] / unit for line in path], shade, width)
     if scene.real is not None:
         draw_real(axes, scene, pair)
-    hit = [found.values["path"][:, pair] / unit for found in scene.seen.rapids]
-    style.draw(axes, hit, style.CRASH, 3.0, 3.8)
+    hit = [found.values["path"][:, pair] for found in scene.seen.rapids]
+    style.draw(axes, [line / unit for line in hit], style.CRASH, 3.0, 3.8)
     for line in hit:
         if is_point(line):
-            style.draw_hit(axes, line[0])
+            style.draw_hit(axes, line[0] / unit)
 
 
 def is_point(line: np.ndarray) -> bool:
-    """Return whether a polyline is seen end on."""
+    """Return whether a polyline (mm) is seen end on."""
     return bool(np.ptp(line, axis=0).max() < PICTURE_CHORD)
 
 
