@@ -152,7 +152,7 @@ class FollowedProgram:
             draft.head = name
 
     def _end(self, draft: Draft, index: int) -> None:
-        """Tell the draft how a return is written here."""
+        """Set the text of a return at a block."""
         number = self._inside[index]
         if self.kinds.get(number) == "macro":
             last = self.structure.last_returns.get(number) == index and not self._parted(index)
@@ -265,9 +265,10 @@ def followed_program(
     progress: Progress,
 ) -> FollowedProgram:
     """Return the drafts of a program, with as many copies of subprograms as it needs."""
-    follow: Callable[[], FollowedProgram] = lambda: FollowedProgram(  # noqa: E731
-        structure, control, machine_codes, progress
-    ).run()
+
+    def follow() -> FollowedProgram:
+        return FollowedProgram(structure, control, machine_codes, progress).run()
+
     followed = follow()
     for _ in range(DEEPEST):
         if not _add_copies(followed):

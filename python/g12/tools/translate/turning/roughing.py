@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""RoughCuts of a contour, G71 along Z and G72 along X: straight cuts, level after level.
+"""Roughing of a contour, G71 along Z and G72 along X: straight cuts, level after level.
 
 1. from the start point by rapid to each level, a depth of cut below the one before
 2. along the level at the feed, as far as the contour with its allowance is below it
