@@ -26,8 +26,9 @@ GROUPS = {
 }
 MOVES = frozenset(GROUPS["motion"])
 MOTIONS = MOVES | {"G33"}
-CONSUMERS = frozenset(
-    ("G10", "G28", "G30", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
+REFERENCES = frozenset(("G28", "G30"))
+CONSUMERS = REFERENCES | frozenset(
+    ("G10", "G52", "G92", "G12", "G13", "G12.2", "G13.2", "G7.1")
 )  # what takes the axis words of its block for itself
 GROUP_OF = {code: group for group, codes in GROUPS.items() for code in codes}
 

@@ -9,7 +9,7 @@ from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN, ModalState
+from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, ModalState
 from g12.tools.translate.blocks.places import known_place, value_text
 
 SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
@@ -69,14 +69,14 @@ def start_height(draft: Draft) -> float | None:
 
 
 def _end_height(draft: Draft) -> float | None:
-    if any(word.letter == "Z" for word in draft.words):
+    if draft.word("Z"):
         return known_place(draft.state, "Z")
     return start_height(draft)
 
 
 def moves_by_rapid(draft: Draft) -> bool:
     """Whether the block's moves are rapids."""
-    codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
+    codes = MOVES.intersection(draft.codes())
     motion = min(codes) if codes else draft.sure("motion", "X, Y or Z without G0 or G1")
     if motion == UNKNOWN:
         raise NotTranslated("X, Y or Z without G0 or G1, and none before them")

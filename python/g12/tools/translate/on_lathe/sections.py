@@ -10,7 +10,7 @@
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.places import known_place
 from g12.tools.translate.on_lathe.mill_words import (
     check_rapid,
@@ -26,10 +26,8 @@ from g12.tools.translate.on_lathe.surfaces import FACE, ROUND, MilledSurface
 from g12.tools.translate.rules.polar import feed_of_rapids
 
 SURFACES = {"face": FACE, "round": ROUND}
-ENDING = frozenset(("G20", "G21", "G28", "G30", "G43", "G49", "G53"))
-OFFSETS = frozenset(f"G{number}" for number in range(54, 60))
+ENDING = REFERENCES | {"G43", "G49", "G53"} | {f"G{number}" for number in range(54, 60)}
 ARC = frozenset("IJR")
-CHANGES = frozenset(("M6", "M2", "M30"))
 
 
 def mill_block(draft: Draft) -> None:
@@ -46,7 +44,8 @@ def mill_block(draft: Draft) -> None:
     _go_home(draft)
     if drills(draft):
         return
-    if draft.letters() & {"X", "Y", "Z", *ARC} and not _is_reference(draft):
+    has_words = bool(draft.letters() & {"X", "Y", "Z", *ARC})
+    if has_words and not draft.call and REFERENCES.isdisjoint(draft.codes()):
         _write_move(draft)
     elif draft.call and draft.state.polar == "off" and draft.state.waiting:
         _begin_section(draft)
@@ -68,25 +67,20 @@ def before_loop(draft: Draft) -> None:
         _begin_section(draft)
 
 
-def _is_reference(draft: Draft) -> bool:
-    return bool({"G28", "G30"}.intersection(draft.codes())) or bool(draft.call)
-
-
 def drills(draft: Draft) -> bool:
     """Whether the block begins a drilling cycle or repeats one."""
     if "drilling cycle" in draft.meanings:
         return True
-    motions = {"G0", "G1", "G2", "G3", "G28", "G30"}.intersection(draft.codes())
-    return bool(draft.state.cycle) and not motions and bool(draft.letters() & set("XYZR"))
+    moves = not (MOVES | REFERENCES).isdisjoint(draft.codes())
+    return bool(draft.state.cycle) and not moves and bool(draft.letters() & set("XYZR"))
 
 
 def _ends_here(draft: Draft) -> bool:
     codes = set(draft.codes())
     changed = draft.start.units != draft.state.units
-    tools = "T" in draft.letters() or draft.ends
-    tools = tools or any(w.letter == "M" and w.code in CHANGES for w in draft.words)
+    tools = "T" in draft.letters() or draft.ends or "M6" in draft.m_codes()
     returns = draft.returns and draft.state.section == _program_begun_in(draft)
-    other = codes & (ENDING - {"G20", "G21"} | OFFSETS) or changed
+    other = codes & ENDING or changed
     return bool(tools or returns or other or drills(draft))
 
 
@@ -108,8 +102,7 @@ def _write_move(draft: Draft) -> None:
 
 def _rapid_outside(draft: Draft, across: bool) -> None:
     """Store X and Y of a rapid for the next cut, write Z."""
-    has_height = any(word.letter == "Z" for word in draft.words)
-    if has_height or start_height(draft) is not None:
+    if draft.word("Z") or start_height(draft) is not None:
         check_rapid(draft, across and start_height(draft) is not None)
     if across and draft.state.distance != "G90":
         raise NotTranslated("a rapid in X or Y under G91 before the first cut: write it under G90")
@@ -170,7 +163,7 @@ def _end_section(draft: Draft) -> None:
 
 def _go_home(draft: Draft) -> None:
     """Write G28, G30 and G53 in the lathe's axes: the mill's machine zero has no meaning there."""
-    codes = {"G28", "G30", "G53"}.intersection(draft.codes())
+    codes = (REFERENCES | {"G53"}).intersection(draft.codes())
     if not codes:
         return
     if codes == {"G53"}:

@@ -4,11 +4,11 @@
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF, UNKNOWN
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF, REFERENCES, UNKNOWN
 
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 LETTERS = frozenset("NGMFSTDHIJKLPQR$")
-MACHINES_OWN = frozenset(("G28", "G30", "G53"))
+MACHINES_OWN = REFERENCES | {"G53"}
 
 
 def zero_of_missing_axis(draft: Draft) -> None:

@@ -13,6 +13,7 @@ from g12.tools.translate.blocks.modal import (
     CONSUMERS,
     MOTIONS,
     MOVES,
+    REFERENCES,
     UNKNOWN,
     UNSURE,
 )
@@ -29,7 +30,7 @@ def motion_mode(draft: Draft) -> None:
     motion = next((code for code in codes if code in MOTIONS), "")
     _refuse_rounding(draft, motion or draft.state.motion)
     if CONSUMERS.intersection(codes):
-        if motion and (draft.axis_words() or "G28" in codes or "G30" in codes):
+        if motion and (draft.axis_words() or not REFERENCES.isdisjoint(codes)):
             _take_motion(draft, motion)
         elif motion:
             draft.change(motion=motion, own_motion=AS_PROGRAMMED)

@@ -15,14 +15,16 @@ from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
     CONSUMERS,
     MOTIONS,
+    MOVES,
+    REFERENCES,
     UNKNOWN,
     UNSURE,
 )
 from g12.tools.translate.blocks.places import IN_POLAR, STAYING, axis_of, known_place, value_text
+from g12.tools.translate.rules.decimals import UNIT
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
-REFERENCE = ("G28", "G30")
 PLANES = frozenset(("G17", "G18", "G19"))
 SECTIONS = {
     "on": "in polar mode",
@@ -188,7 +190,7 @@ def rapid(draft: Draft) -> None:
 
 
 def _is_rapid(draft: Draft) -> bool:
-    codes = {"G0", "G1", "G2", "G3"}.intersection(draft.codes())
+    codes = MOVES.intersection(draft.codes())
     moves = draft.letters() & set("XYZCUWH")
     return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
 
@@ -207,7 +209,7 @@ def _rapid_at_feed(draft: Draft) -> None:
 def feed_of_rapids(draft: Draft) -> float:
     """Return the speed that the control's file gives to rapids in a section."""
     where = SECTIONS[draft.state.polar]
-    unit = {"G20": "inch", "G21": "mm"}.get(draft.state.units)
+    unit = UNIT.get(draft.state.units)
     if not unit:
         raise NotTranslated(f"G0 {where}: its speed needs the units: say G20 or G21 (--units)")
     key = f"rapid_feed_{unit}"
@@ -247,7 +249,7 @@ def _goes_by_rapid(draft: Draft) -> bool:
     if set(draft.meanings) - STAYING:
         return False
     if draft.state.cycle or codes & (MOTIONS | CONSUMERS):
-        return not codes.isdisjoint(("G0", *REFERENCE))
+        return not codes.isdisjoint(REFERENCES | {"G0"})
     return _is_rapid(draft)
 
 

@@ -12,15 +12,13 @@ LinuxCNC's own and stay, on a cylinder W too.
 from g12.tools.translate.blocks.draft import PARTNERS, Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES
+from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES, REFERENCES
 from g12.tools.translate.blocks.places import known_place, value_text
-
-POINTS = frozenset(("G28", "G30"))
 
 
 def reference_point(draft: Draft) -> None:
     """Rewrite the axes of G28 and G30."""
-    code = next((code for code in draft.codes() if code in POINTS), "")
+    code = next((code for code in draft.codes() if code in REFERENCES), "")
     if not code:
         return
     second = draft.take("P") if code == "G30" else None
@@ -120,7 +118,7 @@ def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
     if draft.sure("distance", f"{word.text} is an increment") == "G91":
         draft.replace(word, word._replace(letter="Z"))
     elif depth is None:
-        value = f"[#5422 + [{word.value}]]"
+        value = f"[{position('Z')} + [{word.value}]]"
         draft.replace(word, ForeignWord("Z", value, "expression"))
     else:
         draft.replace(word, ForeignWord("Z", value_text(depth)))

@@ -7,11 +7,11 @@ G50 S and G92 S are the limit, which LinuxCNC takes as D beside G96; with axes t
 from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN
+from g12.tools.translate.blocks.modal import REFERENCES, UNKNOWN
 
 LONGEST_WAIT = "Q30"  # s, then LinuxCNC reports a spindle that is not oriented
 STOPS = frozenset(("M5", "M9"))
-RAPIDS = frozenset(("G0", "G28", "G30", "G53"))
+RAPIDS = REFERENCES | {"G0", "G53"}
 TURNING = frozenset(("M3", "M4", "M5"))
 NO_LIVE_TOOL = (
     "{} is the live tool's spindle: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's that drives it"
