@@ -190,16 +190,16 @@ def _stand_off(draft: Draft, distance: str) -> None:
     """Write R as the tool's Z level."""
     if draft.sure("plane", "a cycle without R") not in ("G17", UNKNOWN):
         raise NotTranslated("a cycle without R in another plane than G17")
-    draft.words.append(ForeignWord("R", "0" if distance == "G91" else "#5422", "expression"))
+    draft.words.append(ForeignWord("R", "0" if distance == "G91" else position("Z"), "expression"))
 
 
 MOST_HOLES = 1000
-WORDS = {"circle of holes": "IJL", "arc of holes": "IJKL", "row of holes": "IJL"}
+PATTERN_WORDS = {"circle of holes": "IJL", "arc of holes": "IJKL", "row of holes": "IJL"}
 
 
 def hole_pattern(draft: Draft) -> None:
     """Write the places of a pattern; the cycle's own rule completes the first of them."""
-    meaning = next((name for name in WORDS if name in draft.meanings), "")
+    meaning = next((name for name in PATTERN_WORDS if name in draft.meanings), "")
     if not meaning:
         return
     code = draft.meanings.pop(meaning).code
@@ -211,7 +211,7 @@ def hole_pattern(draft: Draft) -> None:
             f"{code} is laid about where the tool stands, which is not known here: write X and Y "
             "as numbers, under G90"
         )
-    numbers = {letter: _pattern_number(draft, code, letter) for letter in WORDS[meaning]}
+    numbers = {letter: _pattern_number(draft, code, letter) for letter in PATTERN_WORDS[meaning]}
     holes = [complex(x, y) + step for step in _steps_of(meaning, numbers)]
     first, *others = (f"X{value_text(p.real)} Y{value_text(p.imag)}" for p in holes)
     draft.words = [word for word in draft.words if word.letter not in "XY"]
@@ -225,12 +225,8 @@ def _pattern_number(draft: Draft, code: str, letter: str) -> float:
     word = draft.take(letter)
     if not word or word.kind != "number":
         raise NotTranslated(f"{code} needs {letter} as a number")
-    if (
-        letter != "L"
-        and "." not in word.value
-        and word.number
-        and draft.control.decimals != "whole"
-    ):
+    plain = word.lacks_point and word.number
+    if plain and letter != "L" and draft.control.decimals != "whole":
         raise NotTranslated(f"{word.text} of {code} has no decimal point: write {word.text}.")
     if letter == "L" and not 1 <= word.number <= MOST_HOLES:
         raise NotTranslated(f"{code} {word.text}: there must be from 1 to {MOST_HOLES} holes")

@@ -20,11 +20,11 @@ def rigid_tap(draft: Draft) -> None:
     """Note M29 and its speed, and write the blocks that tap; G80 and other motion end it."""
     code = draft.meanings.pop("rigid tapping", None)
     if code:
-        speed = next((word.value for word in draft.words if word.letter == "S"), "")
+        speed = draft.word("S")
         if not speed:
             raise NotTranslated(f"{code.code} needs S, the speed of the tap")
         draft.comments.append(code.code)
-        draft.change(rigid=speed)
+        draft.change(rigid=speed.value)
     elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOVES & set(draft.codes())):
         draft.change(rigid=UNKNOWN, tap_top=UNKNOWN)
     if draft.state.rigid:

@@ -12,7 +12,7 @@ value for length and wear: wear is kept in parameters and the sum is in the tabl
 
 from typing import NamedTuple
 
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, line_as_word, position
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, position
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
@@ -116,12 +116,8 @@ def offset_by_program(draft: Draft, code: ForeignWord) -> None:
     draft.after += draft.take_codes({"G90", "G91"})
     if not draft.is_empty():
         raise NotTranslated(f"{draft.words[-1].text} cannot stand beside G10")
-    _settle(draft)
-
-
-def _settle(draft: Draft) -> None:
-    first, *draft.after = draft.after
-    draft.words.append(line_as_word(first))
+    lines, draft.after = draft.after, []
+    draft.write(lines)
 
 
 def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
