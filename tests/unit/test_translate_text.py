@@ -90,6 +90,11 @@ def test_comments_stay_and_do_nothing(comment, kept):
     assert behind(HAAS, f"{comment}\nM30\n")[0] == kept
 
 
+def test_words_that_a_cycle_does_not_use_are_comments_in_their_order():
+    for words, kept in (("Q.1 P500", "(Q.1)(P0.5)"), ("P500 Q.1", "(P0.5)(Q.1)")):
+        assert behind(HAAS, f"G81 X1. Z-.5 R.1 {words} F8.")[0] == f"G81 X1. Z-.5 R.1 F8. {kept}"
+
+
 def test_a_comment_that_has_no_room_has_lines_of_its_own():
     translated = behind(HAAS, f"G0 X1. ({'A' * 300})\nM30\n")
     assert translated[:3] == ["G0 X1.", f"({'A' * 200}) (line 3)", f"({'A' * 100}) (line 3)"]

@@ -172,8 +172,9 @@ def _write_cycle(
 ) -> None:
     """Write a block that drills, complete unless LinuxCNC is in the same cycle already."""
     used = f"ZR{NEEDS.get(code, '')}"
-    for letter in given.keys() - set(used):
-        draft.comments.append(draft.take(letter).text)
+    for letter in given:
+        if letter not in used:
+            draft.comments.append(draft.take(letter).text)
     if draft.state.own_motion != code:
         for letter in used:
             if letter not in given and values.get(letter):
