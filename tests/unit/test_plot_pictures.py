@@ -474,6 +474,14 @@ def test_a_cylinder_is_drawn_unrolled():
     assert flat.path.part.letters == "CZX" and flat.path.time[-1] == shown.path.time[-1]
 
 
+def test_a_run_on_a_cylinder_is_drawn_along_its_path():
+    shown = with_real_motion(groove(), LATHE, {"Z": 0.0123})
+    flat = unrolled(replace(on_surface(shown), subject=shown.subject.on_surface(20.0)))
+    assert worst_of(flat.real, flat.moves).deviation == pytest.approx(0.0123, abs=1e-4)
+    along_c, z = flat.real.positions[-1, :2]
+    assert (along_c, z) == pytest.approx((20 * np.radians(270), -10), abs=1e-3)
+
+
 # ---------------------------------------------------------------- files
 
 

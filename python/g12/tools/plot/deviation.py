@@ -49,7 +49,8 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     axes.plot(*sampled.T, ".", color=style.REAL, markersize=3, zorder=3.5)
     gap = np.array([[0.0, 0.0], worst.point[pair] - origin])
     style.draw(axes, [gap], style.WORST, 1.8, 4.0)
-    title = f"Largest deviation{' from the segments' if 'C' in scene.path.part.letters else ''}"
+    in_segments = "C" in scene.path.part.letters
+    title = "Deviation from segments" if in_segments else "Largest deviation"
     style.frame_detail(axes, (0, 0), half, title, "\n".join(window_lines(worst, scene, pair)))
     _scale_bar(axes, half, unit)
 

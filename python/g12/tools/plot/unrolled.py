@@ -117,11 +117,12 @@ def unrolled(scene: Scene) -> Scene:
     positions = as_positions(path.points)
     vertices = Vertices(positions, np.zeros_like(positions), path.move, path.time)
     flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
+    real = scene.real and replace(scene.real, positions=as_positions(scene.real.points))
     trace = replace(subject.trace, moves=moves)
     radius = scene.seen.surface
     own = (on_radius(each, radius) for each in scene.seen.findings if seen_unrolled(each))
     shown = scene.seen._replace(findings=tuple(own), stock=None)  # a bar is round on the face alone
-    return replace(scene, subject=replace(subject, trace=trace, drawn=flat), seen=shown)
+    return replace(scene, subject=replace(subject, trace=trace, drawn=(flat, real)), seen=shown)
 
 
 def seen_unrolled(finding: Finding) -> bool:

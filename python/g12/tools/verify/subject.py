@@ -23,8 +23,8 @@ SAME_X0 = 1e-6  # mm
 class Subject:
     """A program on a machine, as traced, and as a part sees it; ``samples`` are those of a run.
 
-    It is of its ``own`` moves alone, if those are given and nothing ran; ``drawn`` is their path,
-    if it is known.
+    It is of its ``own`` moves alone, if those are given and nothing ran; ``drawn`` are their path
+    and the motion of the run on it, if these are known.
     """
 
     program: Path
@@ -33,20 +33,22 @@ class Subject:
     part: Part
     samples: Samples | None = None
     own: range | None = None
-    drawn: Track | None = None
+    drawn: tuple[Track, Followed | None] | None = None
     _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: all of it is looked at
 
     @cached_property
     def path(self) -> Track:
         """The moves as one polyline in time."""
+        if self.drawn:
+            return self.drawn[0]
         limits, speed = limits_of(self.ini), self.trace.modes.speed
-        return self.drawn or track(self.part, self.trace.moves, limits, speed, own=self.own)
+        return track(self.part, self.trace.moves, limits, speed, own=self.own)
 
     @cached_property
     def real(self) -> Followed | None:
         """The motion of the run, laid on the path."""
-        if not self.samples:
-            return None
+        if self.drawn or not self.samples:
+            return self.drawn[1] if self.drawn else None
         return follow(self.path, self.trace.moves, self.samples, self.ini.mm)
 
     def about(self, centre: float, own: range | None = None) -> Self:
