@@ -93,23 +93,26 @@ def test_every_entry_has_words_and_a_default_and_every_form_a_picture(form, unit
     assert width <= WIDEST and height <= HIGHEST
 
 
-POCKETS = [  # a form filled in, and its pocket: X, Y, floor, radius; where the tool ends
+POCKETS = [  # a form filled in; its pocket, X, Y, floor, radius; its levels, circles, turn, moves
     ("haas", dict(x=12, y=-7, retract=20, top=3, z=-6, levels=3, i=8, k=25, q=6, feed=500,
-                  code=12), (12, -7, -6, 25), 20),
-    ("haas", dict(z=-2, levels=1, i=9, k=0, retract=12), (0, 0, -2, 9), 12),
+                  code=12), (12, -7, -6, 25), ([0, -3, -6], [3, 9, 15, 20] * 3, -1, 36)),
+    ("haas", dict(z=-2, levels=1, i=9, k=0, retract=12), (0, 0, -2, 9), ([-2], [4], 1, 3)),
     ("yasnac", dict(x=4, y=5, retract=15, top=1, z=-8, code=12, i=50, r=30, k=0, q=0, circles=2,
-                    feed=600), (4, 5, -8, 50), 15),
-    ("yasnac", dict(z=-3, i=-40, r=0, k=-9, q=6, circles=1, retract=9), (0, 0, -3, 40), 9),
-    ("mitsubishi", dict(x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30), (-3, 2, -8, 30), 15),
+                    feed=600), (4, 5, -8, 50), ([-8], [45] * 2, -1, 4)),
+    ("yasnac", dict(z=-3, i=-40, r=0, k=-9, q=6, circles=1, retract=9), (0, 0, -3, 40),
+     ([-3], [35], 1, 15)),
+    ("mitsubishi", dict(x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30), (-3, 2, -8, 30),
+     ([-8], [25], 1, 3)),
     ("circle_mill", dict(event=7, x=5, y=6, z=-4, w=2, o=12, r=30, d=1, c=1, k=3, j=7, l=0.5,
-                         p=100, f=400, v=200), (5, 6, -4, 30), 12),
+                         p=100, f=400, v=200), (5, 6, -4, 30),
+     ([-1, -3.5, -4], [6.125, 12.25, 18.375, 24.5] * 3 + [25], 1, 27)),
     ("circle_mill", dict(event=0, z=-2, w=1, o=9, r=20, d=0, c=1, k=0, j=0, l=0, p=0, v=0,
-                         f=300), (0, 0, -2, 20), 9),
+                         f=300), (0, 0, -2, 20), ([-2], [25], -1, 1)),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("form", "values", "pocket", "retract"), POCKETS)
-def test_a_pocket_comes_out_as_filled_in(form, values, pocket, retract, tmp_path):
+@pytest.mark.parametrize(("form", "values", "pocket", "made"), POCKETS)
+def test_a_pocket_comes_out_as_filled_in(form, values, pocket, made, tmp_path):
     program = program_of(tmp_path, form, "inch", **values)  # the forms of both units are one text
     proof = prove(program, read_ini(SIM / f"{MILLS[form]}_headless.ini"), tools=TOOLS)
     assert proof.findings == []
@@ -117,10 +120,15 @@ def test_a_pocket_comes_out_as_filled_in(form, values, pocket, retract, tmp_path
     wall, traced = facts.commanded.wall, proof.subject.trace
     floor = wall.height(facts.commanded.deepest)
     assert (*wall.origin[:2], floor, wall.radius) == pytest.approx(pocket, abs=1e-6)
-    feeds = {round(move.feed) for move in cut_geometry.in_plane(cut_geometry.cutting(traced.moves))}
-    named = {values[name] for name in ("feed", "f", "v") if values.get(name)}
-    assert not named or feeds == named
-    assert traced.moves[-1].end[2] == pytest.approx(retract)
+    levels, radii, turns, count = made
+    cuts, circles = cut_geometry.cutting(traced.moves), cut_geometry.full_circles(traced.moves)
+    assert [circle.radius for circle in circles] == pytest.approx(radii, abs=1e-5)
+    assert list(dict.fromkeys(round(circle.z, 5) for circle in circles)) == levels
+    assert {circle.turns for circle in circles} == {turns}
+    assert len(cut_geometry.in_plane(cuts)) == count
+    named = {values[name] for name in ("feed", "f", "v", "p") if values.get(name)}
+    assert not named or {round(move.feed) for move in cuts} == named
+    assert traced.moves[-1].end[2] == pytest.approx(values.get("retract", values.get("o")))
     assert {"M5", "M9"} <= set(traced.modes.mcodes)
 
 

@@ -325,6 +325,13 @@ def test_a_file_without_a_last_newline(lathe, tmp_path):
     assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
 
 
+def test_a_program_that_is_not_utf8(lathe, tmp_path):
+    program = tmp_path / "cut.ngc"
+    text = "\n".join(section("(Fläche \xb0)", f"G1 X12 ({'ä' * 200})", "U-2"))
+    program.write_bytes(text.encode("latin-1"))
+    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
+
+
 @pytest.mark.parametrize("word", ["X12", "U-8"])
 def test_lines_as_long_as_the_parser_reads(lathe, word):
     assert ends(cut(lathe, f"G1 {word}".ljust(252), "C1")) == [(12, 0), (12, 1)]

@@ -53,6 +53,7 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("KINEMATICS = polar_xzc coordinates=XZC", "KINEMATICS = trivkins coordinates=XZC", "kins",
      "KINEMATICS = trivkins coordinates=XZC"),
     ("coordinates=XZC", "coordinates=XYZC", "kins", "Y may not"),
+    ("coordinates=XZC", "coordinates=XZ", "kins", "C have to be there"),
     ("JOINTS = 3", "JOINTS = 4", "kins", "JOINTS = 4, but"),
     ("COORDINATES = X Y Z C", "COORDINATES = X Z C", "coordinates", "lacks Y"),
     ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 0", "kinematics-unused", "makes segments"),
@@ -82,6 +83,12 @@ PERIODS = [  # of the trajectory: the INI's, the HAL line's, what is said
     ("2000000", "", ""),  # no HAL line uses it
 ]
 IN_THE_WAY = [
+    ("net probe => motion.digital-in-03", "pin-taken"),
+    ("net lube motion.analog-out-03 => pump.speed", "pin-taken"),
+    ("net type somebody.type => motion.switchkins-type", "pin-taken"),
+    ("net torch thc.feed => motion.adaptive-feed", "pin-taken"),
+    ("net door => motion.feed-inhibit", "pin-taken"),
+    ("net door => motion.jog-inhibit", "pin-taken"),
     ("loadrt trivkins coordinates=XZC", "kins"),
     ("loadrt motmod num_joints=3 num_aio=2", "few-pins"),
 ]

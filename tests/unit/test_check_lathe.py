@@ -42,6 +42,7 @@ def with_codes(text, names):
     [
         ("GEOMETRY = XZC\n", {"geometry": WARNING}),  # moved first, then turned
         ("GEOMETRY = CXZ!\n", {}),
+        ("GEOMETRY = -CXZ\n", {}),
     ],
 )
 def test_a_screen_that_does_not_turn_the_part(tmp_path, lines, expected):
@@ -56,7 +57,7 @@ def test_c_that_unwinds(tmp_path):
 
 @pytest.mark.parametrize(
     ("var", "never_set"),
-    [("", True)],
+    [("", True), ("5163\t-12.5\n", False)],
 )
 def test_a_g28_that_was_never_set(tmp_path, var, never_set):
     assert found(tmp_path, LATHE, var=var) == ({"g28": NOTE} if never_set else {})

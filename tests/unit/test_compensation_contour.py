@@ -73,6 +73,25 @@ def test_no_end_or_the_start_as_end_is_a_full_circle(turn, end, words):
     assert arc.centre == complex(10.0 + words.get("i", 0.0), words.get("j", 0.0))
 
 
+def test_a_rounded_centre_is_moved_to_be_as_far_from_both_ends():
+    arc = arc_of(1, 0.0, 10.0, i=-10.0, j=0.004)
+    assert abs(10.0 - arc.centre) == pytest.approx(abs(10j - arc.centre))
+    assert abs(arc.centre) < 0.004
+
+
+@pytest.mark.parametrize("side", [40, 41])
+def test_compensation_that_is_in_force_already_changes_nothing(side):
+    contour = started()
+    contour.compensation(41, 2.0, line=1)
+    contour.line(c=5.0, line=1, feed=100.0)
+    if side == 40:
+        contour.compensation(40, 0.0, line=2)
+        contour.line(c=9.0, line=2, feed=100.0)
+    contour.compensation(side, 2.0, line=3)
+    contour.arc(1, i=-1.0, line=3, feed=100.0)
+    assert contour.side == side
+
+
 def block(contour, text, line):
     """Give a contour a block, as "arc turn=1 x=3 radius=4"; its feed is 100 if it says none."""
     name, *words = text.split()

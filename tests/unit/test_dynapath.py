@@ -66,6 +66,10 @@ def test_the_units_of_the_text_can_be_given():
         (["N1(4)X0Y0Z-1W.1I.1R1C2F20$"], "line 1: W and I are the same entry: give one of them"),
         (["N1(4)X0Y0Z-1I/.1R1C2F20$"], "line 1: I/ cannot be incremental"),
         (["N1(4)X0Y0Z-1W.1R1H3F20$"], "line 1: H3 must be one of 0, 1, 2"),
+        (["N1(4)Y0Z-1W.1R1C2F20$"], "line 1: X is missing"),
+        (["N1(4)X0Z-1W.1R1C2F20$"], "line 1: Y is missing"),
+        (["N1(4)X0Y0W.1R1C2F20$"], "line 1: Z is missing"),
+        (["N1(4)X0Y0Z-1W.1C2F20$"], "line 1: R is missing"),
         ([EXAMPLE, "N1(4)X0Y0Z-1R1$"], "line 2: C is missing"),
         (["N1(4)X0Y0Z-1R1C2F20$"], "line 1: W is missing, and no event before has it"),
         (

@@ -146,6 +146,13 @@ def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
     assert "is up from the tool" in plan("I.3 Z.5 D1", incremental=True).message
 
 
+def test_a_table_diameter_with_conversion_noise_changes_nothing():
+    noisy = dict(tool_in_table=lambda number: Tool(number, 0.125 + 1e-11))
+    assert plan("I.375 K1.5 Q.25 Z-1 D1", **noisy).message is None
+    assert "greater than the tool radius" in told(plan, "I.125 Z-1 D1", **noisy)
+    assert plan("I.3 K1 Q.4 Z-1 D1", **noisy).links == 2
+
+
 LOCALS = ["x", "y", "move_to_centre", "z", "z_step", "levels", "first_radius", "links", "step",
           "shorter", "restart", "rings"]  # fmt: skip
 

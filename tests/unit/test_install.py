@@ -679,6 +679,11 @@ def test_every_feature_has_a_next_step():
     ]  # fmt: skip
 
 
+def test_two_dialects_at_once(tmp_path, capsys):
+    assert install.main([str(write_config(tmp_path)), "--with", "haas", "yasnac"]) == 2
+    assert "haas and yasnac exclude each other" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     "words",
     [

@@ -161,6 +161,15 @@ def test_what_the_user_changed_since_stays_as_a_comment_and_is_told(tmp_path):
     ]
 
 
+def test_an_ini_of_an_older_install_is_given_back(tmp_path):
+    ini = config_in(tmp_path)
+    put_in(ini, "polar", features.KINEMATICS)
+    lines = ini.read_text().splitlines(keepends=True)
+    ini.write_text("".join(line for line in lines if not line.startswith("# now: ")))
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert ini.read_text() == LATHE
+
+
 @pytest.mark.parametrize(("usual", "unusual", "says"), REFUSED)
 def test_an_unusual_ini_is_refused_with_a_way_to_the_steps(tmp_path, usual, unusual, says):
     assert usual in LATHE

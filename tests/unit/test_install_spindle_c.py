@@ -53,6 +53,8 @@ brake = "drive.brake"
 """
 REFUSED = [
     ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
+    ("loadrt [KINS]", "loadrt lut5 count=1\nloadrt [KINS]", "loads lut5 too"),
+    ("net c joint", "net d => motion.digital-out-02\nnet c joint", "motion.digital-out-02 is what"),
 ]
 INI_REFUSED = [
     ("coordinates=XZC", "coordinates=XZA", "no joint is C alone"),

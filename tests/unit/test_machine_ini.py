@@ -54,9 +54,8 @@ def test_an_axis_that_cannot_be(line, reason):
 
 @pytest.mark.parametrize(
     ("units", "length"),
-    [("1", 1),
-     ("0.1 # cm", 10)],
-)  # fmt: skip
+    [("metric", 1), ("in", 25.4), ("IMPERIAL", 25.4), ("1", 1), ("0.1 # cm", 10)],
+)
 def test_units(units, length):
     assert millimetres_of(ini_of(INI.format(units=units)).get) == pytest.approx(length)
     assert millimetres_of(ini_of("").get) == 1
@@ -106,7 +105,7 @@ def test_a_linuxcnc_with_a_g12_1_of_its_own_is_told_at_start_up():
         refuse_owned_codes(remaps, owned=True)
 
 
-@pytest.mark.parametrize(("content", "owned"), [(b"\0_kins_type\0", True)])
+@pytest.mark.parametrize(("content", "owned"), [(b"\0_kins_type\0", True), (b"\0other\0", False)])
 def test_the_loaded_interpreter_tells_whether_it_owns_g12_1(tmp_path, content, owned):
     library = tmp_path / "librs274.so.0"
     library.write_bytes(content)

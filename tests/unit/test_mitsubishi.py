@@ -25,9 +25,10 @@ def test_the_circle_lies_along_the_plane_s_first_axis(plane, number, along):
     ("words", "radius"),
     [
         ("I.00508 D0", 0.00508),
+        ("I1 D3", 3.0),
     ],
 )
-def test_a_positive_offset_reduces_the_circle(words, radius):
+def test_a_positive_offset_reduces_the_circle_a_negative_one_enlarges_it(words, radius):
     assert plan(words).radius == pytest.approx(radius)
 
 

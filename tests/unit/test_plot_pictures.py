@@ -140,6 +140,11 @@ def test_drilling_sweeps_holes():
     assert len(level.area.geoms) == 2
 
 
+def test_a_lathe_program_that_leaves_c_alone_is_turning():
+    assert not scene(turned(), LATHE).path.part.turning
+    assert scene(flats(), LATHE).path.part.turning
+
+
 def test_each_tool_sweeps_with_its_own_diameter():
     hand = Hand().line(x=100)
     hand.tool = 2

@@ -50,6 +50,13 @@ def test_where_no_section_begins(found, rule):
     assert str(refused.value) == f"G12.1 line 7: {rule}"
 
 
+@pytest.mark.parametrize("millimetre", [1.0, 1 / INCH])
+def test_ends_that_rounded_words_leave_open_are_closed_in_any_unit(millimetre):
+    assert setup_of(millimetre=millimetre).words.closing == pytest.approx(
+        0.0005 * INCH * millimetre
+    )
+
+
 def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
     check_section_start(START._replace(x=1e-3), "XC")
     for axes in ("XYZ", "ZC"):
@@ -147,3 +154,16 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
 def test_the_travel_is_that_of_the_machine_with_its_offsets(place, beyond):
     made = setup_of().limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
     assert (made and made[:4]) == beyond
+
+
+@pytest.mark.parametrize(
+    ("machine_unit", "millimetre", "unit"),
+    [(1.0, 1.0, "mm"), (INCH, 1.0, "in"), (1.0, 1 / INCH, "in"), (1 / INCH, 1 / INCH, "mm")],
+)
+def test_the_travel_is_told_in_the_machines_unit(machine_unit, millimetre, unit):
+    limits = setup_of(machine_unit=machine_unit, millimetre=millimetre).limits
+    far, off = 200.0 * machine_unit, START.offsets
+    for axis, place in (("X", (far, 0.0, 0.0)), ("Z", (0.0, 0.0, far))):
+        beyond = limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
+        assert (beyond.axis, beyond.unit) == (axis, unit)
+        assert beyond.position == pytest.approx(200.0 + off[axis] / machine_unit)

@@ -29,6 +29,13 @@ def test_short_work_is_not(capsys):
     assert capsys.readouterr().err == ""
 
 
+def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch):
+    monkeypatch.setattr(progress, "LINE_TICK", 0.05)
+    with progress.working("running", clock=True):
+        time.sleep(0.2)
+    assert capsys.readouterr().err == "running\n"
+
+
 def test_on_a_terminal_it_is_told_for_how_long(capsys, monkeypatch):
     monkeypatch.setattr("sys.stderr.isatty", lambda: True)
     monkeypatch.setattr(progress, "TICK", 0.05)

@@ -24,6 +24,12 @@ def test_an_include_goes_into_the_section_it_stands_in(ini):
     assert "#INCLUDE" not in machine.text
 
 
+def test_includes_of_an_include_stay_comments(ini):
+    machine = ini("[A]\n#INCLUDE one.inc\n", one="X = 1\n#INCLUDE two.inc\n", two="Y = 2\n")
+    assert machine.get("A", "X") == "1"
+    assert machine.get("A", "Y") is None
+
+
 def test_replacing_adds_replaces_and_takes_out(ini):
     machine = ini("[A]\nX = 1\nX = 2\nY = 3\nZ = 4\n[B]\n").replaced(
         {"A": {"X": [5, 6], "Y": None, "Z": 7}, "C": {"NEW": "yes"}}
@@ -32,6 +38,14 @@ def test_replacing_adds_replaces_and_takes_out(ini):
     assert machine.get("A", "Y") is None
     assert machine.get("A", "Z") == "7"
     assert machine.get("C", "NEW") == "yes"
+
+
+def test_replacing_makes_no_line_longer_than_linuxcnc_reads(ini):
+    half = "b" * 200
+    machine = ini(f"[A]\nX = 1\nY = {half}\\\n{half}\n").replaced({"A": {"X": "a" * 600}})
+    assert machine.get("A", "X") == "a" * 600
+    assert machine.get("A", "Y") == 2 * half
+    assert max(map(len, machine.lines)) <= 254
 
 
 @pytest.mark.parametrize(

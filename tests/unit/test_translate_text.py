@@ -523,6 +523,11 @@ def test_the_cylinders_code_and_word_are_those_of_the_machine():
     assert behind(other, "G7.1 C25.\nG7.1 C0\nM30\n") == ["G107 C[2 * 25.]", "G107 C0", "M30"]
 
 
+def test_the_polar_codes_are_those_of_the_machine():
+    other = replace(LATHE, polar_codes=("G12.3", "G13.3"))
+    assert behind(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
+
+
 def test_the_word_of_the_cylinder_is_the_controls_and_the_machines():
     tables = {**LATHE.tables, "cylinder": {"word": "diameter"}}
     other = replace(LATHE, tables=tables, cylinder_code=("G7.1", "radius"))
