@@ -41,6 +41,7 @@ INSIDE = [  # unit/test_section_block_rules.py has every code
     ),
     ("G12.1", "the section is already on: G13.1 ends it"),
     ("M2", "G13.1 is missing: M2 comes before it"),
+    ("M30", "G13.1 is missing: M30 comes before it"),
     ("G1 @5 ^3", "@ is refused: the section's words are X, C (or Y), Z, U and H"),
     ("G1 X12 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
     ("G13.1 X5", "G13.1 stands alone in its block"),

@@ -137,7 +137,13 @@ def yasnac(text, tool, radius, x, y):
     first, last = sorted(text.between(0.1, 25.0) for _ in range(2))
     last = max(last, first + 0.1)
     words = [f"I{text.n(side * (last + offset))}"]
-    if text.chance.random() < 0.5:
+    spiral = text.chance.random() < 0.5
+    if with_d and text.chance.random() < 0.5:  # a bored hole, which the first circle reaches
+        widest = (first if spiral else last) - 0.05
+        least = widest - (0.05 if spiral else 0.9) * radius
+        near = text.between(max(0.01, least), widest)
+        words.append(f"{text.one_of('R', 'J')}{text.n(side * (near + offset))}")
+    if spiral:
         words.append(f"K{text.n(side * (first + offset))}")
         words.append(f"Q{text.n(text.between(0.2, 1.9) * radius)}")
     words.append(f"D{tool}" if with_d else "")

@@ -147,7 +147,7 @@ def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
 
 
 def test_a_table_diameter_with_conversion_noise_changes_nothing():
-    noisy = dict(tool_in_table=lambda number: Tool(number, 0.125 + 1e-11))
+    noisy = dict(tool_in_table=lambda number: Tool(number, 0.125 - 1e-11))
     assert plan("I.375 K1.5 Q.25 Z-1 D1", **noisy).message is None
     assert "greater than the tool radius" in told(plan, "I.125 Z-1 D1", **noisy)
     assert plan("I.3 K1 Q.4 Z-1 D1", **noisy).links == 2

@@ -29,9 +29,18 @@ def near(values):
     return pytest.approx(values, abs=1e-9)
 
 
-def test_sweep_of_an_arc_about_the_origin():
-    move = arc((1.0, 0.0, 0.0), (0.0, 1.0, 3.0), (0.0, 0.0, 0.0), 3)
-    assert math.degrees(move.sweep) == pytest.approx(810, abs=1e-6)
+@pytest.mark.parametrize(
+    ("end", "turns", "degrees"),
+    [
+        ((0.0, 1.0, 0.0), -1, -270),
+        ((1.0, 1e-9, 0.0), 1, 360),
+        ((1.0, 1e-9, 0.0), -1, -360),
+        ((0.0, 1.0, 3.0), 3, 810),
+    ],
+)
+def test_sweep_of_an_arc_about_the_origin(end, turns, degrees):
+    move = arc((1.0, 0.0, 0.0), end, (0.0, 0.0, 0.0), turns)
+    assert math.degrees(move.sweep) == pytest.approx(degrees, abs=1e-6)
 
 
 @pytest.mark.parametrize("plane", PLANES)

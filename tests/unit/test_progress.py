@@ -29,8 +29,9 @@ def test_short_work_is_not(capsys):
     assert capsys.readouterr().err == ""
 
 
-def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "LINE_TICK", 0.05)
+@pytest.mark.parametrize("tick", [0.05, 5.0])
+def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch, tick):
+    monkeypatch.setattr(progress, "LINE_TICK", tick)
     with progress.working("running", clock=True):
         time.sleep(0.2)
     assert capsys.readouterr().err == "running\n"

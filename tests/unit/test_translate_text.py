@@ -183,6 +183,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G68 X0", "G68 needs R, the angle"),
         (HAAS, "G52 X0 Y1.\nG68 R9.\nG52 X[0.] Y1. Z3.\nG52 Y0", "a local offset within G68"),
         (HAAS, "#1=1.\nG52 X#1\nG68 R9.\n#1=2.\nG52 X#1", "a local offset within G68"),
+        (HAAS, "G76 X1. Z-1.", "G76: fine boring"),
         (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),
         (HAAS, "G#1 X1.", "G#1: a code must be a number"),
         (HAAS, "G0 G1 X1.", "G0 and G1 in one block"),

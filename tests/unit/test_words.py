@@ -19,6 +19,11 @@ def refusal(function, *arguments, **options):
     return refused.value.message
 
 
+@pytest.mark.parametrize("value", [1.00009, 0.99991])
+def test_what_linuxcnc_takes_for_a_whole_number_is_one(value):
+    assert words(L=value).take_whole("L", least=1) == 1
+
+
 @pytest.mark.parametrize(("letter", "value"), [("L", 1.001), ("D", 0.9989)])
 def test_what_is_not_whole_is_refused(letter, value):
     message = f"G12: {letter}{value} must be a whole number"
