@@ -252,9 +252,6 @@ def test_a_line_number_is_taken_for_no_code(machine):
                 assert texts(trace)[-1] == "0.000000", first
 
 
-# A square pocket, from its corner or from the middle of a side, with a tool of 12 mm diameter.
-
-
 def test_compensation_without_a_tool(lathe):
     program = [line for line in section("G1 G41 X12") if line != "T1 M6"]
     text, _ = refused(lathe, program)

@@ -129,10 +129,13 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "nowhere.inc: there is no such file to read"),
     (GOOD + "#INCLUDE more.inc\n", {"files": {"more_inc": "#INCLUDE deeper.inc\n"}}, "include",
      "more.inc:1"),
-    *((GOOD.replace(NO_TABLE, line), {}, kind, says) for line, kind, says in (
+    *((GOOD.replace(NO_TABLE, line), {"files": {"empty_tbl": ""}}, kind, says)
+      for line, kind, says in (
           ("TOOL_TABLE = no.tbl\n", "no-tool-table", "TOOL_TABLE = no.tbl: there is no such file"),
+          ("TOOL_TABLE = ngc\n", "no-tool-table", "TOOL_TABLE = ngc: there is no such file"),
           ("", "no-tool-table", "TOOL_TABLE is missing"),
           ("DB_PROGRAM = ./tools\n", "tool-database", "DB_PROGRAM = ./tools: the tools of that"),
+          ("DB_PROGRAM = x\nTOOL_TABLE = empty.tbl\n", "tool-database", "were not looked at"),
       )),
 ]  # fmt: skip
 

@@ -18,6 +18,7 @@ as well as in the output of the shell command 'dmesg' and in the terminal
     ("log", "last"),
     [
         (f"Starting LinuxCNC...\nparts/a.hal:2: no such pin\n{END}", "parts/a.hal:2: no such pin"),
+        (END, "as well as in the output of the shell command 'dmesg' and in the terminal"),
     ],
 )
 def test_the_last_line_is_the_reason(log, last):

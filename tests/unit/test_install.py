@@ -456,6 +456,15 @@ def newer(monkeypatch, files):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
 
 
+def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_path, monkeypatch):
+    put_in(write_config(tmp_path))
+    newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
+    (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
+    installation.bring_copy_up_to_date(tmp_path / "g12")
+    assert not list((tmp_path / "g12").rglob("*.edited*"))
+    assert package_copy.edited(tmp_path / "g12") == []
+
+
 def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
     put_in(write_config(tmp_path))
     copy = tmp_path / "g12"

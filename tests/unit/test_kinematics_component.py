@@ -146,7 +146,7 @@ def test_type_0_is_the_axes_of_its_letters(kinematics, letters, joints, axes):
     assert kinematics.inverse(pose, *[0] * len(joints)) == joints
 
 
-@pytest.mark.parametrize("letters", ["ZC", "XYZC", "X ZC"])
+@pytest.mark.parametrize("letters", ["XZ", "ZC", "XYZC", "XZCC", "X ZC"])
 def test_letters_that_have_no_face(kinematics, letters):
     assert kinematics.set_up(letters) == -1
 

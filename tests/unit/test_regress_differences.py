@@ -147,6 +147,14 @@ def test_a_move_that_became_others_is_told_with_how_far_they_go_astray():
     assert difference.text == "1 move became 2, up to 1 mm apart"
 
 
+def test_apart_is_measured_on_the_part_that_turns():
+    """On the machine X moves by 0.1 and C by 0.01: the part is what counts."""
+    quarter = recording(("rapid", (10,)), ("feed", (10, 0, 0, 0, 0, 90)))
+    bent = [("feed", (10.1, 0, 0, 0, 0, 45)), ("feed", (10, 0, 0, 0, 0, 90.01))]
+    (difference,) = found(quarter, recording(("rapid", (10,)), *bent), part=LATHE)
+    assert difference.text == "1 move became 2, up to 0.1002 mm apart"
+
+
 def test_a_program_that_is_refused_now_is_one_difference():
     now = recording(*SQUARE[:4], error=Error("G12: no I", 5))
     (difference,) = found(recording(*SQUARE, "M5"), now)

@@ -150,6 +150,7 @@ def test_least_increments_follow_the_units(tmp_path):
     path.write_text('based_on = "fanuc-mill"\ndecimals = "least"\n')
     own = read_control(str(path))
     assert behind(own, "G21 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G21 G0 X1.234"
+    assert behind(own, "G20 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G20 G0 X0.1234"
     assert "before G20 or G21" in sentence(own, "G0 X1234\n").sentence
     path.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
     whole = read_control(str(path))
@@ -339,6 +340,8 @@ def test_a_setting_of_the_control_whose_unit_is_not_said():
     ("before", "change"),
     [
         ("M3 S99", "T2 M6 G43 H2 M3"),
+        ("M4 S99", "T2 M6 G43 H2 M4"),
+        ("M3 S99\nM5", "T2 M6 G43 H2"),
         ("M3 S99\nM19", "T2 M6 G43 H2"),
         ("M3 S99\nM35", "T2 M6 G43 H2"),  # the spindle is C
     ],

@@ -47,7 +47,7 @@ def found(*contours):
     )
 
 
-@pytest.mark.parametrize(("gap", "depth"), [(6.0, None)])
+@pytest.mark.parametrize(("gap", "depth"), [(6.0, None), (5.99, 0.01), (5.0, 1.0), (3.2, 2.8)])
 def test_a_passage_narrower_than_the_tool_is_cut_wider(gap, depth):
     """Both contours are cut, each on the way along the other one."""
     pin = circle(15 + gap, 5.0)

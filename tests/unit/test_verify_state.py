@@ -20,6 +20,7 @@ def block(events, codes=(12.0,), m_codes=(), **words):
         ({"_motion_mode": 30.0}, {"_motion_mode": 0.0}, ["it leaves G3, not G0"]),
         ({"_feed": 600.0000001}, {"_feed": 600.0}, []),
         ({"_feed": 1200.0}, {"_feed": 600.0}, ["it leaves F1200, not F600"]),
+        ({"_selected_tool": 5.0}, {"_selected_tool": 4.0}, ["it leaves T5, not T4"]),
         ({"_c": 370.0}, {"_c": 10.0}, []),
     ],
 )
@@ -31,8 +32,10 @@ def test_what_a_block_leaves(found, expected, says):
 @pytest.mark.parametrize(
     ("events", "words", "extra"),
     [
+        (["M8 on", "M4"], {"m_codes": (8.0,)}, ["M4"]),
         (["M7 off", "M8 off"], {"m_codes": (9.0,)}, []),
         (["S1000", "G61"], {"S": 1000.0}, ["G61"]),
+        (["G61"], {"codes": (12.0, 61.0)}, []),
         (["G64 P0.1 Q0.1"], {"codes": (12.0, 20.0)}, []),
         (["G64 P0.1 Q0.1"], {}, ["G64 P0.1 Q0.1"]),
         (["tool 5", "dwell 1", "dwell 0", "message hello"], {}, ["tool 5", "dwell 1"]),
