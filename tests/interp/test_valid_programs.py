@@ -29,4 +29,5 @@ def test_a_valid_program_is_cut_as_its_words_ask(kind, tmp_path):
     proof = prove(program, machine_of(kind))
     assert len(proof.pockets) + len(proof.sections) >= count
     assert len(proof.cuts.shapes) >= count * kind.startswith("shapes")
+    assert not any(facts.commanded.doubt for facts in proof.sections)  # each was read
     assert proof.findings == []
