@@ -67,7 +67,7 @@ def findings(name, program, folder, fault=None, words=()):
         assert each["words"] in asked.text
         asked = asked._replace(text=asked.text.replace(each["words"], each["becomes"]))
     ini = with_fault(asked.ini(ROOT), fault, folder) if fault else asked.ini(ROOT)
-    proof = prove(asked.written(folder), ini, tools=asked.tools)
+    proof = prove(asked.written(folder), ini)
     return [(each.code, str(each.line), each.text()) for each in proof.judged if each.is_finding]
 
 

@@ -89,7 +89,7 @@ def test_a_clamp_that_is_right_has_no_finding(tmp_path):
     slot = "o<polar_slot> call [8] [30] [1] [-9999] [-9999] [300] [-9999] [0]"
     path = written(tmp_path, *calls, *section, slot, "G0 X60 Z10", SIDE, "M10", "M11")
     settings = {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M10"}
-    ini = MachinedProgram("", "", "lathe_mm", settings, None).ini(ROOT)
+    ini = MachinedProgram("", "", "lathe_mm", settings).ini(ROOT)
     assert findings(path, ini) == []
 
 

@@ -59,10 +59,6 @@ def points_of(samples, kinds):
     return np.column_stack([samples.axes[axis][there] for axis in "XYZ"])
 
 
-def farthest_off(points, path):
-    return max(np.linalg.norm(path - point, axis=1).min() for point in points)
-
-
 def test_the_real_motion_is_the_traced_one(mill):
     name, tools, machine = mill
     for text in MILLS[name][0]:
@@ -74,9 +70,8 @@ def test_the_real_motion_is_the_traced_one(mill):
         cutting = cut_geometry.cutting(traced.moves)
         programmed = cut_geometry.dense_points(cutting, step=0.1) + cutting[0].tool_offset[:3]
         real, circles = points_of(run.samples, (2, 3)), points_of(run.samples, (3,))
-        # half the spacing of the points that are compared with
-        assert farthest_off(circles[::10], programmed) < DEVIATION + 0.05
-        assert farthest_off(programmed[::10], real) < DEVIATION + 0.1
+        assert cut_geometry.farthest_off(circles[::10], programmed) < DEVIATION
+        assert cut_geometry.farthest_off(programmed[::10], real) < 0.05
         end = np.add(traced.position[:3], cutting[0].tool_offset[:3])
         assert run.position[:3] == pytest.approx(end, abs=1e-6)
 

@@ -54,26 +54,14 @@ def points_of(samples):
     return np.column_stack([samples.axes[axis] for axis in "XYZ"])[samples.moving()]
 
 
-def farthest_off(points, path):
-    """Return the largest distance of points (n, 3) from a polyline (m, 3)."""
-    start, along = path[:-1], np.diff(path, axis=0)
-    length = np.maximum((along**2).sum(axis=1), 1e-30)
-    found = 0.0
-    for point in points:
-        share = np.clip(((point - start) * along).sum(axis=1) / length, 0, 1)
-        off = point - start - share[:, None] * along
-        found = max(found, float((off**2).sum(axis=1).min()))
-    return math.sqrt(found)
-
-
 def check_path(samples, tracer):
     """Check that the real motion below the start lies on the traced path, and reaches all of it."""
     traced = tracer.trace_text([FIRST, START, POCKET])
     assert traced.error is None, traced.error
     path = cut_geometry.dense_points(cut_geometry.cutting(traced.moves), step=0.1)
     points = points_of(samples)
-    assert farthest_off(points[points[:, 2] < 0.95][::20], path) < DEVIATION
-    assert farthest_off(path[path[:, 2] < 0.95][::10], points) < 0.01
+    assert cut_geometry.farthest_off(points[points[:, 2] < 0.95][::20], path) < DEVIATION
+    assert cut_geometry.farthest_off(path[path[:, 2] < 0.95][::10], points) < 0.01
 
 
 def on_the_way_down(points):

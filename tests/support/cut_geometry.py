@@ -105,3 +105,15 @@ def dense_points(moves, step=0.2):
         count = max(2, math.ceil(move.length / step) + 1)
         points += [move.point(fraction)[:3] for fraction in np.linspace(0, 1, count)]
     return np.array(points)
+
+
+def farthest_off(points, path):
+    """Return the largest distance of points (n, 3) from a polyline (m, 3)."""
+    start, along = path[:-1], np.diff(path, axis=0)
+    length = np.maximum((along**2).sum(axis=1), 1e-30)
+    found = 0.0
+    for point in points:
+        share = np.clip(((point - start) * along).sum(axis=1) / length, 0, 1)
+        off = point - start - share[:, None] * along
+        found = max(found, float((off**2).sum(axis=1).min()))
+    return math.sqrt(found)

@@ -32,7 +32,6 @@ from dataclasses import replace
 from g12.tools.preview.moves import THIRD_AXIS, Event, Move, Trace
 
 Change = Mapping[str, object]
-NAMES = {name: getattr(math, name) for name in ("pi", "sin", "cos", "sqrt", "hypot", "copysign")}
 AXES = {"x": 0, "y": 1, "z": 2, "a": 3, "c": 5}
 PICKING = ("line", "where", "moves")
 OF_MOVES = (*PICKING, "drop", "again", "before", "after", "event")
@@ -47,7 +46,7 @@ def fields_of(move: Move, number: int) -> dict[str, object]:
     place = {"line": move.block, "source": move.line, "n": number}
     own = {name: getattr(move, name) for name in ("kind", "feed", "turns", "exact", "feed_mode")}
     points = {"p": complex(*move.end[:2]), "w": on_face(move)}
-    return {**NAMES, **axes, **start, **centre, **place, **own, **points}
+    return {"hypot": math.hypot, **axes, **start, **centre, **place, **own, **points}
 
 
 def on_face(move: Move) -> complex:

@@ -27,13 +27,12 @@ BEFORE = {"flange": "T2 M6\nG0 Z1\n"}
 
 
 class MachinedProgram(NamedTuple):
-    """A program's text and its machine: the INI's name, its [G12] settings, other tools."""
+    """A program's text and its machine: the INI's name, its [G12] settings."""
 
     name: str
     text: str
     machine: str
     settings: dict[str, object]
-    tools: dict[int, float] | None
 
     def written(self, folder: Path) -> Path:
         """Write the program into a folder; return its path."""
@@ -59,6 +58,5 @@ def program_of(table: str, name: str) -> MachinedProgram:
     """Return a program of a table of faults."""
     asked = TABLES[table][name]
     text = asked.get("text") or (PROGRAMS / asked["file"]).read_text(encoding="utf-8")
-    tools = {int(tool): size for tool, size in asked["tools"].items()} if "tools" in asked else None
     machine = asked.get("ini", TABLES[table]["ini"])
-    return MachinedProgram(f"{table}/{name}", text, machine, asked.get("settings", {}), tools)
+    return MachinedProgram(f"{table}/{name}", text, machine, asked.get("settings", {}))

@@ -45,11 +45,10 @@ def disc(x, c, diameter):
 
 
 class FacePath(NamedTuple):
-    """A tool's path in the part's plane: complex points, Z, whether at a feed."""
+    """A tool's path in the part's plane: complex points, Z."""
 
     points: np.ndarray
     z: np.ndarray
-    feeding: np.ndarray
 
     def area(self, depth, radius):
         """Return the area that a cutter sweeps at a depth or below it."""
@@ -70,7 +69,7 @@ def swept_by(points, radius):
 
 def path_of(moves, scale=1.0):
     """Return the path of traced moves in X, Z and C; ``scale`` is 1 mm in their unit."""
-    columns = [], [], []
+    columns = [], []
     for move in moves:
         (x0, z0, c0), (x1, z1, c1) = ([end[i] for i in (0, 2, 5)] for end in (move.start, move.end))
         reach = max(x0, x1) * abs(math.radians(c1 - c0)) + abs(x1 - x0)
@@ -78,7 +77,6 @@ def path_of(moves, scale=1.0):
         x, angle = x0 + (x1 - x0) * share, np.radians(c0 + (c1 - c0) * share)
         columns[0].append(x * np.exp(1j * angle) * scale)
         columns[1].append((z0 + (z1 - z0) * share) * scale)
-        columns[2].append(np.full(len(share), move.kind != "rapid"))
     return FacePath(*map(np.concatenate, columns))
 
 
