@@ -10,7 +10,6 @@ from support.polar_programs import FIRST
 from support.shape_geometry import FacePath, area_off, disc, polygon, slot
 from support.sim_machines import SIM, machine_scope
 
-RAPID = 1  # kind of a sampled move
 CUTTER = 3.0
 TOLERANCE = 0.008  # POLAR_TOLERANCE, sampling, and the polygons of the drawing
 START = [FIRST, "T3 M6", "G0 X40 Z5 C0", "F100"]
@@ -54,7 +53,7 @@ def real_path(samples):
     """Return the sampled path of the tool in the part's plane."""
     points = samples.axes["X"] * np.exp(1j * np.radians(samples.axes["C"]))
     some = slice(None, None, 4)
-    return FacePath(points[some], samples.axes["Z"][some], samples.kind[some] != RAPID)
+    return FacePath(points[some], samples.axes["Z"][some])
 
 
 def check_cut(name, path):
