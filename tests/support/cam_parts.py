@@ -122,7 +122,7 @@ def points_of(part, step=0.2):
     for kind, *to in part.path[1:]:
         end = np.array(to[:3], float)
         if kind == "arc":
-            leg = along_arc(here, end, *to[3:], step)
+            leg = along_arc(here, end, *to[3:], step=step)
         else:
             count = max(2, math.ceil(math.dist(here, end) / step) + 1)
             leg = here + (end - here) * np.linspace(0, 1, count)[:, None]

@@ -41,7 +41,7 @@ def cutting(moves):
 def full_circles(moves):
     """Return the full circles in the order they were cut."""
     return [
-        Circle(*move.centre[:2], move.end[2], move.radius, move.turns)
+        Circle(move.centre[0], move.centre[1], move.end[2], move.radius, move.turns)
         for move in moves
         if move.kind == "arc" and math.dist(move.start[:3], move.end[:3]) < SAME_POINT
     ]

@@ -141,7 +141,7 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
 
 
 def line_to(x, c, at, number, z=0.0):
-    return planned_moves.line(*at, x, c, z, z, number=number, offset=2.0)
+    return planned_moves.line(at[0], at[1], x, c, z, z, number=number, offset=2.0)
 
 
 def bend(at, to, number, sweep=0.5):

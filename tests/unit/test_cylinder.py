@@ -41,7 +41,7 @@ START = POLAR_START._replace(
 
 def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
-    names = PlaneNames(*CYLINDER_WORDS.plane, CYLINDER_WORDS.centre_name)
+    names = PlaneNames(*CYLINDER_WORDS.plane, centre=CYLINDER_WORDS.centre_name)
     start = Start(x, math.radians(c), z)
     return Contour(math.radians(c) * RADIUS, x, z, names=names, diameter=None, start=start)
 

@@ -82,11 +82,11 @@ ALONG_X, ALONG_C = [line(20, 0, 30, 0), (40, 0)], [line(30, -5, 30, 0), (30, 10)
 @pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
 def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, stop):
     """X, Z and C are as quick as each other here: the steeper of both parts takes all of it."""
-    slope = line(30, 0, *on, 2.0, 2.0 + 10.0 * rise)
+    slope = line(30, 0, *on, z0=2.0, z1=2.0 + 10.0 * rise)
     bend, steep = math.atan(rise), max(1.0, abs(rise)) / math.hypot(1.0, rise)
     rounding = share * abs(math.sin(bend / 2)) * 10.0**2 / 2000.0
-    far = (2 * on[0] - 30, 2 * on[1])
-    onwards = line(*on, *far, slope.z1, slope.z1 + 10.0 * rise)
+    far_x, far_c = 2 * on[0] - 30, 2 * on[1]
+    onwards = line(on[0], on[1], far_x, far_c, z0=slope.z1, z1=slope.z1 + 10.0 * rise)
     up = [level._replace(z0=2.0, z1=2.0), slope, onwards]
     assert stops(up, rounding / steep, 1000.0, C)[0] is stop
     on = level.start

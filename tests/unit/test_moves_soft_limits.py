@@ -53,7 +53,7 @@ def test_every_axis_has_its_ends_and_may_stand_on_them(place, beyond):
     assert limits.beyond([within]) is None
     out = BlockMoves(4, "XCZ", [*ends, (*place, 1)], False)
     unit = "degrees" if beyond[0] == "C" else "mm"
-    assert limits.beyond([within, out]) == Beyond(4, *beyond, unit, False)
+    assert limits.beyond([within, out]) == (4, *beyond, unit, False)
 
 
 @pytest.mark.parametrize(
