@@ -4,7 +4,7 @@
 import argparse
 
 from g12.tools.commands.main import COMMANDS, module_of
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 
 
 def parser() -> argparse.ArgumentParser:
@@ -29,8 +29,8 @@ def parser() -> argparse.ArgumentParser:
 
 def named_as_installed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
     """Return a command's parser, and those below it, with ``g12`` for what is typed here."""
-    parser.prog = parser.prog.replace(CALL, "g12")
-    parser.epilog = (parser.epilog or "").replace(CALL, "g12")
+    parser.prog = parser.prog.replace(COMMAND, "g12")
+    parser.epilog = (parser.epilog or "").replace(COMMAND, "g12")
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for below in action.choices.values():

@@ -14,7 +14,7 @@ from g12.tools.commands import check, install, uninstall
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE
 from g12.tools.preview.tracer import Tracer
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 from support.kinematics import marked
 from support.sim_machines import ROOT, SIM, trace_text
 from support.small_configs import HAAS, LATHE, MILL, content_of, with_lines, write_config
@@ -175,7 +175,7 @@ def test_features_install_do_what_install_says_to_try_and_go(tmp_path, capsys, n
     assert installed(ini, *names) == 0
     said = capsys.readouterr().out
     assert "+REMAP = " in said
-    assert said.endswith(f"\nto take it out again: {CALL} uninstall {ini}\n")
+    assert said.endswith(f"\nto take it out again: {COMMAND} uninstall {ini}\n")
     said = said.partition("next: restart LinuxCNC, then try")[2].splitlines()[1:-1]
     assert len(said) == len(names)
     for line in said:

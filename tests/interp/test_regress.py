@@ -15,7 +15,7 @@ import pytest
 
 from g12.tools.commands import main as command_line
 from g12.tools.regress.recorder import hash_of
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 from support.processes import living, until
 from support.sim_machines import PROGRAMS, ROOT, SIM, with_package
 
@@ -561,7 +561,7 @@ def test_the_fixture_of_the_plugin(pocket):
     bad = subprocess.run([*command, "-p", "no:cacheprovider"], **options)
     assert "2 failed, 1 passed" in bad.stdout
     assert "pocket.ngc:8: 1 move: X5 → X5.0002 (+0.0002 in)" in bad.stdout
-    assert f"if that is right: {CALL} regress record -d" in bad.stdout
+    assert f"if that is right: {COMMAND} regress record -d" in bad.stdout
     recorded = pocket.folder / "regress" / "regress.json"
     recorded.write_text(recorded.read_text().replace('.ini"', '.gone"'))
     wrong = subprocess.run([*command, "-k", "all", "-p", "no:cacheprovider"], **options)

@@ -293,7 +293,7 @@ def test_m2_resets_the_modes(mill):
 
 
 def test_parameters_are_reported(mill):
-    traced = mill.trace_text("#<_mine> = 3\n#100 = 4", ask=[100, 5221], parameters={5221: 7.0})
+    traced = mill.trace_text("#<_mine> = 3\n#100 = 4", numbered=[100, 5221], parameters={5221: 7.0})
     assert traced.globals == {"_mine": 3.0}
     assert traced.numbered == {100: 4.0, 5221: 7.0}
 
@@ -313,7 +313,7 @@ def test_every_program_starts_clean(mill):
     fresh = mill.trace_text("G1 X1 F10")
     dirty = "T1 M6\nG20\nG43 G91 G61 G18 F99 S9\nG92 X5\nG10 L2 P1 X3 R30\n#<_left> = 1\n#5 = 5"
     assert mill.trace_text(dirty).error is None
-    again = mill.trace_text("G1 X1 F10", ask=[5])
+    again = mill.trace_text("G1 X1 F10", numbered=[5])
     assert again.moves == fresh.moves
     assert again.modes == fresh.modes
     assert again.state == fresh.state

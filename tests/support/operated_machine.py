@@ -51,57 +51,57 @@ class Machine(machine.Machine):
 
     def mdi(self, text, *, wait=True, timeout=60.0) -> None:
         """Execute one block of MDI; without ``wait`` only start it."""
-        self._ask("mdi", text)
+        self._request("mdi", text)
         if wait:
             self.wait_idle(timeout)
 
     def open_text(self, text) -> None:
         """Load a program given as text or as lines."""
-        self._ask("open", str(write_program(text, self.folder / "programs" / "program.ngc")))
+        self._request("open", str(write_program(text, self.folder / "programs" / "program.ngc")))
 
     def start(self, line=0) -> None:
         """Cycle start, or run from ``line``."""
-        self._ask("start_from", line)
+        self._request("start_from", line)
 
     def step(self) -> None:
         """Run the next block and pause."""
-        self._ask("step")
+        self._request("step")
 
     def pause(self) -> None:
         """Feed hold."""
-        self._ask("pause")
+        self._request("pause")
 
     def resume(self) -> None:
         """Go on after a pause."""
-        self._ask("resume")
+        self._request("resume")
 
     def abort(self) -> None:
         """Stop everything and wait until the axes stand."""
-        self._ask("abort")
+        self._request("abort")
 
     def estop(self) -> None:
         """Press the emergency stop; `enable` switches the machine on again, homed as it was."""
-        self._ask("estop")
+        self._request("estop")
 
     def enable(self) -> None:
         """Leave e-stop and switch the machine on."""
-        self._ask("enable")
+        self._request("enable")
 
     def manual(self) -> None:
         """Go to where the axes are jogged."""
-        self._ask("manual")
+        self._request("manual")
 
     def jog(self, axis, speed) -> None:
         """Jog an axis of `manual`, in units per second, until its speed is set to 0."""
-        self._ask("jog", axis, speed)
+        self._request("jog", axis, speed)
 
     def block_delete(self, on) -> None:
         """Let blocks that begin with / be skipped."""
-        self._ask("block_delete", on)
+        self._request("block_delete", on)
 
     def wait_idle(self, timeout=60.0) -> None:
         """Wait until the interpreter is done and the axes stand."""
-        self._ask("wait_idle", timeout, timeout=timeout)
+        self._request("wait_idle", timeout, timeout=timeout)
 
     def wait_for(self, condition, timeout=60.0) -> Status:
         """Wait until ``condition`` of the status holds, and return that status."""
@@ -123,32 +123,32 @@ class Machine(machine.Machine):
 
     def stat(self) -> Status:
         """Return the present status."""
-        values = self._ask("stat")
+        values = self._request("stat")
         return Status(**{**values, "modes": modes(*values["modes"])})
 
     def errors(self) -> list[Error]:
         """Return the operator errors since the last call."""
-        return [Error(*said) for said in self._ask("errors")]
+        return [Error(*said) for said in self._request("errors")]
 
     def messages(self) -> list[Message]:
         """Return the operator messages that are no errors, since the last call."""
-        return [Message(line, text) for text, line in self._ask("messages")]
+        return [Message(line, text) for text, line in self._request("messages")]
 
     def get(self, pin):
         """Return the value of a HAL pin, parameter or signal."""
-        return self._ask("get", pin)
+        return self._request("get", pin)
 
     def set(self, pin, value) -> None:
         """Set a HAL parameter, a pin that nothing drives, or the signal that a pin reads."""
-        self._ask("set", pin, value)
+        self._request("set", pin, value)
 
     def sample(self) -> None:
         """Start recording the motion."""
-        self._ask("sample")
+        self._request("sample")
 
     def samples(self):
         """Stop recording and return the motion."""
-        return self._samples(*self._ask("samples"))
+        return self._samples(*self._request("samples"))
 
     # Whole programs.
 

@@ -71,7 +71,7 @@ class OperatedScreen(RecordingScreen):
     def stat(self):
         """Return the status as plain values."""
         self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
-        stat = self.panel.look()
+        stat = self.panel.poll()
         return {
             "task_mode": TASK_MODES[stat.task_mode],
             "interp": INTERPRETER[stat.interp_state],

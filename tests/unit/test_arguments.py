@@ -13,7 +13,7 @@ from g12.tools.errors import UsageError
 from g12.tools.headless.machine import StartupError
 from g12.tools.machine import tables
 from g12.tools.preview.ended import explained_text
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 from support.sim_machines import ROOT, SIM
 from support.small_configs import MILL, TOOLS, write_config
 
@@ -132,7 +132,7 @@ def test_an_axis_that_the_machine_lacks_is_explained(files):
 
 def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
     said = "Unknown g code used: of G12, G13 and G7.1 this INI has"
-    see = f"see {CALL} check"
+    see = f"see {COMMAND} check"
     assert explained_text("Unknown g code used", files.ini) == f"{said} none; {see}"
     there = "G12.1 G13.1 G7.1 G12.4 G13.4"
     lathe = SIM / "lathe_mm.ini"

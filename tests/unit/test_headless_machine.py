@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.headless.machine import telling_lines
+from g12.tools.headless.machine import lines_to_last_error
 
 END = """\
 Shutting down and cleaning up LinuxCNC...
@@ -22,4 +22,4 @@ as well as in the output of the shell command 'dmesg' and in the terminal
     ],
 )
 def test_the_last_line_is_the_reason(log, last):
-    assert telling_lines(log)[-1] == last
+    assert lines_to_last_error(log)[-1] == last

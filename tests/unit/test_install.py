@@ -27,7 +27,7 @@ from g12.tools.install.config.ini_edit import (
 )
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.machine import files
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 from support.small_configs import MILL, config_of, content_of, with_lines, write_config
 
 MODULES = {f"python/{name}.py" for name in ("toplevel", "remap")}
@@ -672,7 +672,7 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
     assert install.main(words) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[-2:] == ["  G12    is answered with what it needs; nothing moves",
-                         f"to take it out again: {CALL} uninstall {ini}"]  # fmt: skip
+                         f"to take it out again: {COMMAND} uninstall {ini}"]  # fmt: skip
     python["package"] = tmp_path / "g12" / "python" / "g12"
     assert install.main(words) == 0
     assert capsys.readouterr().out == f"{ini}: haas: installed already, nothing to do\n"

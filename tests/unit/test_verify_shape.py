@@ -10,7 +10,7 @@ from shapely.ops import unary_union
 
 from g12.geometry.curve import Arc
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.executed_blocks import STATE, Block, read_line
+from g12.tools.preview.executed_blocks import STATE_NAMES, Block, read_line
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected.shapes import shape_path
 from g12.tools.verify.expected.words import SubCall, equal_steps
@@ -27,7 +27,7 @@ OUT = -9999
 
 def asked(shape, *entries, start=(40.0, 0.0, 5.0, 0.0, 0.0, 0.0), turned=0.0, **state):
     """Return a call; the tool stands at X40 Z5, in mm, G8, G94 and F150."""
-    found = {**dict.fromkeys(STATE, 0.0), **FOUND, **state}
+    found = {**dict.fromkeys(STATE_NAMES, 0.0), **FOUND, **state}
     block = Block(read_line(7, f"o<{shape}> call"), {}, (), (), entries, found, 0, 1)
     place, end = (*start, 0.0, 0.0, 0.0), (*start[:5], start[5] + turned, 0.0, 0.0, 0.0)
     move = Move("rapid", 7, 7, place, end, 0.0, "G94", 18, 3, (0.0,) * 9)

@@ -11,14 +11,14 @@ import pytest
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import (
-    LONGEST_LINE,
-    STATE,
+    LONGEST_REPORT_LINE,
+    STATE_NAMES,
     TAG,
     Block,
-    after,
-    before,
     blocks_in,
     read_line,
+    reports_after,
+    reports_before,
 )
 from g12.tools.preview.moves import Event
 from g12.tools.verify.expected.cylinder import SurfacePen
@@ -66,19 +66,19 @@ def test_control_lines_are_told(line):
 
 
 def test_only_expressions_are_asked_of_linuxcnc():
-    lines = list(before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
+    lines = list(reports_before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
     scaled = "#<@>=[#<@>*1000000]"
     asked = [line for line in lines if line.startswith("#<@>=")]
     assert asked == ["#<@>=[#1]", scaled, "#<@>=#2", scaled]
-    assert all(line.startswith("/") for line in before(read_line(4, "/G12 I#1")))
+    assert all(line.startswith("/") for line in reports_before(read_line(4, "/G12 I#1")))
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_no_call_of_a_shape_is_too_long_to_be_asked(shape):
     call = f"o<{shape}>call["
-    line = f"{call}{'1' * (LONGEST_LINE - len(call) - 1)}]"
+    line = f"{call}{'1' * (LONGEST_REPORT_LINE - len(call) - 1)}]"
     longest = read_line(1, line.replace("11", "+1"))
-    assert len(line) == LONGEST_LINE and longest.call == shape and not longest.too_long
+    assert len(line) == LONGEST_REPORT_LINE and longest.call == shape and not longest.too_long
 
 
 def told(texts, *lines):
@@ -94,8 +94,8 @@ def test_blocks_are_put_together_from_messages():
     (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 750000", end)
     assert (block.words, block.codes) == ({"I": 0.75, "Z": -1.0}, (12.0,))
     assert (block.at, block.end) == (0, 2)
-    assert block.state == dict(zip(STATE, (1, 2, 3, 5e-7, 1, 1, 0)))
-    assert (block.left["_x"], block.left["_z"]) == (4, 6)
+    assert block.state == dict(zip(STATE_NAMES, (1, 2, 3, 5e-7, 1, 1, 0)))
+    assert (block.state_after["_x"], block.state_after["_z"]) == (4, 6)
 
 
 def test_a_block_inside_a_call_leaves_the_call_its_own():
@@ -114,7 +114,7 @@ def test_a_block_that_ends_the_program_has_all_moves_that_follow():
 
 
 def test_after_tells_the_same_number():
-    *_, line = after(read_line(12, "G12 I1"))
+    *_, line = reports_after(read_line(12, "G12 I1"))
     assert line.startswith(f"(DEBUG,{TAG} end 12 ")
 
 
@@ -132,7 +132,7 @@ def block(line, number=1, at=1, end=2, **state):
         tuple(value for letter, value in values if letter == "G"),
         tuple(value for letter, value in values if letter == "M"),
         (),
-        {**dict.fromkeys(STATE, 0), **found, **state},
+        {**dict.fromkeys(STATE_NAMES, 0), **found, **state},
         at,
         end,
     )

@@ -2,7 +2,7 @@
 """Dynapath event text to a LinuxCNC program: circle mill events only. Knows text, not motion.
 
 An event is one line: ``N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$``, that is block
-number, event type, entries, end mark. A ``/`` behind a letter marks an incremental entry. Each
+number, event type, entries, end mark. A ``/`` after a letter marks an incremental entry. Each
 becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event. A control
 with auxiliary axes W and C writes I for W and H for C.
 

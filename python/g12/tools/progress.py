@@ -15,15 +15,15 @@ LINE_TICK = 5.0  # s, not on a terminal, where every line remains
 HIDDEN = "\r\033[K"
 
 Item = TypeVar("Item")
-Tell = Callable[[str], None]
+Report = Callable[[str], None]
 
 
 def silent(_text: str) -> None:
-    """Report nothing."""
+    """Discard a report."""
 
 
 @contextlib.contextmanager
-def working(text: str, clock: bool = False) -> Iterator[Tell]:
+def working(text: str, clock: bool = False) -> Iterator[Report]:
     """Report work on standard error if it takes long; yields the function that changes the text.
 
     An empty text is not printed. ``clock`` is for work that is known to take long: a terminal shows
@@ -40,10 +40,10 @@ def working(text: str, clock: bool = False) -> Iterator[Tell]:
         ticker.join()
 
 
-def counted(items: Sequence[Item], what: str, tell: Tell) -> Iterator[Item]:
+def counted(items: Sequence[Item], what: str, report: Report) -> Iterator[Item]:
     """Yield items, reporting each: ``what`` 37 of 300."""
     for number, item in enumerate(items, start=1):
-        tell(f"{what} {number} of {len(items)}")
+        report(f"{what} {number} of {len(items)}")
         yield item
 
 
@@ -68,9 +68,9 @@ def _tick_on_terminal(now: list[str], done: threading.Event, clock: bool) -> Non
 
 
 def _tick_in_lines(now: list[str], done: threading.Event, clock: bool) -> None:
-    said, pause = "", 0.0 if clock else LINE_TICK
+    printed, pause = "", 0.0 if clock else LINE_TICK
     while not done.wait(pause):
-        if now[0] != said:
-            said = now[0]
-            print(said, file=sys.stderr, flush=True)
+        if now[0] != printed:
+            printed = now[0]
+            print(printed, file=sys.stderr, flush=True)
         pause = LINE_TICK

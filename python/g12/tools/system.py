@@ -21,4 +21,4 @@ def call() -> str:
     return f"python3 {shlex.quote(sys.argv[0])}" if is_own else "python3 python/g12"
 
 
-CALL = call()
+COMMAND = call()

@@ -23,7 +23,7 @@ from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.progress import working
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 from g12.tools.units import UNITS, clock
 
 GOOD, FINDING, USAGE = 0, 1, 2
@@ -47,13 +47,13 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """End the program; ``message`` is the fault of its arguments."""
-        name = self.prog.replace(CALL, "g12")
+        name = self.prog.replace(COMMAND, "g12")
         self.exit(USAGE, f"{name}: {message} (usage: {self.prog} --help)\n")
 
 
 def typed(text: str) -> str:
     """Return a text with ``g12`` at the start of its lines as called on this system."""
-    return NAMED.sub(lambda name: name[1] + CALL, text)
+    return NAMED.sub(lambda name: name[1] + COMMAND, text)
 
 
 def number_above(least: float) -> Callable[[str], float]:

@@ -11,7 +11,7 @@ from importlib import import_module
 from types import ModuleType
 
 from g12 import __version__
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 
 FAILED = 1
 INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
@@ -36,7 +36,7 @@ COMMANDS = {  # each a module of this folder
 def usage() -> str:
     """Return the list of commands."""
     lines = (f"  {name:10} {summary}" for name, summary in COMMANDS.items())
-    return "\n".join([f"usage: {CALL} COMMAND [-h] …", "", *lines])
+    return "\n".join([f"usage: {COMMAND} COMMAND [-h] …", "", *lines])
 
 
 def main(arguments: list[str]) -> int:
@@ -69,7 +69,7 @@ def command(name: str, arguments: list[str]) -> int:
         print(f"g12 {__version__}")
         return 0
     if name not in COMMANDS:
-        print(f"g12: no command {name!r} (usage: {CALL} --help)", file=sys.stderr)
+        print(f"g12: no command {name!r} (usage: {COMMAND} --help)", file=sys.stderr)
         return 2
     return module_of(name).main(arguments)
 

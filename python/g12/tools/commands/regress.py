@@ -21,7 +21,7 @@ from g12.tools.commands.arguments import (
     number_from,
     one_line,
 )
-from g12.tools.progress import Tell, working
+from g12.tools.progress import Report, working
 from g12.tools.regress.record_and_check import RecordRequest, Terms, check, record
 from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result
 from g12.tools.regress.report import json_report, text_report
@@ -113,7 +113,7 @@ def main(arguments: list[str]) -> int:
     return GOOD if good else FINDING
 
 
-def _terms(options: argparse.Namespace, tell: Tell) -> Terms:
+def _terms(options: argparse.Namespace, tell: Report) -> Terms:
     pictures = getattr(options, "picture", None)
     values = (options.tolerance, options.feed_tolerance, options.timeout, options.jobs, pictures)
     return Terms(*values, tell)

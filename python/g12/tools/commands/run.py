@@ -30,7 +30,7 @@ from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.ended import explained_text
-from g12.tools.preview.moves import LINEAR, Error, Trace
+from g12.tools.preview.moves import IS_LENGTH, Error, Trace
 from g12.tools.preview.tracer import Parameters, Tools, TraceFailure, trace
 from g12.tools.progress import working
 from g12.tools.regress.recording_text import number_text
@@ -59,7 +59,7 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
     axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
     ends = (f"{axis}{number_text(round(result.position[at], DECIMALS))}" for axis, at in axes)
     unit = UNITS[name_of_unit(ini.mm)].name
-    units = unit if all(LINEAR[at] for _, at in axes) else f"{unit} and degrees"
+    units = unit if all(IS_LENGTH[at] for _, at in axes) else f"{unit} and degrees"
     what = "stopped at" if result.error else "ends at"
     yield f"{what} {' '.join(ends)} (machine position, {units})"
     yield f"{result.seconds:.3f} s in motion"

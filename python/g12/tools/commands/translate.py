@@ -25,7 +25,7 @@ from g12.tools.commands.arguments import GOOD, Parser, number_above, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.machine.stored_places import unset_places
+from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.listing import listing_of
@@ -141,7 +141,7 @@ def paste_text(lines: Sequence[str], control: str) -> str:
 
 def with_facts_of(control: Control, ini: Ini) -> Control:
     """Return a control with the machine's own section codes and its unset positions of G28, G30."""
-    unset = {"unset": unset_places(ini)}
+    unset = {"unset": unset_positions(ini)}
     reference = {**control.tables.get("reference", {}), **unset}
     control = replace(control, tables={**control.tables, "reference": reference})
     remaps = remap_lines(ini.all)

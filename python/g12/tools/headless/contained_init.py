@@ -31,7 +31,7 @@ PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 36, 38
 IPC_RMID = 0
 LINUXCNC_LOCK = "/tmp/linuxcnc.lock"
 LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of LinuxCNC's processes
-PATIENCE = 15.0  # s for LinuxCNC to clean up after itself
+CLEAN_UP = 15.0  # s that LinuxCNC may take for it
 
 
 def running() -> list[str]:
@@ -122,12 +122,12 @@ def children() -> list[int]:
 
 
 def wait_for(child: int) -> int:
-    """Wait for the command, or end it when standard input is closed; return its exit code."""
+    """Wait for the command, or end it when standard input closes; return its exit code."""
     descriptor = os.pidfd_open(child)
     ready, _, _ = select.select([descriptor, sys.stdin], [], [])
-    if descriptor not in ready and not select.select([descriptor], [], [], PATIENCE)[0]:
+    if descriptor not in ready and not select.select([descriptor], [], [], CLEAN_UP)[0]:
         os.kill(child, signal.SIGTERM)
-        select.select([descriptor], [], [], PATIENCE)
+        select.select([descriptor], [], [], CLEAN_UP)
     if not select.select([descriptor], [], [], 0)[0]:
         os.kill(child, signal.SIGKILL)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -135,9 +135,9 @@ def wait_for(child: int) -> int:
 
 def end_all(before: set[int]) -> None:
     """End every remaining process, and free the remaining shared memory."""
-    end = time.monotonic() + PATIENCE
-    while (left := children()) and time.monotonic() < end:
-        for number in left:
+    end = time.monotonic() + CLEAN_UP
+    while (remaining := children()) and time.monotonic() < end:
+        for number in remaining:
             try:
                 os.kill(number, signal.SIGKILL)
                 os.waitpid(number, 0)

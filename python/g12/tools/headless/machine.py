@@ -34,9 +34,9 @@ from g12.tools.preview.tracer import (
 )
 
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
-MARGIN = 10.0  # s that an answer may take beyond the requested timeout
+ANSWER_MARGIN = 10.0  # s that an answer may take beyond the requested timeout
 LOG_LINES = 60
-FAREWELL = "LinuxCNC terminated with an error"  # after it only where to read the same
+FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the same text
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"
@@ -142,7 +142,7 @@ class Machine:
 
     def feed_override(self, scale: float) -> None:
         """Set the feed override; 1 is 100 %, without the INI's limit."""
-        self._ask("feed_override", scale)
+        self._request("feed_override", scale)
 
     def run(self, program: Program, timeout: float = 600.0) -> Run:
         """Run a program file to its end or its error, resuming at M0 and M1.
@@ -151,7 +151,7 @@ class Machine:
         """
         copy = self.folder / "programs" / Path(program).name
         shutil.copyfile(program, copy)
-        answer = self._ask("run", str(copy), timeout, timeout=timeout)
+        answer = self._request("run", str(copy), timeout, timeout=timeout)
         samples, errors = self._samples(*answer["recorded"]), answer["errors"]
         moving = samples.time[samples.moving()]
         return Run(
@@ -227,8 +227,8 @@ class Machine:
 
     def _get_ready(self) -> None:
         try:
-            self._ask("enable")
-            self._ask("home")
+            self._request("enable")
+            self._request("home")
         except MachineError as error:
             raise self._startup_error(str(error)) from error
 
@@ -243,21 +243,21 @@ class Machine:
         raise self._startup_error("LinuxCNC did not come up in time")
 
     def _startup_error(self, what: str) -> StartupError:
-        last = "\n".join(telling_lines(self.log())[-LOG_LINES:])
+        last = "\n".join(lines_to_last_error(self.log())[-LOG_LINES:])
         return StartupError(f"{self.ini.path}: {what}; its log ends:\n{last}")
 
-    # Talking to the recording screen.
+    # Requests to the recording screen.
 
-    def _ask(self, name: str, *arguments, timeout: float = 60.0):
+    def _request(self, name: str, *arguments, timeout: float = 60.0):
         try:
             self._connection.send((name, *arguments))
         except OSError as error:
-            raise self._startup_error("LinuxCNC is gone") from error
+            raise self._startup_error("LinuxCNC ended") from error
         return self._receive(timeout)
 
     def _receive(self, timeout: float):
         try:
-            answered = self._connection.poll(timeout + MARGIN)
+            answered = self._connection.poll(timeout + ANSWER_MARGIN)
             worked, result = self._connection.recv() if answered else (False, ("timeout", "hangs"))
         except (EOFError, ConnectionError) as error:
             raise self._startup_error("LinuxCNC ended") from error
@@ -275,7 +275,7 @@ def position_pins(ini: Ini) -> dict[str, str]:
     return {letter: f"axis.{letter.lower()}.pos-cmd" for letter in ini.axes}
 
 
-def telling_lines(log: str) -> list[str]:
+def lines_to_last_error(log: str) -> list[str]:
     """Return the lines of LinuxCNC's log up to the last one that reports an error."""
     lines = log.partition(FAREWELL)[0].splitlines()
     while lines and lines[-1].startswith(SHUTTING_DOWN):

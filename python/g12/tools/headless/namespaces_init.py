@@ -86,7 +86,7 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
         if entry.name in files or entry.name.startswith(PRIVATE_IN_TMP):
             continue
         try:
-            place(entry, target, copy)
+            mirror_entry(entry, target, copy)
         except OSError:
             if os.path.lexists(
                 entry.path
@@ -96,7 +96,7 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
         write_text(os.path.join(directory, name), text)
 
 
-def place(entry: os.DirEntry, target: str, copy: bool) -> None:
+def mirror_entry(entry: os.DirEntry, target: str, copy: bool) -> None:
     """Make an entry of the real directory appear in the private one, unless it cannot be read."""
     if entry.is_symlink():
         os.symlink(os.readlink(entry.path), target)

@@ -10,10 +10,10 @@ from typing import Any
 
 import linuxcnc
 
-TICK = 0.01  # s, between looks at the status
+POLL_PERIOD = 0.01  # s
 QUIET = 1.0  # s without a joint homing: nothing to home, or done
-STANDING = 5.0  # s without motion while a joint is homing: longer than any home switch takes
-DECIMALS = 6  # of a joint's position
+STALLED = 5.0  # s without motion while a joint is homing: longer than any home switch takes
+JOINT_DECIMALS = 6  # of its position; less is noise
 GRACE = 5.0  # s, for the machine to react to a command
 ERRORS = (linuxcnc.NML_ERROR, linuxcnc.OPERATOR_ERROR)
 NOTICE = "motion.switchkins-type is deprecated"  # once a session, by a LinuxCNC with its own G12.1
@@ -43,40 +43,40 @@ class Panel:
         self._errors: list[tuple[str, int]] = []
         self._messages: list[tuple[str, int]] = []
 
-    # Looking.
+    # Status.
 
-    def look(self):
+    def poll(self):
         """Return LinuxCNC's present status and collect its messages to the operator."""
         self._stat.poll()
-        said = self._channel.poll()
-        while said:
-            kind, text = said
-            wrong = kind in ERRORS and NOTICE not in text
-            heard = self._errors if wrong else self._messages
-            heard.append((text.strip(), self._stat.read_line))
-            said = self._channel.poll()
+        report = self._channel.poll()
+        while report:
+            kind, text = report
+            is_error = kind in ERRORS and NOTICE not in text
+            reports = self._errors if is_error else self._messages
+            reports.append((text.strip(), self._stat.read_line))
+            report = self._channel.poll()
         return self._stat
 
     def errors(self) -> list[tuple[str, int]]:
         """Return the errors since the last call: text and the line read at that time."""
-        self.look()
-        said, self._errors = self._errors, []
-        return said
+        self.poll()
+        errors, self._errors = self._errors, []
+        return errors
 
     def messages(self) -> list[tuple[str, int]]:
         """Return the messages since the last call: text and the line read at that time."""
-        self.look()
-        said, self._messages = self._messages, []
-        return said
+        self.poll()
+        messages, self._messages = self._messages, []
+        return messages
 
     def wait(self, condition: Callable[[Any], bool], timeout: float, what: str) -> None:
         """Wait up to ``timeout`` seconds until ``condition`` of the status holds."""
         end = time.monotonic() + timeout
-        while not condition(self.look()):
+        while not condition(self.poll()):
             self._tick()
             if time.monotonic() > end:
                 raise PanelTimeout(f"no {what} within {timeout:g} s{self._complaints()}")
-            time.sleep(TICK)
+            time.sleep(POLL_PERIOD)
 
     def _complaints(self) -> str:
         return "".join(f"; {text}" for text, _ in self._errors)
@@ -95,7 +95,7 @@ class Panel:
         self._mode(linuxcnc.MODE_MANUAL)
         self._do(self._command.teleop_enable, 0)
         self._home(-1, timeout)
-        for joint in range(self.look().joints):
+        for joint in range(self.poll().joints):
             if not self._stat.homed[joint]:
                 self._home(joint, timeout)
         self.wait(self._homed, GRACE, "homing of every joint")
@@ -108,26 +108,22 @@ class Panel:
 
         def over(stat) -> bool:
             nonlocal homing_at, moved_at, last
-            now, place = time.monotonic(), [round(at, DECIMALS) for at in stat.joint_position]
-            if place != last:
-                last, moved_at = place, now
+            now = time.monotonic()
+            positions = [round(position, JOINT_DECIMALS) for position in stat.joint_position]
+            if positions != last:
+                last, moved_at = positions, now
             if any(one["homing"] for one in stat.joint[: stat.joints]):
                 homing_at = now
-                if now - moved_at > STANDING:
-                    raise PanelError(f"homing stands still at {self._at_home(stat)}")
+                if now - moved_at > STALLED:
+                    raise PanelError(f"homing stands still at {self._joint_positions(stat)}")
             return self._homed(stat) or now - homing_at > QUIET
 
         self.wait(over, timeout, "end of homing")
 
-    def _at_home(self, stat) -> str:
-        places = zip(stat.joint_position[: stat.joints], stat.homed)
-        return (
-            ", ".join(
-                f"joint {number} {at:g}{' (homed)' * bool(homed)}"
-                for number, (at, homed) in enumerate(places)
-            )
-            + self._complaints()
-        )
+    def _joint_positions(self, stat) -> str:
+        joints = enumerate(zip(stat.joint_position[: stat.joints], stat.homed))
+        texts = (f"joint {n} {at:g}{' (homed)' * bool(homed)}" for n, (at, homed) in joints)
+        return ", ".join(texts) + self._complaints()
 
     def _homed(self, stat) -> bool:
         return all(stat.homed[: stat.joints])
@@ -151,9 +147,10 @@ class Panel:
 
     def finish(self, timeout: float) -> None:
         """Wait until the program is done, resuming at program stops (M0, M1)."""
-        self.wait(lambda stat: self.is_idle(stat) or self._pass_stop(stat), timeout, "end")
+        self.wait(lambda stat: self.is_idle(stat) or self._resume(stat), timeout, "end")
 
-    def _pass_stop(self, stat) -> bool:
+    def _resume(self, stat) -> bool:
+        """Resume at a program stop; return False: the program has not ended."""
         if stat.interp_state == linuxcnc.INTERP_PAUSED:
             self._do(self._command.auto, linuxcnc.AUTO_RESUME)
         return False
@@ -165,13 +162,12 @@ class Panel:
         return done and stat.inpos and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
 
     def _mode(self, mode: int) -> None:
-        if self.look().task_mode != mode:
+        if self.poll().task_mode != mode:
             self._do(self._command.mode, mode)
             self.wait(lambda stat: stat.task_mode == mode, GRACE, f"{TASK_MODES[mode]} mode")
 
     def _do(self, action: Callable, *arguments) -> None:
-        """Send a command and wait until LinuxCNC has taken it."""
+        """Send a command and wait until LinuxCNC has accepted it."""
         action(*arguments)
         serial = self._command.serial
-        taken = lambda stat: stat.echo_serial_number >= serial  # noqa: E731
-        self.wait(taken, GRACE, "answer from LinuxCNC")
+        self.wait(lambda stat: stat.echo_serial_number >= serial, GRACE, "answer from LinuxCNC")

@@ -18,7 +18,7 @@ from g12.tools.headless.operator_panel import Panel, PanelError, PanelTimeout
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
 DRAIN = 0.05  # s between reads of it
 THREAD = "servo-thread"
-MOTION = (
+MOTION_PINS = (
     ("f", "motion.current-vel"),
     ("f", "motion.requested-vel"),
     ("s", "motion.program-line"),
@@ -30,7 +30,7 @@ class Sampler:
     """Records positions, by their pins, and motion at the servo rate, into rows of doubles."""
 
     def __init__(self, positions: list[str]) -> None:
-        pins = [("f", pin) for pin in positions] + list(MOTION)
+        pins = [("f", pin) for pin in positions] + list(MOTION_PINS)
         kinds = "".join(kind for kind, _ in pins)
         self._component = hal.component("g12-recording-screen")
         self._component.ready()
@@ -94,7 +94,7 @@ class RecordingScreen:
         self.sampler.start()
         panel.start()
         panel.finish(timeout)
-        recorded, stat = self.sampler.stop(), panel.look()
+        recorded, stat = self.sampler.stop(), panel.poll()
         return {
             "recorded": recorded,
             "position": tuple(stat.position),

@@ -31,14 +31,14 @@ def program_to_run(ini: Ini, named: list[str]) -> Path | None:
     return ini.file("DISPLAY", "OPEN_FILE")
 
 
-def print_said(panel: Panel, program: OpenedProgram | None) -> bool:
-    """Print LinuxCNC's messages; return whether one is an error."""
+def print_reports(panel: Panel, program: OpenedProgram | None) -> bool:
+    """Print LinuxCNC's messages and errors; return whether there is an error."""
     for text, _ in panel.messages():
         print(f"message: {text}", flush=True)
     errors = panel.errors()
     for text, _ in errors:
-        told = program.in_source(text) if program else text
-        print(f"error: {told}", file=sys.stderr, flush=True)
+        shown = program.in_source(text) if program else text
+        print(f"error: {shown}", file=sys.stderr, flush=True)
     if errors and program and program.note:
         print(program.note, file=sys.stderr, flush=True)
     return bool(errors)
@@ -49,11 +49,11 @@ def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
     panel.enable()
     panel.home()
     if program is None:
-        return not print_said(panel, None)
+        return not print_reports(panel, None)
     panel.open(str(program.path))
     panel.start()
     panel.finish(LONGEST_PROGRAM)
-    return not print_said(panel, program)
+    return not print_reports(panel, program)
 
 
 def main(arguments: list[str]) -> int:

@@ -15,7 +15,7 @@ from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy,
 from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 
 SOME = 3  # missing files are named
 BEFORE = {
@@ -89,7 +89,7 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
             yield "  fill in a form on its page, Create Feature, Finalize: the program is open"
         else:
             yield f"  open a .{FILTERED} program of {features.PROGRAMS[feature]}"
-    yield f"to take it out again: {CALL} uninstall {ini}"
+    yield f"to take it out again: {COMMAND} uninstall {ini}"
 
 
 def readable_config(text: IniText) -> Config:

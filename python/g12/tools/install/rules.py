@@ -23,7 +23,7 @@ from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import spindle_c_findings
-from g12.tools.system import CALL, PROGRAM
+from g12.tools.system import COMMAND, PROGRAM
 from g12.tools.translate.blocks.control import ControlError, read_control
 
 OLDEST = (2, 9)
@@ -165,7 +165,7 @@ def codes_missing(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "no-codes",
             "no code of the package is set up here",
-            f"{CALL} install INI --with haas (or another; see install --help)",
+            f"{COMMAND} install INI --with haas (or another; see install --help)",
         )
 
 

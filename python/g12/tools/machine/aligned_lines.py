@@ -38,7 +38,7 @@ def _key(row: bytes) -> bytes:
 
 def _anchors(before: Sequence[bytes], after: Sequence[bytes]) -> list[tuple[int, int]]:
     """Return the indices of lines that occur once in both texts, in the order of both."""
-    return unique_lcs([key or at for at, key in enumerate(before)], after)  # not empty lines
+    return unique_lcs([key or row for row, key in enumerate(before)], after)  # not empty lines
 
 
 def _lines_of_stretch(
@@ -48,11 +48,11 @@ def _lines_of_stretch(
     head = list(_same(stretch, written, before, after))
     stretch, written = stretch[len(head) :], written[len(head) :]
     tail = list(_same(stretch[::-1], written[::-1], before, after))[::-1]
-    left, count = stretch[: len(stretch) - len(tail)], len(written) - len(tail)
-    if len(left) == count:
-        middle = list(left)
-    elif len(left) <= 1:
-        middle = [left[0] if left else max(0, left.start - 1)] * count
+    changed, count = stretch[: len(stretch) - len(tail)], len(written) - len(tail)
+    if len(changed) == count:
+        middle = list(changed)
+    elif len(changed) <= 1:
+        middle = [changed[0] if changed else max(0, changed.start - 1)] * count
     elif count == 0:
         middle = []
     else:
@@ -64,7 +64,7 @@ def _same(
     stretch: range, written: range, before: Sequence[bytes], after: Sequence[bytes]
 ) -> Iterator[int]:
     """Yield the equal lines at the start."""
-    for at, there in zip(stretch, written):
-        if before[at] != after[there]:
+    for old, new in zip(stretch, written):
+        if before[old] != after[new]:
             return
-        yield at
+        yield old

@@ -38,7 +38,7 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
 
 def write(path: Path, content: bytes) -> None:
     """Write a file atomically; mode and owner stay."""
-    path = path.resolve()  # keeps a symbolic link
+    path = path.resolve()  # replaces a link's target, not the link
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:
         with os.fdopen(handle, "wb") as file:
@@ -91,27 +91,27 @@ def write_all(changes: Mapping[Path, bytes]) -> None:
 
 
 def backups_of(path: Path) -> list[Path]:
-    """Return the kept old versions of a file."""
+    """Return the backups of a file."""
     return sorted(path.parent.glob(f"{path.name}{BACKUP}*"))
 
 
 def back_up(path: Path) -> Path:
     """Copy the file to a backup, and return the backup's path."""
-    content = path.read_bytes()
-    for kept in backups_of(path):
-        if kept.read_bytes() == content:
-            return kept
-    number = len(backups_of(path))
-    kept = path.with_name(f"{path.name}{BACKUP}{f'.{number + 1}' if number else ''}")
-    shutil.copy2(path, kept)
-    take_after(kept, path)
-    return kept
+    content, backups = path.read_bytes(), backups_of(path)
+    for backup in backups:
+        if backup.read_bytes() == content:
+            return backup
+    number = f".{len(backups) + 1}" if backups else ""
+    backup = path.with_name(f"{path.name}{BACKUP}{number}")
+    shutil.copy2(path, backup)
+    take_after(backup, path)
+    return backup
 
 
 def drop_backup(path: Path) -> list[Path]:
-    """Delete the backup that equals the file again; return the remaining ones."""
+    """Delete the backup that equals the file; return the remaining ones."""
     content = path.read_bytes()
-    for kept in backups_of(path):
-        if kept.read_bytes() == content:
-            kept.unlink()
+    for backup in backups_of(path):
+        if backup.read_bytes() == content:
+            backup.unlink()
     return backups_of(path)

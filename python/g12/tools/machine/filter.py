@@ -20,7 +20,7 @@ from g12.tools.machine.aligned_lines import aligned_lines
 from g12.tools.machine.ini import Ini
 
 MARK = re.compile(rb" \(line ([0-9]+)\)\s*$|^\(line ([0-9]+)\) ")
-NUMBER = re.compile(r"[0-9]+")
+LINE_NUMBER = re.compile(r"[0-9]+")
 NAMED_LINES = re.compile(r"\blines? [0-9]+\b(?:(?:, | and | to )[0-9]+\b(?![.°]?[0-9]| mm| in\b))*")
 PROGRESS = "FILTER_PROGRESS="
 OWN_ERROR = re.compile(r"g12 \w+: ")
@@ -69,11 +69,11 @@ class OpenedProgram:
         """Return a text about the program with the user's file name and line numbers."""
         if not self.is_filtered:
             return text
-        place = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
+        location = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
         line = lambda match: f":{self.source_line(int(match[1]))}:" if match[1] else ""  # noqa: E731
         number = lambda match: str(self.source_line(int(match[0])))  # noqa: E731
-        text = NAMED_LINES.sub(lambda match: NUMBER.sub(number, match[0]), text)
-        return place.sub(lambda match: f"{self.name}{line(match)}", text)
+        text = NAMED_LINES.sub(lambda match: LINE_NUMBER.sub(number, match[0]), text)
+        return location.sub(lambda match: f"{self.name}{line(match)}", text)
 
 
 def filter_for(program: Path, ini: Ini) -> str | None:
@@ -118,8 +118,8 @@ def filtered(program: Path, command: str, ini: Ini) -> bytes:
 
 def filter_error(text: str, command: str, program: Path) -> str:
     """Return the last line of a filter's error output."""
-    said = [line for line in text.splitlines() if line.strip() and not line.startswith(PROGRESS)]
-    last = OWN_ERROR.sub("", said[-1].strip()) if said else f"the filter failed: {command}"
+    lines = [line for line in text.splitlines() if line.strip() and not line.startswith(PROGRESS)]
+    last = OWN_ERROR.sub("", lines[-1].strip()) if lines else f"the filter failed: {command}"
     return last.replace(str(program.absolute()), str(program))
 
 

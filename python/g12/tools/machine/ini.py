@@ -28,7 +28,7 @@ from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 
 NS_PER_S = 1e9
-SECTIONS = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)  # of a machine's INI
+MACHINE_SECTION = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)
 LONGEST_PART = 250
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
@@ -61,7 +61,7 @@ class Ini:
     @property
     def mm(self) -> float:
         """The length of a machine unit in mm."""
-        return self._asked(lambda: millimetres_of(self.get))
+        return self._valid(lambda: millimetres_of(self.get))
 
     @property
     def axes(self) -> str:
@@ -71,12 +71,12 @@ class Ini:
     @property
     def axis_limits(self) -> dict[str, Axis]:
         """The limits of each of the machine's axes, in machine units (degrees for A, B, C)."""
-        return self._asked(lambda: axes_of(self.get, self.axes))
+        return self._valid(lambda: axes_of(self.get, self.axes))
 
     @property
     def settings(self) -> Settings:
         """The settings of section [G12]."""
-        return self._asked(lambda: settings_from_lines(self.lines))
+        return self._valid(lambda: settings_from_lines(self.lines))
 
     @property
     def servo_period(self) -> float:
@@ -91,9 +91,9 @@ class Ini:
         except IniError:
             return 0.0
 
-    def _asked(self, question: Callable[[], T]) -> T:
+    def _valid(self, read: Callable[[], T]) -> T:
         try:
-            return question()
+            return read()
         except Refusal as refusal:
             raise IniError(f"{self.path}: {refusal}") from None
 
@@ -107,7 +107,7 @@ class Ini:
 
     def number(self, section: str, key: str, default: float) -> float:
         """Return the number at the start of a value (``20 # mm`` is 20)."""
-        return self._asked(lambda: number_in(self.get, section, key, default))
+        return self._valid(lambda: number_in(self.get, section, key, default))
 
     def file(self, section: str, key: str) -> Path | None:
         """Return a file name of the INI as an absolute path."""
@@ -150,7 +150,7 @@ def read_ini(path: str | os.PathLike) -> Ini:
 def read_machine_ini(path: Path) -> Ini:
     """Return the INI of a machine if it is one."""
     ini = read_ini(existing(path))
-    if not SECTIONS.search(ini.text):
+    if not MACHINE_SECTION.search(ini.text):
         raise UsageError(f"{path}: is not a machine INI: no section [RS274NGC] or [TRAJ]")
     return ini
 

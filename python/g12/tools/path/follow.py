@@ -17,7 +17,7 @@ from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Y, plane_axes
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track
-from g12.tools.preview.moves import LINEAR, Move
+from g12.tools.preview.moves import IS_LENGTH, Move
 
 SLACK = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
 
@@ -156,7 +156,7 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
     positions = np.zeros((len(samples.time), len(AXES)))
     for letter, values in samples.axes.items():
         index = AXES.index(letter)
-        positions[:, index] = values * (unit if LINEAR[index] else 1.0)
+        positions[:, index] = values * (unit if IS_LENGTH[index] else 1.0)
     return positions
 
 

@@ -15,7 +15,7 @@ import numpy as np
 from g12.machine_ini import AXES
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import CHORD_ERROR, Part
-from g12.tools.preview.moves import LINEAR, Move, Trace
+from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 
 UNLIMITED = math.inf
 STILL = 1e-8  # mm or degrees: LinuxCNC ignores shorter moves (CART_FUZZ)
@@ -118,7 +118,7 @@ class Track:
 
 def limits_of(ini: Ini) -> Limits:
     """Return the greatest speeds that an INI allows."""
-    known, scale = ini.axis_limits, [ini.mm if linear else 1.0 for linear in LINEAR]
+    known, scale = ini.axis_limits, [ini.mm if linear else 1.0 for linear in IS_LENGTH]
     axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXES]
     path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * ini.mm
     return Limits(tuple(map(float.__mul__, axes, scale)), path)

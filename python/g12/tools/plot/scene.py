@@ -13,7 +13,7 @@ from pathlib import Path
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import x0_text
 from g12.tools.path.track import Track
-from g12.tools.preview.executed_blocks import COMMENT
+from g12.tools.preview.executed_blocks import COMMENTS
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
 from g12.tools.verify.proof import Proof
@@ -106,7 +106,7 @@ def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
 def heading(program: Path) -> str:
     """Return the first comment on a line of its own before any motion, other than a licence."""
     lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_LINES]
-    still = takewhile(lambda line: not MOTION.search(COMMENT.sub("", line)), lines)
+    still = takewhile(lambda line: not MOTION.search(COMMENTS.sub("", line)), lines)
     found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))
     text = next((text.strip() for text in found if "SPDX" not in text), "")
     return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")

@@ -10,12 +10,12 @@ from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Error, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, trace
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 
 UNKNOWN_CODE = "Unknown g code used"
 OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
-POLAR = ("G12.1", "G13.1")
-SAID = re.compile(r"^g12: (.*)$", re.MULTILINE)  # the package's message when LinuxCNC starts
+POLAR_CODES = ("G12.1", "G13.1")
+PACKAGE_MESSAGE = re.compile(r"^g12: (.*)$", re.MULTILINE)  # printed at its start
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
@@ -49,17 +49,17 @@ def explained_text(text: str, ini: Path) -> str:
     """Return the interpreter's error, with what the machine has instead of the unknown code."""
     machine = read_ini(ini)
     codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
-    wanted = NO_AXIS.match(text)
-    if wanted and wanted[1].upper() not in machine.axes:
+    word = NO_AXIS.match(text)
+    if word and word[1].upper() not in machine.axes:
         return f"{text}: this INI's machine has axes {' '.join(machine.axes)}"
     if text == UNKNOWN_CODE:
-        there = " ".join(codes) or "none"
-        return f"{text}: of G12, G13 and G7.1 this INI has {there}; see {CALL} check"
-    said = said_at_start(ini) if set(POLAR) & set(codes) else ""
-    return f"{text}: {said}" if said else text
+        present = " ".join(codes) or "none"
+        return f"{text}: of G12, G13 and G7.1 this INI has {present}; see {COMMAND} check"
+    errors = errors_at_start(ini) if set(POLAR_CODES) & set(codes) else ""
+    return f"{text}: {errors}" if errors else text
 
 
-def said_at_start(ini: Path) -> str:
+def errors_at_start(ini: Path) -> str:
     """Return the package's errors when LinuxCNC starts with an INI."""
     with Tracer(ini) as tracer:
-        return "; ".join(SAID.findall(tracer.printed))
+        return "; ".join(PACKAGE_MESSAGE.findall(tracer.printed))

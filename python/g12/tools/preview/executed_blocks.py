@@ -20,26 +20,26 @@ from g12.tools.preview.tracer import Parameters, Tracer
 TAG = "g12-verify"
 CLAMP = "clamp"  # printed by the sub of a clamp code; the first word of its event
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
-LONGEST_LINE = 252
+LONGEST_REPORT_LINE = 252  # characters
 ENLARGED = 1_000_000  # factor: LinuxCNC 2.9 prints values below 0.0001 as 0
-PLACES = ("_x", "_y", "_z", "_c")
-STATE = (
-    *(*PLACES, "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
+POSITION_NAMES = ("_x", "_y", "_z", "_c")
+STATE_NAMES = (
+    *(*POSITION_NAMES, "_metric", "_absolute", "_lathe_diameter_mode", "_feed"),
     *("_units_per_rev", "_rpm", "_motion_mode", "_plane", "_ijk_absolute_mode", "_selected_tool"),
 )
-FORGOTTEN = 1.0  # F after the preview changed its units; see ``tracer``
-PLACES_ENLARGED = " ".join(f"#<@{name}>=[#<{name}>*{ENLARGED}]" for name in PLACES)
+FEED_UNKNOWN = 1.0  # F after the preview changed its units; see ``tracer``
+POSITIONS_ENLARGED = " ".join(f"#<@{name}>=[#<{name}>*{ENLARGED}]" for name in POSITION_NAMES)
 STATE_TEXT = " ".join(
     (
-        "%.3f" + " ".join(f"#<@{name}>" for name in PLACES),
-        "%.9f" + " ".join(f"#<{name}>" for name in STATE[len(PLACES) :]),
+        "%.3f" + " ".join(f"#<@{name}>" for name in POSITION_NAMES),
+        "%.9f" + " ".join(f"#<{name}>" for name in STATE_NAMES[len(POSITION_NAMES) :]),
     )
 )
-NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
-COMMENT = re.compile(r"\([^)]*\)|;.*")
-FUNCTION = re.compile(r"[a-z]+(?=\[)")
+UNSIGNED_NUMBER = re.compile(r"[0-9]*\.?[0-9]*")
+COMMENTS = re.compile(r"\([^)]*\)|;.*")
+FUNCTION_NAME = re.compile(r"[a-z]+(?=\[)")
 LETTER_O = re.compile(r"/?(n[0-9.]+)?o")
-CALL = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([^<]+?))call")
+SUB_CALL = re.compile(r"/?(?:n[0-9.]+)?o(?:<([^>]+)>|([^<]+?))call")
 
 
 class Text(NamedTuple):
@@ -61,8 +61,8 @@ class Text(NamedTuple):
     @property
     def too_long(self) -> bool:
         """Whether the line that evaluates one of its values is longer than LinuxCNC reads."""
-        asked = (value for _, value in self.words if not is_number(value))
-        return any(len(assignment(self, value)) > LONGEST_LINE for value in asked)
+        expressions = (value for _, value in self.words if not is_number(value))
+        return any(len(assignment(self, text)) > LONGEST_REPORT_LINE for text in expressions)
 
     @property
     def hides_code(self) -> bool:
@@ -74,11 +74,12 @@ class Text(NamedTuple):
 class Block:
     """One execution of a block.
 
-    ``words`` maps letters to values in program units (G and M words aside, which are ``codes``
-    and ``m_codes``; the arguments of a call are ``arguments``), ``state`` is the state before the
-    block: ``_x`` …, ``left`` the state after it, empty where the program ended in it. ``at`` is the
-    index of its first move and ``end`` that of the first move after it. ``events`` are those since
-    the end of the block before, its own included, which are ``own_events``.
+    ``words`` maps letters to values in program units, without G and M words, which are ``codes``
+    and ``m_codes``, and without the arguments of a call, ``arguments``. ``state`` maps the names
+    of `STATE_NAMES` to their values before the block, ``state_after`` to those after it; that is
+    empty where the program ended in the block. ``at`` is the index of its first move and ``end``
+    that of the first move after it. ``events`` are those since the end of the previous block,
+    including its own, ``own_events``.
     """
 
     text: Text
@@ -89,12 +90,12 @@ class Block:
     state: dict[str, float]
     at: int
     end: int
-    left: dict[str, float] = field(default_factory=dict)
+    state_after: dict[str, float] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
     own_events: tuple[Event, ...] = ()
 
 
-Wanted = Callable[[Text], bool]
+Selection = Callable[[Text], bool]
 
 
 def is_number(text: str) -> bool:
@@ -104,7 +105,7 @@ def is_number(text: str) -> bool:
 
 def read_line(number: int, line: str) -> Text:
     """Return a line of G code as text; LinuxCNC refuses what cannot be read."""
-    code = re.sub(r"\s", "", COMMENT.sub("", line)).lower()
+    code = re.sub(r"\s", "", COMMENTS.sub("", line)).lower()
     deleted = code.startswith("/")
     if LETTER_O.match(code):
         return _control(number, code, deleted)
@@ -122,7 +123,7 @@ def read_line(number: int, line: str) -> Text:
 
 
 def _control(number: int, code: str, deleted: bool) -> Text:
-    called = CALL.match(code)
+    called = SUB_CALL.match(code)
     if not called:
         return Text(number, (), (), deleted, control=True)
     words, at = [], called.end()
@@ -149,11 +150,11 @@ def _value_end(code: str, at: int) -> int:
         return code.find(">", at) + 1 or len(code)
     if code[at] == "#":
         return _value_end(code, at + 1)
-    function = FUNCTION.match(code, at)
+    function = FUNCTION_NAME.match(code, at)
     if function:
         end = _bracket_end(code, function.end())
         return _bracket_end(code, end + 1) if code[end : end + 2] == "/[" else end
-    return NUMBER.match(code, at).end()
+    return UNSIGNED_NUMBER.match(code, at).end()
 
 
 def _bracket_end(code: str, at: int) -> int:
@@ -178,18 +179,18 @@ def lines_as_written(path: Path) -> list[str]:
 
 
 def executed(
-    tracer: Tracer, program: Path, trace: Trace, wanted: Wanted, parameters: Parameters = None
+    tracer: Tracer, program: Path, trace: Trace, selected: Selection, parameters: Parameters = None
 ) -> list[Block]:
-    """Return every execution of the blocks wanted, in order; ``trace`` is the program's."""
+    """Return every execution of the selected blocks, in order; ``trace`` is the program's."""
     texts = read_lines(program)
-    lines = watched(program, texts, wanted)
+    lines = with_reports(program, texts, selected)
     copy = tracer.trace_text(lines, parameters=parameters, watch_offsets=True)
     if len(copy.moves) != len(trace.moves):
-        raise moves_otherwise(program)
+        raise moves_differ(program)
     return blocks_in(copy, texts)
 
 
-def moves_otherwise(program: Path) -> ProgramError:
+def moves_differ(program: Path) -> ProgramError:
     """Return the error for a program whose copy behaves differently."""
     return ProgramError(
         f"{program}: moves otherwise where lines are put between its own:"
@@ -197,24 +198,26 @@ def moves_otherwise(program: Path) -> ProgramError:
     )
 
 
-def watched(path: Path, texts: Sequence[Text], wanted: Wanted, skip: int = 0) -> list[str]:
-    """Return the lines of a file with the report lines of the blocks wanted; see ``before``."""
+def with_reports(
+    path: Path, texts: Sequence[Text], selected: Selection, skip: int = 0
+) -> list[str]:
+    """Return a file's lines, with reports around the selected blocks; see `reports_before`."""
     groups = (
-        (*before(text, skip), line, *after(text, skip))
-        if wanted(text) and not text.too_long
+        (*reports_before(text, skip), line, *reports_after(text, skip))
+        if selected(text) and not text.too_long
         else (line,)
         for text, line in zip(texts, lines_as_written(path))
     )
     return [line for group in groups for line in group]
 
 
-def before(text: Text, skip: int = 0) -> Iterator[str]:
+def reports_before(text: Text, skip: int = 0) -> Iterator[str]:
     """Return the lines that report a block's start, the state before it and its words.
 
     ``skip`` is the number of lines of other files that precede it in the count of texts.
     """
     slash = "/" if text.deleted else ""
-    yield f"{slash}{PLACES_ENLARGED}"
+    yield f"{slash}{POSITIONS_ENLARGED}"
     yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} {STATE_TEXT})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
@@ -228,10 +231,10 @@ def assignment(text: Text, value: str) -> str:
     return f"{'/' if text.deleted else ''}{VALUE}={value}"
 
 
-def after(text: Text, skip: int = 0) -> Iterator[str]:
+def reports_after(text: Text, skip: int = 0) -> Iterator[str]:
     """Return the lines that report a block's end, and the state after it."""
     slash = "/" if text.deleted else ""
-    yield f"{slash}{PLACES_ENLARGED}"
+    yield f"{slash}{POSITIONS_ENLARGED}"
     yield f"{slash}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
 
 
@@ -267,8 +270,8 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
 
 def reported_state(values: Sequence[float]) -> dict[str, float]:
     """Return the state by names, from the values that ``STATE_TEXT`` prints."""
-    places, others = values[: len(PLACES)], values[len(PLACES) :]
-    return dict(zip(STATE, (*(value / ENLARGED for value in places), *others)))
+    position, others = values[: len(POSITION_NAMES)], values[len(POSITION_NAMES) :]
+    return dict(zip(STATE_NAMES, (*(value / ENLARGED for value in position), *others)))
 
 
 class _Opened(NamedTuple):
@@ -292,7 +295,7 @@ def _taken(opened: list[_Opened], text: Text) -> _Opened | None:
 
 
 def _block(
-    opened: _Opened, end: int, left: dict[str, float], events: Sequence[Event], done: int
+    opened: _Opened, end: int, state_after: dict[str, float], events: Sequence[Event], done: int
 ) -> Block:
     """Return an executed block; the first ``done`` events came before the last block's end."""
     text, values = opened.text, opened.values
@@ -301,7 +304,7 @@ def _block(
         for index, (letter, value) in enumerate(text.words)
     ]
     g, m, entries = (
-        tuple(value for letter, value in words if letter == wanted) for wanted in ("G", "M", "")
+        tuple(value for letter, value in words if letter == kind) for kind in ("G", "M", "")
     )
     return Block(
         text,
@@ -312,7 +315,7 @@ def _block(
         opened.state,
         opened.at,
         end,
-        left,
+        state_after,
         tuple(events[min(done, opened.events) :]),
         tuple(events[opened.events :]),
     )

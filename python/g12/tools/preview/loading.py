@@ -11,15 +11,15 @@ from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
 
 VERSION = "import linuxcnc; print(linuxcnc.version)"
-FAILED = "Python plugin configure() failed"
-PYTHON_LINE = re.compile(r'File "([^"]+)", line (\d+)')
+CONFIGURE_FAILED = "Python plugin configure() failed"
+TRACEBACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 
 
 @cache
 def linuxcnc_version() -> str:
     """Return the version of the LinuxCNC on this computer, empty if there is none."""
-    asked = subprocess.run([PYTHON, "-c", VERSION], capture_output=True, text=True, check=False)
-    return asked.stdout.strip()
+    done = subprocess.run([PYTHON, "-c", VERSION], capture_output=True, text=True, check=False)
+    return done.stdout.strip()
 
 
 def load_failure(ini: Ini) -> str | None:
@@ -33,10 +33,10 @@ def load_failure(ini: Ini) -> str | None:
 
 def python_error(printed: str) -> str | None:
     """Return the exception that loading printed, with file and line; None if Python loaded."""
-    before, failed, _ = printed.partition(FAILED)
+    before, failed, _ = printed.partition(CONFIGURE_FAILED)
     if not failed:
         return None
     lines = [line.strip() for line in before.splitlines() if line.strip()]
-    places = [place for line in lines for place in PYTHON_LINE.findall(line)]
-    where = f" ({Path(places[-1][0]).name}:{places[-1][1]})" if places else ""
-    return f"{lines[-1]}{where}" if lines else failed
+    frames = [frame for line in lines for frame in TRACEBACK_LINE.findall(line)]
+    location = f" ({Path(frames[-1][0]).name}:{frames[-1][1]})" if frames else ""
+    return f"{lines[-1]}{location}" if lines else failed

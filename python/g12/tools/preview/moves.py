@@ -16,9 +16,9 @@ from typing import NamedTuple
 
 from g12.machine_ini import AXES
 
-NO_G92 = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
-LINEAR = tuple(letter in "XYZUVW" for letter in AXES)  # for each of AXES: whether it is a length
-SAME_POINT = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
+G92_OFF_CODE = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
+IS_LENGTH = tuple(letter in "XYZUVW" for letter in AXES)  # for each of AXES: whether it is a length
+CLOSED_ARC = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
 
 Position = tuple  # nine floats in the order of AXES: mm, degrees for A, B, C
@@ -131,7 +131,7 @@ class Move(NamedTuple):
         end_one, end_two, _ = self._in_plane(self.end)
         angle = math.atan2(one * end_two - two * end_one, one * end_one + two * end_two)
         turn = math.copysign(2 * math.pi, self.turns)
-        closed = math.dist((one, two), (end_one, end_two)) < SAME_POINT
+        closed = math.dist((one, two), (end_one, end_two)) < CLOSED_ARC
         first = turn if closed else angle + (turn if angle * turn < 0 else 0.0)
         return first + turn * (abs(self.turns) - 1)
 
@@ -152,25 +152,25 @@ class Move(NamedTuple):
         end_one, end_two, end_three = self._in_plane(self.end)
         growth = 1 + (math.hypot(end_one, end_two) / self.radius - 1) * fraction
         cos, sin = math.cos(self.sweep * fraction), math.sin(self.sweep * fraction)
-        turned = ((one * cos - two * sin) * growth, (one * sin + two * cos) * growth)
+        rotated = ((one * cos - two * sin) * growth, (one * sin + two * cos) * growth)
         level = three + (end_three - three) * fraction
-        return (*self._out_of_plane((*turned, level)), *straight[3:])
+        return (*self._out_of_plane((*rotated, level)), *straight[3:])
 
     def _in_plane(self, position: Sequence[float]) -> tuple[float, float, float]:
         """First, second and third axis of the plane, seen from the centre of the arc."""
         (x, y, z), (x0, y0, z0) = position[:3], self.centre
         x, y, z = x - x0, y - y0, z - z0
         if self.rotation:
-            x, y = _turned(x, y, -self.rotation)
+            x, y = _rotated(x, y, -self.rotation)
         third = THIRD_AXIS[self.plane]
         first, second, last = ((x, y, z) * 2)[third + 1 : third + 4]
         return first, second, last
 
     def _out_of_plane(self, values: Sequence[float]) -> tuple[float, float, float]:
-        """Back from the plane's axes to X, Y, Z."""
+        """X, Y, Z of a point on the plane's axes, relative to the centre of the arc."""
         third = THIRD_AXIS[self.plane]
         x, y, z = (tuple(values) * 2)[2 - third : 5 - third]
-        x, y = _turned(x, y, self.rotation)
+        x, y = _rotated(x, y, self.rotation)
         x0, y0, z0 = self.centre
         return x + x0, y + y0, z + z0
 
@@ -179,14 +179,14 @@ class Move(NamedTuple):
 class Trace:
     """The trace of one program.
 
-    ``error`` is None for a program that ran to its end. ``modes`` is
-    the state after the last block that succeeded, M2 included; ``state`` the interpreter's
-    variables themselves, after the refused block if there was one (motion_mode, plane, feed_rate …,
-    program units). ``printed`` is the text of ``(print, …)`` and of Python, ``position`` the end of
-    the last move, ``globals`` the global named parameters after the program, ``numbered`` the
-    requested parameters, ``seconds`` the interpreter's time.  ``events`` holds the messages too.
-    ``files`` are those of subs outside the program that execute a remapped code which moves,
-    ``diameters`` and ``lengths`` (along Z) what the tool table holds: tool number to mm.
+    ``error`` is None for a program that ran to its end. ``modes`` is the state after the last
+    block that succeeded, M2 included. ``state`` has the interpreter's own variables in program
+    units (motion_mode, plane, feed_rate …), after the refused block if there was one. ``printed``
+    is the text of ``(print, …)`` and of Python, ``position`` the end of the last move, ``globals``
+    the global named parameters after the program, ``numbered`` the requested parameters,
+    ``seconds`` the interpreter's time. ``events`` include the messages. ``files`` are those of
+    subs outside the program that execute a remapped code with motion. ``diameters`` and
+    ``lengths`` (along Z) are those of the tool table, in mm by tool number.
     """
 
     moves: list[Move]
@@ -208,7 +208,7 @@ class Trace:
 def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:
     """Return the modal state from LinuxCNC's arrays, each without its first item."""
     return Modes(
-        tuple(f"G{code / 10:g}" for code in gcodes if code >= 0 and code != NO_G92),
+        tuple(f"G{code / 10:g}" for code in gcodes if code >= 0 and code != G92_OFF_CODE),
         tuple(f"M{code}" for code in mcodes if code > 0),
         settings[0],
         settings[1],
@@ -216,6 +216,6 @@ def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float
     )
 
 
-def _turned(x: float, y: float, degrees: float) -> tuple[float, float]:
+def _rotated(x: float, y: float, degrees: float) -> tuple[float, float]:
     cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     return x * cos - y * sin, x * sin + y * cos

@@ -32,7 +32,7 @@ LAUNCH = (
     "import sys; sys.path[0] = {folder!r}; import worker; sys.path.pop(0); "
     "worker.serve({descriptor})"
 )
-LEAVE_NO_TRACE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
+NO_BYTECODE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
 Program = str | os.PathLike
 Tools = str | os.PathLike | Mapping[int, float] | None
@@ -77,7 +77,7 @@ class Tracer:
         *,
         setup: Iterable[str] = (),
         parameters: Parameters = None,
-        ask: Iterable[int] = (),
+        numbered: Iterable[int] = (),
         timeout: float = 60.0,
         alone: bool = False,
         watch_offsets: bool = False,
@@ -86,16 +86,17 @@ class Tracer:
 
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
-        machine units) or a var file; without them all are 0.  ``ask`` names numbered parameters
-        to report back.  ``timeout`` is in seconds.  ``alone`` discards the state that the program
-        leaves in the machine's Python modules. With ``watch_offsets`` an event before each message
-        lists the work offsets, of G54 to G59.3 and G92, that have changed since the message before.
+        machine units) or a var file; without them all are 0.  ``numbered`` are those to report
+        after the program.  ``timeout`` is in seconds.  ``alone`` discards the state of the
+        machine's Python modules after the program. With ``watch_offsets`` an event before each
+        message lists the work offsets, of G54 to G59.3 and G92, that have changed since the
+        previous message.
         """
         request = {
             "program": str(Path(program).absolute()),
             "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
-            "ask": list(ask),
+            "numbered": list(numbered),
             "alone": alone,
             "watch_offsets": watch_offsets,
         }
@@ -135,7 +136,7 @@ class Tracer:
             self._process = subprocess.Popen(
                 [PYTHON, "-c", launch],
                 cwd=self.ini.directory,
-                env={**os.environ, "HOME": str(self.folder), "LC_ALL": "C", **LEAVE_NO_TRACE},
+                env={**os.environ, "HOME": str(self.folder), "LC_ALL": "C", **NO_BYTECODE},
                 pass_fds=[there.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=output,
@@ -192,7 +193,7 @@ def write_program(text: str | Iterable[str], path: Path) -> Path:
 
 
 def write_tools(tools: Tools, ini: Ini, path: Path) -> Path:
-    """Write the tool table to use to ``path``: the INI's own, a file's or the one given."""
+    """Write the tool table to use to ``path``: ``tools``, or the INI's own without them."""
     source = ini.file("EMCIO", "TOOL_TABLE") if tools is None else tools
     if isinstance(source, Mapping):
         lines = (f"T{tool} P{tool} D{diameter!r}\n" for tool, diameter in source.items())

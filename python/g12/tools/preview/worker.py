@@ -3,7 +3,7 @@
 
 It imports nothing of the package, because the machine's INI decides which copy of ``g12`` the
 interpreter imports. A request is a dict with ``program``, ``setup``, ``parameter_file`` and
-``ask``; the answer is a dict that ``trace`` converts to a Trace.  Every program gets a new
+``numbered``; the answer is a dict that ``trace`` converts to a Trace.  Every program gets a new
 interpreter object, as in a GUI that opens a program again.
 """
 
@@ -21,30 +21,30 @@ from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
 from typing import Any
 
-MM = 25.4  # the preview reports inches
+INCH = 25.4  # mm; the preview reports inches
 FRESH, START = "G12 TRACE SET-UP", "G12 TRACE STARTS HERE"
-EMPTY = (-1, *[0.0] * 12, 0)  # no tool yet
+NO_TOOL = (-1, *[0.0] * 12, 0)  # no tool yet
 UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 Position = tuple[float, float, float, float, float, float, float, float, float]  # XYZABCUVW
 NO_OFFSET = (0.0,) * 9
-LINEAR = (0, 1, 2, 6, 7, 8)
-STILL = 1e-8  # mm: LinuxCNC ignores shorter moves (CART_FUZZ)
+LINEAR_AXES = (0, 1, 2, 6, 7, 8)
+CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
-PLANES = {1: 17, 2: 19, 3: 18}
+PLANE_CODES = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
 CALL_BY_M98, CALL_OF_REMAP = 2, 4  # call_type of a frame
 M98 = re.compile(rb"M98(?!\d)")
-COMMENT = re.compile(rb"\(.*?\)|;.*|\s")
-STATE = (
+COMMENT_OR_BLANK = re.compile(rb"\(.*?\)|;.*|\s")
+STATE_VARIABLES = (
     "motion_mode", "plane", "length_units", "distance_mode", "ijk_distance_mode", "feed_mode",
     "feed_rate", "retract_mode", "cutter_comp_side", "cutter_comp_radius", "origin_index",
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
 LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes
-OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # from where on
+OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # first parameter
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
@@ -177,7 +177,7 @@ class Lines:
 
     def _calls(self, line: int, sub: str) -> bool:
         """Return whether a line calls a numbered sub by M98, or may, with an expression."""
-        text = COMMENT.sub(b"", b"".join(self._lines[line - 1 : line])).upper()
+        text = COMMENT_OR_BLANK.sub(b"", b"".join(self._lines[line - 1 : line])).upper()
         number = re.search(rb"P(\d+)", text)
         return bool(M98.search(text)) and (not number or int(number[1]) == int(sub))
 
@@ -210,9 +210,9 @@ class Canon:
         self.plane = 17
         self.feed = self.program_feed = 0.0
         self.modal_feed, self.units = 0.0, INCHES  # F and its units
-        self.spindle = EMPTY
+        self.spindle = NO_TOOL
 
-    # Questions of the interpreter.
+    # Queries by the interpreter.
 
     def get_external_angular_units(self) -> float:
         """Return the machine's angular units per degree."""
@@ -238,14 +238,14 @@ class Canon:
         """Return a record of the tool table; index 0 is the spindle."""
         if not index:
             return self.spindle
-        return self.tools[index] if index < len(self.tools) else EMPTY
+        return self.tools[index] if index < len(self.tools) else NO_TOOL
 
-    # State it reports.
+    # State reported by the interpreter.
 
     def next_line(self, state) -> None:
         """Note the line of the following calls."""
         self.line = state.sequence_number
-        self._stand_where_the_last_move_ended()
+        self._read_position_after_tool_change()
         self._convert_feed()
         if self.started:
             self._note_conditions(state)
@@ -259,11 +259,11 @@ class Canon:
             self.modal_feed, self.units = 0.0, this.length_units
             self.position = self._resolved(self.tip)
         self._convert_feed()
-        meant, changed, share = text.partition(MEANINGS_CHANGED)
-        if changed and not meant:
+        prefix, changed, share = text.partition(MEANINGS_CHANGED)
+        if changed and not prefix:
             self.on_face = not self.on_face
             self.share = float(share)
-            self._stand_where_the_interpreter_does()
+            self._read_position_after_kinematics_switch()
         if text == START:
             self.started = True
             self.moves.clear()
@@ -297,26 +297,26 @@ class Canon:
 
     def set_plane(self, plane: int) -> None:
         """Note the plane."""
-        self.plane = PLANES[plane]
+        self.plane = PLANE_CODES[plane]
 
     def set_feed_rate(self, rate: float) -> None:
         """Note the feed, inches per minute or revolution if the program is metric."""
         this = interpreter_object()
         self.units = this.length_units
-        self.feed = rate * MM
-        feed = rate * MM if self.units == METRIC else rate
+        self.feed = rate * INCH
+        feed = rate * INCH if self.units == METRIC else rate
         self.program_feed = round(feed, FEED_DECIMALS)  # through inches F loses its last bit
         self.modal_feed = self.program_feed
         if self.program_feed:  # M2 reports 0, whatever F then is
             this.feed_rate = self.program_feed
 
     def change_tool(self, _which: int) -> None:
-        """Note the tool in the spindle; LinuxCNC 2.9 hands over its index, 2.10 its number.
+        """Note the tool in the spindle; LinuxCNC 2.9 passes its index, 2.10 its number.
 
-        LinuxCNC then reads the whole table again; values of G10 L1 have to stay, as on a machine.
+        LinuxCNC then requests the whole table; the values of G10 L1 remain, as on a machine.
         """
         index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
-        self.tools[1:] = [for_canon(table[place]) for place in range(1, len(self.tools))]
+        self.tools[1:] = [for_canon(table[each]) for each in range(1, len(self.tools))]
         self.spindle = self.tools[index] if index else UNLOADED
         self.changed_tool = True
         self._note(f"tool {self.spindle[0]}")
@@ -340,22 +340,22 @@ class Canon:
         this = interpreter_object()
         if this.length_units != self.units and this.feed_mode != INVERSE_TIME:
             self.units = this.length_units
-            this.feed_rate = self.modal_feed * (MM if self.units == METRIC else 1 / MM)
+            this.feed_rate = self.modal_feed * (INCH if self.units == METRIC else 1 / INCH)
         self.modal_feed = this.feed_rate
 
     def _note_pitch(self) -> None:
-        """Keep the pitch of a thread, which is its feed in place of F."""
+        """Note a new pitch of a thread, which is its feed in place of F."""
         this = interpreter_object()
         word = PITCH_WORD.get(this.motion_mode)
         if word:
-            unit = 1.0 if this.length_units == METRIC else MM
+            unit = 1.0 if this.length_units == METRIC else INCH
             pitch = f"pitch {getattr(this.blocks[this.remap_level], word) * unit:.10g} mm"
             known, self.pitch = self.pitch, pitch
             if pitch != known:
                 self._note(pitch)
 
     def _note_offsets(self) -> None:
-        """Note the work offsets that have changed since the message before."""
+        """Note the work offsets that have changed since the previous message."""
         known, self.offsets = self.offsets, work_offsets()
         for name, values in self.offsets.items():
             if known and values != known[name]:
@@ -401,25 +401,25 @@ class Canon:
         one, two, three = ARC_AXES[self.plane]
         target[one], target[two], target[three] = first, second, third
         centre[one], centre[two] = first_centre, second_centre
-        centre[three] = self.tip[three] / MM
+        centre[three] = self.tip[three] / INCH
         resolved = self._resolved(in_mm((*centre, *NO_OFFSET[3:])))
         self._move("arc", in_mm((*target, *others)), self.feed, resolved[:3], turns)
 
     def _rate(self, target: tuple) -> float:
         """Feed of a straight move: degrees per minute if only rotary axes move."""
-        places = tuple(zip(self.position, self.shift, self._resolved(in_mm(target))))
-        ways = (before + by - end for before, by, end in (places[axis] for axis in LINEAR))
-        still = all(abs(way) < STILL for way in ways)
-        return self.program_feed if still else self.feed
+        axes = tuple(zip(self.position, self.shift, self._resolved(in_mm(target))))
+        lengths = (before + by - end for before, by, end in (axes[axis] for axis in LINEAR_AXES))
+        only_rotary = all(abs(length) < CART_FUZZ for length in lengths)
+        return self.program_feed if only_rotary else self.feed
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
         start, self.tip, self.position = self._start(tip), tip, self._resolved(tip)
         mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
-        place = (kind, self.line, self.lines.now(), start, self.position)
+        path = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
         how = (is_exact(), goes_by_machine(), self.share)
-        self.moves.append((*place, feed, mode, *state, centre, turns, self.rotation, remap, *how))
+        self.moves.append((*path, feed, mode, *state, centre, turns, self.rotation, remap, *how))
         if remap:
             self.files |= self.lines.files()
 
@@ -430,25 +430,26 @@ class Canon:
         move ended.
         """
         shift, self.shift = self.shift, NO_OFFSET
-        places = zip(self.position, shift, self._resolved(tip))
+        axes = zip(self.position, shift, self._resolved(tip))
         return tuple(
-            end if abs(before + by - end) < STILL else before for before, by, end in places
+            end if abs(before + by - end) < CART_FUZZ else before for before, by, end in axes
         )
 
-    def _stand_where_the_last_move_ended(self) -> None:
-        """Shift the tip after a block with M6: the interpreter reads its position again.
+    def _read_position_after_tool_change(self) -> None:
+        """Shift the tip after a block with M6, when the interpreter queries its position.
 
-        The preview has that of the last move, in program coordinates, whatever offsets came since.
+        The preview answers with the end of the last move in program coordinates, without regard to
+        offsets that have changed since.
         """
         if self.changed_tool:
             self.shift = tuple(map(float.__sub__, self._resolved(self.tip), self.position))
             self.changed_tool = False
 
-    def _stand_where_the_interpreter_does(self) -> None:
-        """Take over the interpreter's position after a switch of kinematics, without a move."""
+    def _read_position_after_kinematics_switch(self) -> None:
+        """Copy the interpreter's position, which a switch of kinematics changes without a move."""
         this = interpreter_object()
         linear = (this.current_x, this.current_y, this.current_z)
-        scale = 1.0 if this.length_units == METRIC else MM
+        scale = 1.0 if this.length_units == METRIC else INCH
         self.tip = (*(value * scale for value in linear), *self.tip[3:5], this.CC_current,
                     *self.tip[6:])  # fmt: skip
         self.position = self._resolved(self.tip)
@@ -456,8 +457,8 @@ class Canon:
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""
         x, y, *rest = map(float.__add__, tip, self.g92)
-        turned = (x * self.cos - y * self.sin, x * self.sin + y * self.cos, *rest)
-        return self._beside_x(tuple(map(float.__add__, turned, self.work)))
+        rotated = (x * self.cos - y * self.sin, x * self.sin + y * self.cos, *rest)
+        return self._beside_x(tuple(map(float.__add__, rotated, self.work)))
 
     def _beside_x(self, position: tuple) -> tuple:
         """Return the tool's position on a lathe whose tool is beside the X line."""
@@ -516,7 +517,17 @@ def is_exact() -> bool:
 def in_mm(position: Sequence[float]) -> Position:
     """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
     x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position) :])
-    return (x * MM, y * MM, z * MM, a, b, c, u * MM, v * MM, w * MM)
+    return (
+        x * INCH,
+        y * INCH,
+        z * INCH,
+        a,
+        b,
+        c,
+        u * INCH,
+        v * INCH,
+        w * INCH,
+    )
 
 
 def for_canon(entry) -> tuple:
@@ -589,8 +600,8 @@ def state_after(request: dict, length: tuple) -> dict:
         "mcodes": list(this.active_m_codes)[1:],
         "settings": list(this.active_settings)[1:],
         "globals": {name: this.params[name] for name in sorted(names)},
-        "numbered": {number: this.params[number] for number in request["ask"]},
-        "state": {name: getattr(this, name) for name in STATE},
+        "numbered": {number: this.params[number] for number in request["numbered"]},
+        "state": {name: getattr(this, name) for name in STATE_VARIABLES},
     }
 
 
@@ -612,7 +623,7 @@ def blank(directory: str) -> dict:
         "program": files["blank.ngc"],
         "parameter_file": files["blank.var"],
         "setup": [],
-        "ask": [],
+        "numbered": [],
     }
 
 
@@ -692,13 +703,11 @@ def serve(descriptor: int) -> None:
         end_with_parent()
         answer_requests(connection, machine)
         return
-    watched = select.poll()
-    watched.register(connection, 0)  # also notices the death of the other end
+    poll = select.poll()
+    poll.register(connection, 0)  # also notices the death of the other end
     with open(os.pidfd_open(copy), "rb") as ended:
-        watched.register(ended, select.POLLIN)
-        if connection.fileno() in dict(
-            watched.poll()
-        ):  # the fork has died: on its normal end it ends this process, too
+        poll.register(ended, select.POLLIN)
+        if connection.fileno() in dict(poll.poll()):  # closed; the fork may be busy
             os.kill(copy, signal.SIGKILL)
             os.waitpid(copy, 0)
             shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)

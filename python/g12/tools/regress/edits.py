@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.machine_ini import AXES
-from g12.tools.preview.moves import LINEAR, Move
+from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.alignment import pairs
 from g12.tools.regress.recording_text import Note, Step, turns_only
 
@@ -34,7 +34,7 @@ class Tolerance(NamedTuple):
     @property
     def ends(self) -> tuple[float, ...]:
         """Return the tolerance of each axis."""
-        return tuple(self.length if linear else self.angle for linear in LINEAR)
+        return tuple(self.length if linear else self.angle for linear in IS_LENGTH)
 
 
 class Change(NamedTuple):

@@ -26,7 +26,7 @@ from g12.tools.regress.record_and_check import Terms, check
 from g12.tools.regress.recorder import SAME, Recorders
 from g12.tools.regress.recordings import load
 from g12.tools.regress.report import text_report
-from g12.tools.system import CALL
+from g12.tools.system import COMMAND
 
 
 def recorded_programs(directory: str | os.PathLike) -> list[str]:
@@ -69,7 +69,7 @@ def gcode_regression(
         except UsageError as error:
             pytest.fail(str(error), pytrace=False)
         if any(result.verdict != SAME for result in results):
-            advice = f"if that is right: {CALL} regress record -d {directory}"
+            advice = f"if that is right: {COMMAND} regress record -d {directory}"
             pytest.fail("\n".join([*text_report(results, notes), advice]), pytrace=False)
 
     return compare

@@ -10,7 +10,7 @@ from pathlib import Path
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.progress import Tell, silent
+from g12.tools.progress import Report, silent
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
     ADDED,
@@ -46,7 +46,7 @@ class Terms:
     timeout: float = 600.0
     jobs: int = 1
     pictures: Path | None = None
-    tell: Tell = silent
+    tell: Report = silent
 
     def tolerance(self, ini: Path) -> Tolerance:
         """Return the tolerance in mm on a machine."""

@@ -19,7 +19,7 @@ from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
-from g12.tools.progress import Tell
+from g12.tools.progress import Report
 from g12.tools.regress.differences import Difference, differences, program_lines
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
@@ -285,7 +285,7 @@ def _picture(
 
 
 def results(
-    job: Job, names: Sequence[str], workers: int, tell: Tell, recorders: Recorders
+    job: Job, names: Sequence[str], workers: int, tell: Report, recorders: Recorders
 ) -> list[Result]:
     """Return the results of programs in their order, with some interpreters in parallel."""
     largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)

@@ -32,7 +32,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.machine_ini import AXES
-from g12.tools.preview.moves import LINEAR, Error, Modes, Move, Position, Trace
+from g12.tools.preview.moves import IS_LENGTH, Error, Modes, Move, Position, Trace
 from g12.tools.units import UNITS
 
 HEAD = "g12 trace 1"
@@ -120,7 +120,7 @@ def _steps(trace: Trace, unit: float) -> Iterator[Step]:
 
 
 def _offset(offset: Position, unit: float) -> str:
-    values = zip(AXES, offset, LINEAR)
+    values = zip(AXES, offset, IS_LENGTH)
     texts = [(axis, number_text(v / unit if linear else v)) for axis, v, linear in values]
     return " ".join(f"{axis}{text}" for axis, text in texts if text != "0") or "0"
 
@@ -139,7 +139,7 @@ class RecordingWriter:
     """Writes steps as lines; ``unit`` is the machine unit in mm."""
 
     def __init__(self, unit: float) -> None:
-        self._scales = [1 / unit if linear else 1.0 for linear in LINEAR]
+        self._scales = [1 / unit if linear else 1.0 for linear in IS_LENGTH]
         self._at: Sequence[float] = (0.0,) * 9
         self._texts_at = ["0"] * 9
         self._feed = ("", "G94")
@@ -185,7 +185,7 @@ def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
 
 def turns_only(move: Move) -> bool:
     """Return whether only rotary axes move, at a feed in degrees."""
-    ends = zip(move.start, move.end, LINEAR)
+    ends = zip(move.start, move.end, IS_LENGTH)
     return move.kind != "arc" and not any(linear and a != b for a, b, linear in ends)
 
 
@@ -210,7 +210,7 @@ class RecordingReader:
     """Reads lines back into steps; ``unit`` is the machine unit in mm."""
 
     def __init__(self, unit: float) -> None:
-        self._scales = [unit if linear else 1.0 for linear in LINEAR]
+        self._scales = [unit if linear else 1.0 for linear in IS_LENGTH]
         self._at: Position = (0.0,) * 9
         self._feed, self._mode = 0.0, "G94"
 

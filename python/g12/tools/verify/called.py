@@ -45,7 +45,7 @@ def measure_shape(
     laid = lay(expected, made_of(segments, moves, plane), tolerance + LAST_DECIMAL)
     found = SectionPath(expected, [], laid)
     slower = slower_on_face(found, moves, path, axes)
-    state = state_differences(block.left, call.leaves())
+    state = state_differences(block.state_after, call.leaves())
     events = dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))
     judged = [
         *judge_toolpath(found, plane, call.diameters, moves, slower, call.line),
@@ -98,7 +98,7 @@ def measure_holes(
     found = SectionPath(expected, [], laid, run)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
-    state = state_differences(block.left, call.leaves())
+    state = state_differences(block.state_after, call.leaves())
     blended = [i for i in own if moves[i].kind == "rapid" and not moves[i].exact][:1]
     judged = [
         *judge_path(found.laid, call.line, holes.place, holes.words),

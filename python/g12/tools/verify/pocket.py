@@ -244,7 +244,7 @@ def _judge_cut(
 def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
     """Yield the wrong modal state after a pocket; a wrong feed is reported once."""
     other_feed = any(each.kind == FEED for each in laid.differences)
-    state = state_differences(block.left, target.leaves)
+    state = state_differences(block.state_after, target.leaves)
     others = [each for each in state if not (other_feed and each.name == "_feed")]
     yield from judge_state(others, extra_events(block), target.source.line)
 

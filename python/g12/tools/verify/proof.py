@@ -22,7 +22,7 @@ from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.executed_blocks import read_lines
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.progress import Tell, counted, silent
+from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
 from g12.tools.verify.commanded import Commanded, commanded_by, moves_there
@@ -126,7 +126,7 @@ def prove(
     samples: Samples | None = None,
     tolerance: float | None = None,
     stock: StockText | None = None,
-    tell: Tell = silent,
+    tell: Report = silent,
 ) -> Proof:
     """Return the proof of a program, of its real motion if there are samples of a run.
 
@@ -147,7 +147,7 @@ def prove_traced(
     parameters: Parameters = None,
     tolerance: float | None = None,
     stock: StockText | None = None,
-    tell: Tell = silent,
+    tell: Report = silent,
 ) -> Proof:
     """Return the proof of a program that has been traced; see ``prove``."""
     commanded = commanded_by(tracer, subject, tools, parameters)
@@ -184,7 +184,7 @@ def _tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
 
 
 def measured(
-    subject: Subject, commanded: Commanded, workpiece: Workpiece, allowed: Tolerances, tell: Tell
+    subject: Subject, commanded: Commanded, workpiece: Workpiece, allowed: Tolerances, tell: Report
 ) -> Cuts:
     """Return what is measured of a program's cuts."""
     moves, real, ini, polar = subject.trace.moves, subject.real, subject.ini, allowed.polar

@@ -9,7 +9,7 @@ from g12.tools.install.config.findings import ConfigFinding, note, warning
 from g12.tools.install.config.forms import screen_of
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_rules import uses_them
-from g12.tools.machine.stored_places import unset_places
+from g12.tools.machine.stored_positions import unset_positions
 
 WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
 GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")
@@ -58,7 +58,7 @@ def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
 def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
     """Find a position of G28 that was never set: it is machine zero."""
     path = config.ini.file("RS274NGC", "PARAMETER_FILE")
-    if "G28" in unset_places(config.ini):
+    if "G28" in unset_positions(config.ini):
         yield note(
             "g28",
             f"G28.1 was never set ({path.name if path else 'no var file'}: #5161 to #5169 are 0): "

@@ -95,7 +95,7 @@ class SectionContour:
     surface the plane is, 0 of a polar section.
 
     ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
-    ``leaves`` is the state behind it that the words ask for, as ``Block.left`` has it, and
+    ``leaves`` is the state behind it that the words ask for, as ``Block.state_after`` has it, and
     ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
     ``path`` is G61 or G64 as in force where it begins, "" if that is not known, and ``asked_paths``
     are it and those that the words ask for on the way.

@@ -13,7 +13,7 @@ from dataclasses import replace
 from g12.geometry.curve import FULL_TURN, recentred, sweep_between
 from g12.lengths import MM_PER_INCH
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.executed_blocks import FORGOTTEN, Block
+from g12.tools.preview.executed_blocks import FEED_UNKNOWN, Block
 from g12.tools.verify.expected.contour import Element
 
 SIDES = {40.0: 0, 41.0: 1, 42.0: -1}
@@ -45,7 +45,7 @@ class Pen:
         self.motion, self.side, self.changes = state["_motion_mode"] / 10, 0, False
         self.rapid_feed = settings.polar_g0_feed and settings.polar_g0_feed * ini.mm
         self.exact: bool | None = None
-        self.feed = None if state["_feed"] == FORGOTTEN else state["_feed"] * self.unit
+        self.feed = None if state["_feed"] == FEED_UNKNOWN else state["_feed"] * self.unit
         self.per_revolution, self.speed = bool(state["_units_per_rev"]), state["_rpm"]
         self._saved: tuple | None = None  # by M70 and M73
 

@@ -9,7 +9,7 @@ import numpy as np
 from g12.lengths import MM_PER_INCH
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X, Y, Z, plane_axes
-from g12.tools.preview.executed_blocks import FORGOTTEN, PLACES, STATE, Block
+from g12.tools.preview.executed_blocks import FEED_UNKNOWN, POSITION_NAMES, STATE_NAMES, Block
 from g12.tools.preview.moves import Move
 
 SETTING = {  # modes that no cycle changes, and the codes that do
@@ -87,7 +87,7 @@ class BlockInMm:
         """
         if self.unit != self._unit_before:
             return None
-        if "F" not in self.words and self._state["_feed"] == FORGOTTEN:
+        if "F" not in self.words and self._state["_feed"] == FEED_UNKNOWN:
             return None
         return self.words.get("F", self._state["_feed"]) * self.unit
 
@@ -184,13 +184,13 @@ class SubCall:
 
     def feed(self) -> float | None:
         """Return the feed per minute, None if the F in force is not known."""
-        known = self._state["_feed"] if self._state["_feed"] != FORGOTTEN else None
+        known = self._state["_feed"] if self._state["_feed"] != FEED_UNKNOWN else None
         feed = self.given.get("feed", known)
         return None if feed is None else feed * self._per_minute
 
     def feed_as_given(self) -> tuple[float | None, bool]:
         """Return the feed in mm per minute or revolution, and whether it is per revolution."""
-        known = self._state["_feed"] if self._state["_feed"] != FORGOTTEN else None
+        known = self._state["_feed"] if self._state["_feed"] != FEED_UNKNOWN else None
         feed = self.given.get("feed", known)
         return feed and feed * self.unit, bool(self._state["_units_per_rev"])
 
@@ -213,8 +213,9 @@ class SubCall:
 
     def leaves(self) -> dict[str, float]:
         """Return the state after the call: all that it found, but for where the tool is."""
-        lost = {"_feed"} if self._state["_feed"] == FORGOTTEN else set()
-        return {name: self._state[name] for name in STATE if name not in lost.union(PLACES)}
+        unknown = {"_feed"} if self._state["_feed"] == FEED_UNKNOWN else set()
+        names = [name for name in STATE_NAMES if name not in unknown.union(POSITION_NAMES)]
+        return {name: self._state[name] for name in names}
 
 
 def equal_steps(first: float, last: float, most: float, rounding: float) -> list[float]:

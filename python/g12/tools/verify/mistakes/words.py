@@ -5,7 +5,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
 from g12.tools.machine.ini import Ini
-from g12.tools.machine.stored_places import unset_places
+from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.reading.codes import Codes
@@ -23,7 +23,7 @@ def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
 
     It is a rapid to machine zero, not to a tool change.
     """
-    waiting = set(unset_places(ini))
+    waiting = set(unset_positions(ini))
     for text in texts:
         waiting -= {SETTING.get(number, "") for number in text.codes}
         for code in waiting.intersection(STORED.get(number, "") for number in text.codes):

@@ -108,7 +108,7 @@ class Cutter:
 class Target:
     """A circle to be cut: who asks for it, what is to be there, with what, and by which words.
 
-    ``leaves`` is the state after the block, as ``Block.left`` has it; what the words do not
+    ``leaves`` is the state after the block, as ``Block.state_after`` has it; what the words do not
     say is not in it.
     """
 

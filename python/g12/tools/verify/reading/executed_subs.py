@@ -19,12 +19,12 @@ from g12.tools.preview.executed_blocks import (
     TAG,
     Block,
     Text,
-    after,
-    before,
     blocks_in,
     executed,
     lines_as_written,
     read_lines,
+    reports_after,
+    reports_before,
 )
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
@@ -116,7 +116,7 @@ def watched_lines(
             told = f"(DEBUG,{TAG} {CLAMP} {clamps[text.file]})"
             yield (line, told) if BEGIN.match(line) else (line,)
         elif text in wanted and not text.too_long:
-            yield (*before(text, skip), line, *after(text, skip))
+            yield (*reports_before(text, skip), line, *reports_after(text, skip))
         else:
             yield (line,)
 

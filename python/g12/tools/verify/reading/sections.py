@@ -19,15 +19,15 @@ from typing import Any, NamedTuple
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.preview.executed_blocks import (
-    COMMENT,
+    COMMENTS,
     Block,
     Text,
-    after,
-    before,
     blocks_in,
     is_number,
-    moves_otherwise,
+    moves_differ,
     read_lines,
+    reports_after,
+    reports_before,
 )
 from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
@@ -79,7 +79,7 @@ Bodies = Mapping[str, Sequence[SectionLine]]
 
 def bare(line: str) -> str:
     """Return a line without spaces and comments, in lower case."""
-    return re.sub(r"\s", "", COMMENT.sub("", line)).lower()
+    return re.sub(r"\s", "", COMMENTS.sub("", line)).lower()
 
 
 def returns(text: Text) -> bool:
@@ -184,7 +184,7 @@ def sections(
     copied = blocks_in(copy, copies.texts)
     groups = list(grouped(copied, codes))
     if [own[0].text for own in found] != [group[0].text for group in groups]:
-        raise moves_otherwise(program)
+        raise moves_differ(program)
     doubts = doubts_of(lines, codes, bodies)
     left, asked = paths_in_force(blocks), paths_in_force(copied)
     return [
@@ -215,7 +215,7 @@ def flattened(
             slash = "/" if text.deleted else ""
             acting = "" if switch else acting_words(text, line.written, codes)
             kept = [slash + words for words in (acting, *text.assignments) if words]
-            found.append([*before(text, line.skip), *kept, *after(text, line.skip)])
+            found.append([*reports_before(text, line.skip), *kept, *reports_after(text, line.skip)])
         else:
             named = drawn if inside else {} if line.text.call == sub else own
             found.append([line.with_drawn(named)])
@@ -305,11 +305,11 @@ def section_of(
         height=height,
         diameters=diameters,
         c=first.state["_c"],
-        left_c=last.left.get("_c", math.nan),
+        left_c=last.state_after.get("_c", math.nan),
         acts=tuple(acts),
         told=told,
         leaves={**pen.leaves(first.state), **({} if restores(group) else kept)},
-        left=last.left,
+        left=last.state_after,
         surface=pen.surface,
         file=first.text.file,
     )
@@ -332,22 +332,22 @@ def with_zero_lines(
     lines = {text.number for text in (*outside, *subs) if "C" in dict(text.words)}
     polar = [each for each in sections if not each.surface]
     found = {
-        each.at: zero_line(before, each, moves, lines)
-        for before, each in zip([None, *polar], polar)
+        each.at: zero_line(previous, each, moves, lines)
+        for previous, each in zip([None, *polar], polar)
     }
     return [replace(each, zero_line=found.get(each.at, BEGUN)) for each in sections]
 
 
 def zero_line(
-    before: SectionContour | None, section: SectionContour, moves: Sequence[Move], lines: set[int]
+    previous: SectionContour | None, section: SectionContour, moves: Sequence[Move], lines: set[int]
 ) -> ZeroLine:
     """Return what has become of C since the section before, or the program's beginning."""
-    between = moves[before.end if before else 0 : section.at]
+    between = moves[previous.end if previous else 0 : section.at]
     commanded = any(move.end[C] != move.start[C] or move.line in lines for move in between)
-    if before is None:
+    if previous is None:
         return ZeroLine(commanded)
-    angle, other = (moves[each.at].start[C] for each in (section, before))
+    angle, other = (moves[each.at].start[C] for each in (section, previous))
     turned = (angle - other + 180.0) % 360.0 - 180.0
-    offsets = angle - section.c, moves[before.end - 1].end[C] - before.left_c
+    offsets = angle - section.c, moves[previous.end - 1].end[C] - previous.left_c
     commanded = commanded or abs(offsets[0] - offsets[1]) > SAME_ANGLE
-    return ZeroLine(commanded, turned if abs(turned) > SAME_ANGLE else 0.0, before.last)
+    return ZeroLine(commanded, turned if abs(turned) > SAME_ANGLE else 0.0, previous.last)

@@ -5,20 +5,20 @@ from __future__ import annotations
 
 import re
 
+from g12.machine_ini import AXES
 from g12.tools.machine.ini import Ini
 
-PARAMETER = re.compile(r"^\s*([0-9]+)\s+(-?[0-9]+(?:\.[0-9]+)?)", re.MULTILINE)
-FIRST = {"G28": 5161, "G30": 5181}  # the first parameter of each
-AXES = 9
+STORED_VALUE = re.compile(r"^\s*([0-9]+)\s+(-?[0-9]+(?:\.[0-9]+)?)", re.MULTILINE)
+FIRST = {"G28": 5161, "G30": 5181}  # the first parameter of each, that of X
 
 
-def unset_places(ini: Ini) -> tuple[str, ...]:
+def unset_positions(ini: Ini) -> tuple[str, ...]:
     """Return those of G28 and G30 whose position is machine zero: G28.1 or G30.1 was never used."""
     path = ini.file("RS274NGC", "PARAMETER_FILE")
     text = path.read_text(errors="replace") if path and path.is_file() else ""
-    values = dict(PARAMETER.findall(text))
+    values = dict(STORED_VALUE.findall(text))
     return tuple(
         code
         for code, first in FIRST.items()
-        if not any(float(values.get(str(n), 0)) for n in range(first, first + AXES))
+        if not any(float(values.get(str(n), 0)) for n in range(first, first + len(AXES)))
     )
