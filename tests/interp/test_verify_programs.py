@@ -312,7 +312,7 @@ def test_another_tool_than_d_names_is_found(tmp_path):
 def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):
     condition = ["o1 if [#<_line> GT 6]", "G0 X5", "o1 endif"]
     lines = [*MM, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", *condition]
-    with pytest.raises(ProgramError, match="moves otherwise where lines are put between its own"):
+    with pytest.raises(ProgramError, match="moves differently with reports between its lines"):
         proof_of_text(tmp_path, lines)
 
 

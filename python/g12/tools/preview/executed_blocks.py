@@ -193,7 +193,7 @@ def executed(
 def moves_differ(program: Path) -> ProgramError:
     """Return the error for a program whose copy behaves differently."""
     return ProgramError(
-        f"{program}: moves otherwise where lines are put between its own:"
+        f"{program}: moves differently with reports between its lines:"
         " its blocks cannot be followed"
     )
 
