@@ -16,8 +16,8 @@ from typing import NamedTuple
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 EXPANDED = ".expanded"  # suffix of the expanded file that the linuxcnc script of 2.9 writes
-DEEPEST = 16  # files that include each other, as LinuxCNC 2.10 allows
-NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORECASE)
+DEEPEST_INCLUDE = 16  # files that include each other, as LinuxCNC 2.10 allows
+LEADING_NUMBER = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|inf)", re.IGNORECASE)
 
 
 class Entry(NamedTuple):
@@ -46,7 +46,7 @@ def with_included(path: Path, depth: int = 1) -> Iterator[str]:
         included = None if path.suffix == EXPANDED else included_file(line, path.parent)
         if not included:
             yield line
-        elif depth < DEEPEST and os.access(included, os.R_OK):
+        elif depth < DEEPEST_INCLUDE and os.access(included, os.R_OK):
             yield from with_included(included, depth + 1)
 
 
@@ -90,5 +90,5 @@ def key_and_value(line: str) -> tuple[str, str]:
 
 def leading_number(text: str) -> float | None:
     """Return the number that a value begins with, as LinuxCNC reads numbers; None without one."""
-    found = NUMBER.match(text)
+    found = LEADING_NUMBER.match(text)
     return float(found[0]) if found else None

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units of length, and the largest length."""
+"""Units of length and angle, the largest length, the rounding of a length."""
 
 from __future__ import annotations
 
 MM_PER_INCH = 25.4
 INCH_SLACK = 1e-3  # units per mm that LinuxCNC takes for an inch machine
+DEGREES_PER_TURN = 360.0
+ROUNDING_MM = 1e-6  # lengths closer than this are equal: a unit's conversion rounds
 LARGEST = 1e6  # inches or mm: beyond any machine; sums and squares stay exact enough
 
 

@@ -21,7 +21,7 @@ from g12.lengths import MM_PER_INCH
 Find = Callable[[str, str], str | None]
 FindAll = Callable[[str, str], Sequence[str]]
 
-AXES = "XYZABCUVW"
+AXIS_LETTERS = "XYZABCUVW"
 NO_LIMIT = 1e99
 KINEMATICS_PARAMETER = b"_kins_type"  # a library symbol of interpreters that have G12.1 themselves
 AXIS_KEYS = (  # with LinuxCNC's defaults
@@ -30,7 +30,7 @@ AXIS_KEYS = (  # with LinuxCNC's defaults
     ("MAX_VELOCITY", 1.0),
     ("MAX_ACCELERATION", 1.0),
 )
-UNITS = {  # with their lengths in mm
+MM_OF_UNIT = {  # with their lengths in mm
     "mm": 1.0,
     "metric": 1.0,
     "in": MM_PER_INCH,
@@ -39,7 +39,7 @@ UNITS = {  # with their lengths in mm
 }
 KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in LinuxCNC's order
 HANDLERS = ("prolog", "epilog", "python")
-CODE = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
+CODE_PATTERN = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
 
 
 FACE_KINEMATICS = "polar_xzc"  # configs/kinematics
@@ -90,9 +90,9 @@ def millimetres_of(find: Find) -> float:
     """Return the length of a machine unit in mm; LinuxCNC takes a name or units per mm."""
     text = find("TRAJ", "LINEAR_UNITS") or "mm"
     per_mm = leading_number(text)
-    length = UNITS.get(text.split()[0].lower(), 0.0) if per_mm is None else per_mm
+    length = MM_OF_UNIT.get(text.split()[0].lower(), 0.0) if per_mm is None else per_mm
     if length <= 0.0:
-        rule = f"must be {', '.join(UNITS)} or units per mm, a number above 0"
+        rule = f"must be {', '.join(MM_OF_UNIT)} or units per mm, a number above 0"
         raise Refusal(f"[TRAJ] LINEAR_UNITS = {text:.40}: {rule}")
     return length if per_mm is None else 1.0 / per_mm
 
@@ -100,7 +100,7 @@ def millimetres_of(find: Find) -> float:
 def coordinates_of(find: Find) -> str:
     """Return the letters of the machine's axes, each once."""
     letters = (find("TRAJ", "COORDINATES") or "XYZ").upper()
-    return "".join(dict.fromkeys(letter for letter in letters if letter in AXES))
+    return "".join(dict.fromkeys(letter for letter in letters if letter in AXIS_LETTERS))
 
 
 def axes_of(find: Find, letters: Iterable[str]) -> dict[str, Axis]:
@@ -190,7 +190,7 @@ def code_number(code: str) -> tuple[str, int]:
 
     LinuxCNC adds the digits after the point as a whole number: G12.10 is 130, which is G13.
     """
-    match = CODE.match(code)
+    match = CODE_PATTERN.match(code)
     if not match:
         return "", 0
     return match[1].upper(), 10 * int(match[2] or 0) + int(match[3] or 0)

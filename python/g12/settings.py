@@ -19,7 +19,7 @@ from g12.errors import Refusal, number
 from g12.ini_sections import entries_of, with_included
 from g12.lengths import is_inch
 
-SECTION = "G12"
+INI_SECTION = "G12"
 M_CODE = re.compile(r"M\d{1,3}")
 TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002
 
@@ -150,19 +150,19 @@ class Settings:
 def settings_from_lines(lines: Sequence[str]) -> Settings:
     """Return the settings of an INI file's lines; raise `Refusal` on a bad key or value."""
     values: dict[str, Any] = {}
-    for _, key, text in entries_of(lines, SECTION):
+    for _, key, text in entries_of(lines, INI_SECTION):
         if key not in TABLE:
-            raise Refusal(f"[{SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
+            raise Refusal(f"[{INI_SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
         if key.lower() in values:
-            raise Refusal(f"[{SECTION}] {key} stands there twice")
+            raise Refusal(f"[{INI_SECTION}] {key} stands there twice")
         try:
             values[key.lower()] = TABLE[key].read(text)
         except ValueError:
             rule = f"must be {TABLE[key].legal}"
-            raise Refusal(f"[{SECTION}] {key} = {text:.40}: {rule}") from None
+            raise Refusal(f"[{INI_SECTION}] {key} = {text:.40}: {rule}") from None
     settings = Settings(**values)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
-        raise Refusal(f"[{SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
+        raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
     return settings
 
 
@@ -179,8 +179,8 @@ def check_section(lines: Sequence[str]) -> None:
     """Refuse a section that LinuxCNC would not read: one in other letters, or a second one."""
     headers = [line for line in map(str.strip, lines) if line.startswith("[")]
     names = [line.split("]")[0][1:] for line in headers]
-    found = [name for name in names if name.strip().upper() == SECTION]
-    if any(name != SECTION for name in found):
-        raise Refusal(f"[{min(set(found) - {SECTION})}] must be written [{SECTION}]")
+    found = [name for name in names if name.strip().upper() == INI_SECTION]
+    if any(name != INI_SECTION for name in found):
+        raise Refusal(f"[{min(set(found) - {INI_SECTION})}] must be written [{INI_SECTION}]")
     if len(found) > 1:
-        raise Refusal(f"[{SECTION}] stands there twice: LinuxCNC reads the first one only")
+        raise Refusal(f"[{INI_SECTION}] stands there twice: LinuxCNC reads the first one only")

@@ -30,7 +30,7 @@ PROGRAMS = {  # of the half whose codes they use
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
     ),
 }
-SHORT = "from g12.host.section import run\nrun.MOST_LINES = 99\n"
+SHORT = "from g12.host.section import run\nrun.MOST_SECTION_LINES = 99\n"
 
 
 def test_an_endless_loop_ends(tmp_path):

@@ -299,7 +299,7 @@ def test_a_file_that_is_deleted_while_its_program_runs(lathe, tmp_path):
 
 
 def test_a_signal_on_an_acceleration_that_a_section_sets_is_named(monkeypatch):
-    pins = dict.fromkeys(kinematics_switch.ACCELERATIONS, 707.0)
+    pins = dict.fromkeys(kinematics_switch.ACCELERATION_PINS, 707.0)
 
     def set_p(pin, value):
         if pin == "ini.y.max_acceleration":

@@ -36,9 +36,9 @@ POCKET = dict(
     plunge_feed=LEFT,
 )  # fmt: skip
 PLANNERS = {
-    "polar_polygon": (planned_polygon.ENTRIES, planned_polygon.plan_polygon),
-    "polar_slot": (planned_slot.ENTRIES, planned_slot.plan_slot),
-    "polar_pocket": (round_pocket.ENTRIES, round_pocket.plan_round_pocket),
+    "polar_polygon": (planned_polygon.POLYGON_ENTRIES, planned_polygon.plan_polygon),
+    "polar_slot": (planned_slot.SLOT_ENTRIES, planned_slot.plan_slot),
+    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
 }
 MACHINE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 SHAPES = {"polar_polygon": POLYGON, "polar_slot": SLOT, "polar_pocket": POCKET}

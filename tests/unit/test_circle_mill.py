@@ -8,15 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cycles.circle_mill import (
-    CLOCKWISE,
-    COUNTERCLOCKWISE,
-    ENTRIES,
-    LEFT_OUT,
-    entries_by_letter,
-    plan_call,
-    plan_code,
-)
+from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, plan_code
+from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
 from g12.request.context import Tool
 from g12.request.words import Words
 from support.planner_context import BAD_MODES, INCH, MM, told, words_of
@@ -195,7 +188,7 @@ def test_both_front_ends_plan_the_same_event():
 
 
 def test_entries_of_a_call():
-    values = [LEFT_OUT] * len(ENTRIES)
+    values = [LEFT_OUT] * len(EVENT_ENTRIES)
     assert entries_by_letter(values) == {}
     values[1], values[14] = 0.0, 15.0
     assert entries_by_letter(values) == {"X": 0.0, "V": 15.0}

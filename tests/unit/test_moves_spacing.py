@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from g12.errors import Refusal
-from g12.moves.spacing import MOST_SEGMENTS, Stretch, TooManySegments, spaced
+from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, Stretch, TooManySegments, spaced
 from g12.polar.plan import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
@@ -28,8 +28,8 @@ def test_a_density_that_never_arrives_is_refused(density):
 
 
 def test_the_most_segments_are_made():
-    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_SEGMENTS - 1.0, 1.0))
-    assert len(places) == MOST_SEGMENTS + 1
+    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_SEGMENTS_OF_MOVE - 1.0, 1.0))
+    assert len(places) == MOST_SEGMENTS_OF_MOVE + 1
 
 
 def test_an_arc_of_too_many_segments_is_refused_with_its_line():
@@ -44,7 +44,7 @@ def test_an_arc_of_too_many_segments_is_refused_with_its_line():
 def test_a_circle_of_a_metre_is_cut_at_the_finest_tolerance():
     around = Round(1000 + 0j, 100 + 0j, 2 * math.pi)
     run = plan(programmed([around]), FINEST, c=0.0).steps[0]
-    assert 5_000 < len(run.segments) < MOST_SEGMENTS
+    assert 5_000 < len(run.segments) < MOST_SEGMENTS_OF_MOVE
 
 
 def test_an_apsis_is_an_end_of_segments_and_off_the_path_by_its_share():

@@ -9,18 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.errors import Refusal, number
+from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
 from g12.shapes import polygon, round_pocket, slot
-from g12.shapes.entries import LEFT_OUT, ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes.entries import ShapeEntries, ShapeMachine, check_nearest
 from g12.shapes.rings import half_turns_in_all
 from support.planner_context import MM
 
 FOUND = MM._replace(z=5.0, spindle_tool=Tool(3, 3.0))
 LATHE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 PLANS = {
-    "polar_polygon": (polygon.ENTRIES, polygon.plan_polygon),
-    "polar_slot": (slot.ENTRIES, slot.plan_slot),
-    "polar_pocket": (round_pocket.ENTRIES, round_pocket.plan_round_pocket),
+    "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
+    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
+    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
 }
 ANY = st.sampled_from([LEFT_OUT, 0.0, -1.0, 1e-9, 2.0, 1e9]) | st.floats(-5, 60)
 

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.errors import Refusal
+from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
 from g12.shapes import holes
-from g12.shapes.entries import LEFT_OUT, ShapeEntries
+from g12.shapes.entries import ShapeEntries
 from g12.shapes.holes import HoleMachine, shorter_turn
 from support.planner_context import MM
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from g12.compensation.contour import Contour, Element
+from g12.compensation.contour import Contour, PathElement
 from g12.compensation.offset import tool_path
 from g12.compensation.simplify import without_rounding_points, without_short_moves
 from g12.errors import Refusal
@@ -11,7 +11,7 @@ from g12.errors import Refusal
 SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
 
 
-def centre_path(contour: Contour, tolerance: float) -> tuple[list[Element], float]:
+def centre_path(contour: Contour, tolerance: float) -> tuple[list[PathElement], float]:
     """Return the path of the tool's centre, and by how much the contour was moved for it.
 
     Points as close together as their last decimal make corners that no tool reaches. Where a

@@ -15,7 +15,7 @@ from math import ceil, copysign, inf, sqrt
 from typing import NamedTuple
 
 from g12.compensation.closing import closing_of
-from g12.compensation.contour import SAME_POINT, Contour, Element, PlaneMove
+from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove
 from g12.geometry.boxes import BoxTree
 from g12.geometry.curve import Arc
 
@@ -30,7 +30,7 @@ class Cut(NamedTuple):
     """
 
     move: PlaneMove
-    path: tuple[Element, ...]
+    path: tuple[PathElement, ...]
     cut: bool
 
 

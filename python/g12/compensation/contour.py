@@ -108,7 +108,7 @@ class Start(NamedTuple):
     z: float
 
 
-Element = PlaneMove | Plunge | Mark  # of a contour, or of the tool centre's path
+PathElement = PlaneMove | Plunge | Mark  # of a contour, or of the tool centre's path
 
 
 class Contour:
@@ -140,7 +140,7 @@ class Contour:
     ) -> None:
         self.x, self.c, self.z = x, c, z
         self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
-        self.elements: list[Element] = []
+        self.elements: list[PathElement] = []
         self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
         self.side = 40
         self.start = start or Start(x, 0.0, z)

@@ -27,7 +27,7 @@ from g12.geometry.boxes import BoxTree, apart
 ALLOWANCE = 0.5  # of the tool's radius: no finishing pass cuts deeper
 ENTERED = 2.0  # tolerances: a contour deeper in a wall's material enters it
 CHECK_STEP = 16.0  # tolerances: distance between the points at which a contour is checked
-SAMPLED = 2  # passes of another contour: one of these mostly enters, if any does
+SAMPLE_COUNT = 2  # passes of another contour: one of these mostly enters, if any does
 
 
 def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -> None:
@@ -56,7 +56,7 @@ def _may_cut(other: CompensatedContour, wall: CompensatedContour) -> bool:
         return False
     if apart(wall.wall_tree.box, other.tree.box, other.radius):
         return False
-    some = other.passes[:: len(other.passes) // SAMPLED + 1]
+    some = other.passes[:: len(other.passes) // SAMPLE_COUNT + 1]
     return not enters(some, other, wall, inf)
 
 

@@ -18,10 +18,10 @@ from copy import copy
 from math import copysign
 from typing import NamedTuple, NoReturn
 
-from g12.compensation.contour import SAME_POINT, Contour, Element, PlaneMove, Plunge
+from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove, Plunge
 from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
 from g12.errors import Refusal, number
-from g12.geometry.crossing import PARALLEL, crossings
+from g12.geometry.crossing import PARALLEL_SINE, crossings
 from g12.geometry.curve import Arc, Curve, Line, sweep_between
 
 JOINED = 0.04  # tolerances: parallels whose ends move by less are joined without an arc
@@ -45,7 +45,7 @@ class _Joint(NamedTuple):
     corner: complex | None = None
 
 
-def tool_path(contour: Contour, elements: list[Element], tolerance: float) -> list[Element]:
+def tool_path(contour: Contour, elements: list[PathElement], tolerance: float) -> list[PathElement]:
     """Return the path of the tool's centre for a contour's elements, in the same order.
 
     ``tolerance`` in program units: the path deviates by a small share of it.
@@ -57,7 +57,7 @@ def tool_path(contour: Contour, elements: list[Element], tolerance: float) -> li
         centred = iter(_centred(contour, moves, tolerance))
     except LeadRefusal as refusal:
         raise _with_other_side(refusal, contour, moves, tolerance) from None
-    path: list[Element] = []
+    path: list[PathElement] = []
     for element in elements:
         path.extend(next(centred) if isinstance(element, PlaneMove) else (element,))
     return path
@@ -80,7 +80,7 @@ def _with_other_side(
 
 def _centred(
     contour: Contour, moves: list[PlaneMove], tolerance: float
-) -> list[tuple[Element, ...]]:
+) -> list[tuple[PathElement, ...]]:
     """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
@@ -144,7 +144,7 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
     if cosine > 0.0 and _is_joined(a, b, abs(meet - leave), abs(sine), tolerance):
         point = (leave + meet) / 2
         return _Joint(point, point)
-    if sine * offset <= PARALLEL * abs(offset):
+    if sine * offset <= PARALLEL_SINE * abs(offset):
         return _Joint(leave, meet, b.move.start)
     crossing = _crossing(a.parallel, b.parallel)
     if crossing is None:
@@ -215,7 +215,7 @@ def _neighbours(contour: Contour, move: PlaneMove) -> str:
 
 def _trimmed(
     contour: Contour, steps: list[_Step], k: int, start: complex, end: complex
-) -> tuple[Element, ...]:
+) -> tuple[PathElement, ...]:
     """Return the parallel of a step between two points of it; refuse points in reverse order."""
     move, parallel = steps[k].move, steps[k].parallel
     length = parallel.length_to(end, late=True) - parallel.length_to(start)
@@ -233,7 +233,7 @@ def _trimmed(
     return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
 
 
-def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[Element, ...]:
+def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[PathElement, ...]:
     """Return a ramp, or a move without compensation, between the joints at its ends.
 
     A ramp that is square to the contour and as long as the tool's radius shrinks to a point.
@@ -245,6 +245,6 @@ def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[Element, ...]
     return (move._replace(curve=Line(start, end)),)
 
 
-def _move_of_z(move: PlaneMove) -> tuple[Element, ...]:
+def _move_of_z(move: PlaneMove) -> tuple[PathElement, ...]:
     """Return the move of Z that remains of a move without length in the plane, if any."""
     return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)

@@ -11,18 +11,20 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TypeGuard
 
-from g12.compensation.contour import SAME_POINT, Element, PlaneMove, Plunge
+from g12.compensation.contour import SAME_POINT, PathElement, PlaneMove, Plunge
 from g12.geometry.curve import Line
 
 MOST_POINTS = 100  # replaced by one line: each further point is checked against all of them
 
 
-def without_short_moves(elements: Sequence[Element], limit: float) -> tuple[list[Element], float]:
+def without_short_moves(
+    elements: Sequence[PathElement], limit: float
+) -> tuple[list[PathElement], float]:
     """Return a contour's elements without the moves under compensation up to ``limit`` long.
 
     Also returns the greatest shift of the contour by that, at most ``limit``. Program units.
     """
-    kept: list[Element] = []
+    kept: list[PathElement] = []
     last, moved = None, 0.0  # the index of the move kept last
     for element in elements:
         if not isinstance(element, PlaneMove):
@@ -53,15 +55,15 @@ def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
 
 
 def without_rounding_points(
-    elements: Sequence[Element], limit: float
-) -> tuple[list[Element], float]:
+    elements: Sequence[PathElement], limit: float
+) -> tuple[list[PathElement], float]:
     """Return a contour's elements without the points of polylines that are only rounding.
 
     Lines under compensation that follow each other at one feed and Z become one line, as long as
     all points between stay within ``limit`` of it. Also returns the greatest shift of the contour
     by that. Program units.
     """
-    kept: list[Element] = []
+    kept: list[PathElement] = []
     moved = offset = 0.0
     at = 0
     while at < len(elements):
@@ -78,7 +80,7 @@ def without_rounding_points(
     return kept, moved
 
 
-def _line_through(elements: Sequence[Element], first: int, limit: float) -> tuple[int, float]:
+def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> tuple[int, float]:
     """Return the last of the elements that one line can replace, and its deviation from them."""
     one, most = elements[first], 0.0
     if not _is_line(one):
@@ -106,7 +108,7 @@ def _is_like(one: PlaneMove, other: PlaneMove) -> bool:
     return one.offset != 0.0 and level and alike
 
 
-def _is_line(element: Element) -> TypeGuard[PlaneMove]:
+def _is_line(element: PathElement) -> TypeGuard[PlaneMove]:
     return isinstance(element, PlaneMove) and isinstance(element.curve, Line)
 
 

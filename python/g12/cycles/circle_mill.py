@@ -33,8 +33,11 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 from typing import NamedTuple
 
 from g12.errors import BlockRefusal, number
+from g12.lengths import ROUNDING_MM
 from g12.request.common import (
-    ROUNDING_MM,
+    CLOCKWISE,
+    COUNTERCLOCKWISE,
+    LEFT_OUT,
     SMALLEST_RING_MM,
     check_count,
     check_modes,
@@ -46,26 +49,24 @@ from g12.request.context import XY, Context, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
-ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
-LEFT_OUT = -9999.0
+EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
 NARROWER_MM = 0.254  # the default roughing width is the tool diameter less this
 RETRACT_MM = 2.54
-CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
-ROUGH_FINISH = (  # by D
+ROUGH_FINISH_ARCS = (  # by D
     (CLOCKWISE, CLOCKWISE),
     (COUNTERCLOCKWISE, COUNTERCLOCKWISE),
     (CLOCKWISE, COUNTERCLOCKWISE),
     (COUNTERCLOCKWISE, CLOCKWISE),
 )
-INSIDE, CENTRE, OUTSIDE = -1, 0, 1
-SIDES = {  # by rough direction, then C: the tool centre, left, right of the profile
-    CLOCKWISE: (CENTRE, OUTSIDE, INSIDE),
-    COUNTERCLOCKWISE: (CENTRE, INSIDE, OUTSIDE),
+INNER_SIDE, ON_CIRCLE, OUTER_SIDE = -1, 0, 1
+TOOL_SIDES = {  # by rough direction, then C: the tool centre, left, right of the profile
+    CLOCKWISE: (ON_CIRCLE, OUTER_SIDE, INNER_SIDE),
+    COUNTERCLOCKWISE: (ON_CIRCLE, INNER_SIDE, OUTER_SIDE),
 }
 
 
-class Spelling(NamedTuple):
+class EntryLetters(NamedTuple):
     """The letters of the entries that differ between the two front ends."""
 
     first_plane: str
@@ -74,9 +75,9 @@ class Spelling(NamedTuple):
     finish: str
 
 
-KNOWN_WORDS = "X Y Z I E R D H K J Q L P F"
-CODE = Spelling("I", "E", "H", "Q")
-CALL = Spelling("W", "O", "C", "L")
+EVENT_WORDS = "X Y Z I E R D H K J Q L P F"
+CODE_LETTERS = EntryLetters("I", "E", "H", "Q")
+CALL_LETTERS = EntryLetters("W", "O", "C", "L")
 
 
 class EventEntries(NamedTuple):
@@ -87,7 +88,7 @@ class EventEntries(NamedTuple):
     """
 
     words: Words
-    spelling: Spelling
+    spelling: EntryLetters
     context: Context
     plane: float | None
     pocket: bool
@@ -204,10 +205,12 @@ def plan_code(words: Words, context: Context, plane: float | None, pocket: bool)
     ``plane`` is the first reference plane last commanded, None if there is none.
     """
     check_modes(words, context)
-    words.check_known(KNOWN_WORDS)
+    words.check_known(EVENT_WORDS)
     finish, bottom = finish_of_code(words)
     return plan_event(
-        EventEntries(words, CODE, context, plane, pocket, finish, bottom, finish_feed=context.feed)
+        EventEntries(
+            words, CODE_LETTERS, context, plane, pocket, finish, bottom, finish_feed=context.feed
+        )
     )
 
 
@@ -223,13 +226,13 @@ def plan_call(words: Words, context: Context, plane: float | None) -> MillEvent:
     finish, bottom = finish_of_call(words)
     feed = finish_feed or context.feed
     return plan_event(
-        EventEntries(words, CALL, context, plane, pocket, finish, bottom, finish_feed=feed)
+        EventEntries(words, CALL_LETTERS, context, plane, pocket, finish, bottom, finish_feed=feed)
     )
 
 
 def entries_by_letter(values: list[float]) -> dict[str, float]:
     """Return a call's entries by letter, without those that are left out."""
-    return {letter: value for letter, value in zip(ENTRIES, values) if value != LEFT_OUT}
+    return {letter: value for letter, value in zip(EVENT_ENTRIES, values) if value != LEFT_OUT}
 
 
 def finish_feed_of_call(words: Words) -> float | None:
@@ -237,7 +240,7 @@ def finish_feed_of_call(words: Words) -> float | None:
     feed = words.take("V")
     if feed is not None and feed <= 0:
         raise words.refuse(
-            f"V{number(feed)} must be greater than 0 (a call has {len(ENTRIES)} entries,"
+            f"V{number(feed)} must be greater than 0 (a call has {len(EVENT_ENTRIES)} entries,"
             f" {number(LEFT_OUT)} leaves one out)"
         )
     return feed
@@ -291,21 +294,21 @@ def circle_of(entries: EventEntries) -> EventCircle:
     y = words.require("Y", "the circle's centre")
     radius = words.require_positive("R", "the circle's radius")
     direction = words.take_whole("D", least=0, default=0)
-    if direction >= len(ROUGH_FINISH):
+    if direction >= len(ROUGH_FINISH_ARCS):
         raise words.refuse(
-            f"D{direction} must be at most {len(ROUGH_FINISH) - 1}: D is the direction of the cut,"
-            " the cutter is the tool in the spindle"
+            f"D{direction} must be at most {len(ROUGH_FINISH_ARCS) - 1}: D is the direction of the"
+            " cut, the cutter is the tool in the spindle"
         )
     meaning = "0 tool centre on the circle, 1 left, 2 right of it"
     compensation = words.require_whole(letter, meaning, least=0, most=2)
-    rough_arc, finish_arc = ROUGH_FINISH[direction]
-    side = SIDES[rough_arc][compensation]
-    if entries.pocket and side != INSIDE:
+    rough_arc, finish_arc = ROUGH_FINISH_ARCS[direction]
+    side = TOOL_SIDES[rough_arc][compensation]
+    if entries.pocket and side != INNER_SIDE:
         raise entries.refuse(
             f"D{direction} with {letter}{compensation} does not put the tool inside the pocket:"
             f" D0 and D2 need {letter}2, D1 and D3 need {letter}1"
         )
-    if side == CENTRE and entries.finish:
+    if side == ON_CIRCLE and entries.finish:
         raise entries.refuse(
             f"{entries.spelling.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
@@ -355,7 +358,7 @@ def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: f
     smallest = entries.context.length(SMALLEST_RING_MM)
     if radius >= smallest:
         return
-    if circle.side == CENTRE:
+    if circle.side == ON_CIRCLE:
         raise entries.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
     finish = f" + {entries.spelling.finish}{number(entries.finish)}" if entries.finish else ""
     raise entries.refuse(
@@ -419,7 +422,7 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> Si
         side_finish=entries.finish > 0,
         finish_radius=circle.radius + circle.side * tool.radius,
         finish_arc=circle.finish_arc,
-        entry_arc=circle.finish_arc if circle.side == INSIDE else other,
+        entry_arc=circle.finish_arc if circle.side == INNER_SIDE else other,
     )
 
 

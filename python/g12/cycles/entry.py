@@ -10,10 +10,10 @@ from math import atan, ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.errors import number
+from g12.request.common import CLEARED
 from g12.request.context import Context
 from g12.request.words import Words
 
-CLEARED = 0.9  # of the cutter's radius: a helix up to this radius leaves no core
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
 MOST_HELIX_HALF_TURNS = 2000
 

@@ -24,10 +24,11 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 
 from typing import NamedTuple
 
-from g12.cycles.entry import CLEARED, STRAIGHT_DOWN, PocketDescent, PocketEntry, pocket_descent
+from g12.cycles.entry import STRAIGHT_DOWN, PocketDescent, PocketEntry, pocket_descent
 from g12.errors import number
+from g12.lengths import ROUNDING_MM
 from g12.request.common import (
-    ROUNDING_MM,
+    CLEARED,
     SMALLEST_RING_MM,
     check_count,
     check_modes,
@@ -41,7 +42,7 @@ from g12.request.context import XY, Context, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
-KNOWN_WORDS = "X Y Z I K Q L D F"
+HAAS_WORDS = "X Y Z I K Q L D F"
 
 
 class Pocket(NamedTuple):
@@ -93,7 +94,7 @@ def plan_pocket(
 ) -> Pocket:
     """Return the pocket of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
-    words.check_known(KNOWN_WORDS)
+    words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
     outward = words.take_pair("K", "Q")
     levels = words.take_whole("L", least=1, default=1)

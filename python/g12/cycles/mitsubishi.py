@@ -16,18 +16,13 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.request.common import (
-    ROUNDING_MM,
-    SMALLEST_RING_MM,
-    check_modes,
-    check_start,
-    commanded_tool,
-)
+from g12.lengths import ROUNDING_MM
+from g12.request.common import SMALLEST_RING_MM, check_modes, check_start, commanded_tool
 from g12.request.context import XY, XZ, YZ, Context, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
-KNOWN_WORDS = "I D F"
+MITSUBISHI_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
 
 
@@ -51,7 +46,7 @@ class MitsubishiCircle(NamedTuple):
 def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context, planes=tuple(FIRST_AXIS))
-    words.check_known(KNOWN_WORDS)
+    words.check_known(MITSUBISHI_WORDS)
     check_start(words, context)
     radius = words.require("I", "the radius of the circle")
     tool = commanded_tool(words, context)

@@ -28,8 +28,8 @@ from math import copysign
 from typing import NamedTuple
 
 from g12.errors import BlockRefusal, number
+from g12.lengths import ROUNDING_MM
 from g12.request.common import (
-    ROUNDING_MM,
     SMALLEST_RING_MM,
     check_count,
     check_modes,
@@ -42,7 +42,7 @@ from g12.request.context import XY, Context, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
-KNOWN_WORDS = "I R (or J) K Q L D F"
+YASNAC_WORDS = "I R (or J) K Q L D F"
 
 
 class YasnacCircle(NamedTuple):
@@ -104,7 +104,7 @@ class OffsetRadii(NamedTuple):
 def plan_circle(words: Words, context: Context) -> YasnacCircle:
     """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
-    words.check_known(KNOWN_WORDS)
+    words.check_known(YASNAC_WORDS)
     check_start(words, context)
     finished = words.require("I", "the radius of the finished circle")
     traverse = take_traverse(words)

@@ -13,19 +13,19 @@ from math import copysign, degrees, radians, sqrt
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
+from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Plunge
 from g12.geometry.curve import Arc
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
 from g12.moves.steps import (
     ROUNDING_SHARE,
-    Position,
+    MachinePosition,
     SectionPlan,
     StepMaker,
 )
 
-FEWEST = 2.0  # least segments per radian of an arc: fewer do not resemble it
+LEAST_DENSITY = 2.0  # least segments per radian of an arc: fewer do not resemble it
 
 
 class CylinderSettings(NamedTuple):
@@ -74,7 +74,7 @@ class _Surface(StepMaker):
 
     def __init__(self, contour: Contour, settings: CylinderSettings) -> None:
         x, angle, z = contour.start
-        super().__init__(contour, Position(x, degrees(angle), z))
+        super().__init__(contour, MachinePosition(x, degrees(angle), z))
         self._settings = settings
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
@@ -90,7 +90,7 @@ class _Surface(StepMaker):
         """Add a move of X alone."""
         self._run(move.line, "X", [(move.z1, *self.position[1:], move.feed)], stop)
 
-    def finish(self, path: Sequence[Element]) -> None:
+    def finish(self, path: Sequence[PathElement]) -> None:
         """Add what the last segments left over of Z and X."""
         x, z = self.position.x, self.position.z
         for element in path:
@@ -112,7 +112,7 @@ def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
     """Return the ends of an arc's segments, and the length of the arc up to them."""
     radius, turn = arc.radius, copysign(1.0, arc.sweep)
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
-    segments = max(bulging, FEWEST)
+    segments = max(bulging, LEAST_DENSITY)
     density = (segments, (bulging / segments) ** 2)
     stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
     angles, shares = spaced(stretch, lambda _: density)

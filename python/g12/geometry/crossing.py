@@ -10,7 +10,7 @@ import math
 
 from g12.geometry.curve import Arc, Curve, Line
 
-PARALLEL = 1e-9  # sine of the angle between lines that are parallel
+PARALLEL_SINE = 1e-9  # sine of the angle between lines that are parallel
 TOUCHES = 1e-6
 
 
@@ -33,7 +33,7 @@ def common_points(one: Curve, other: Curve) -> list[complex]:
 def _line_line(one: Line, other: Line) -> list[complex]:
     along, across = one.direction(), other.direction()
     sine = (along.conjugate() * across).imag
-    if abs(sine) <= PARALLEL:
+    if abs(sine) <= PARALLEL_SINE:
         return []
     return [one.start + ((other.start - one.start).conjugate() * across).imag / sine * along]
 

@@ -10,7 +10,7 @@ import cmath
 import math
 from typing import NamedTuple
 
-COINCIDENT = 1e-12  # a shorter line is a point: it has a length of 0 and no direction
+DEGENERATE = 1e-12  # a shorter line is a point: it has a length of 0 and no direction
 FULL_TURN = 2 * math.pi
 LEAST_MARGIN = 0.5  # radians beyond an end that still count as the end of a nearly full circle
 
@@ -35,7 +35,7 @@ class Line(NamedTuple):
     def direction(self, share: float = 0.0) -> complex:
         """Return the unit vector of the motion, 0 of a point."""
         length = self.length
-        return (self.end - self.start) / length if length > COINCIDENT else 0j
+        return (self.end - self.start) / length if length > DEGENERATE else 0j
 
     def portion(self, first: float, last: float) -> Line:
         """Return the line between two shares."""
@@ -54,7 +54,7 @@ class Line(NamedTuple):
         """Return the share of the line's point nearest to a point."""
         along = self.end - self.start
         square = (along * along.conjugate()).real
-        if square <= COINCIDENT * COINCIDENT:
+        if square <= DEGENERATE * DEGENERATE:
             return 0.0
         return min(1.0, max(0.0, ((point - self.start) * along.conjugate()).real / square))
 
@@ -130,7 +130,7 @@ class Arc(NamedTuple):
     def share_between(self, point: complex, least: float, most: float) -> float:
         """Return the share nearest to a point among those between two shares."""
         start, there = self.start - self.centre, point - self.centre
-        if not self.sweep or abs(there) <= COINCIDENT or abs(start) <= COINCIDENT:
+        if not self.sweep or abs(there) <= DEGENERATE or abs(start) <= DEGENERATE:
             return least
         turned = angle_of(there * start.conjugate()) * math.copysign(1.0, self.sweep) % FULL_TURN
         shares = [(turned + turn) / abs(self.sweep) for turn in (-FULL_TURN, 0.0, FULL_TURN)]
@@ -159,7 +159,7 @@ class Arc(NamedTuple):
     def _angle_to(self, point: complex) -> float:
         """Return the angle from the start to the direction of a point, below a full turn."""
         start, there = self.start - self.centre, point - self.centre
-        if abs(there) <= COINCIDENT or abs(start) <= COINCIDENT:
+        if abs(there) <= DEGENERATE or abs(start) <= DEGENERATE:
             return 0.0
         return angle_of(there * start.conjugate()) * math.copysign(1.0, self.sweep) % FULL_TURN
 

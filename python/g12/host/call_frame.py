@@ -12,11 +12,11 @@ from collections.abc import Iterator
 
 from interpreter import INTERP_EXECUTE_FINISH
 
-from g12.host.interp import NO_CODE, Interp
+from g12.host.interp import Interp
+from g12.section.block_rules import NO_CODE, GGroup
 
 NO_O_WORD = 0  # o_type
 NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
-MOTION = 1  # modal group
 
 
 def kept(interp: Interp, text: str) -> str:
@@ -147,4 +147,4 @@ class CallFrame:
         interp.remap_level = level
         block = interp.blocks[level]
         block.executing_remap, block.phase = self._remap, self._phase
-        block.motion_to_be = block.g_modes[MOTION] = NO_CODE
+        block.motion_to_be = block.g_modes[GGroup.MOTION] = NO_CODE

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Names for LinuxCNC's interpreter: types, which its modules lack, and a value."""
+"""Names for the types and values of LinuxCNC's interpreter, which its modules lack."""
 
 from __future__ import annotations
 
 from typing import Any, TypeAlias
 
-Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
-Block: TypeAlias = Any  # interpreter.block, as it was parsed
-Canon: TypeAlias = Any  # the module emccanon, or a test's substitute
-ToolEntry: TypeAlias = Any  # of the tool table
+from g12.request.context import XY, XZ, YZ
 
-NO_CODE = -1  # of a modal group without a code in a block
+Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
+ParsedBlock: TypeAlias = Any  # interpreter.block, as it was parsed
+CanonModule: TypeAlias = Any  # the module emccanon, or a test's substitute
+ToolTableEntry: TypeAlias = Any  # of the tool table
+
+PER_MINUTE, INVERSE_TIME, PER_REVOLUTION = 0, 1, 2  # feed_mode
+PLANES = {1: XY, 2: YZ, 3: XZ}  # plane

@@ -13,27 +13,35 @@ M52 P1.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from enum import IntEnum
 
 import hal
 import linuxcnc
 
 from g12.errors import BlockRefusal, number
-from g12.host.interp import Interp
+from g12.host.interp import PLANES, Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
 from g12.section.modes import decimal
 
-ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
-OVERRIDE, UNIT = "polar-xzc.most-override", "polar-xzc.unit"
-ADAPTIVE = 52  # active_m_codes
+ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
+OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
+ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
-OFF, BY_PROGRAM, BY_HAND, NO_MOVES = 0, 1, 2, 3  # requests
 INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET = 1e-4  # program units
-PLANES = {1: "G17", 2: "G19", 3: "G18"}  # interp.plane
-CENTRES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
+IJK_MODES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 ON_THE_FACE = "G17G91.1M52P1"
 OLDER = "the module polar_xzc is older than this package: build it again, make kinematics"
+
+
+class FaceRequest(IntEnum):
+    """The values of ``polar-xzc.request``; NO_MOVES blocks motion by program and MDI as well."""
+
+    OFF = 0
+    BY_PROGRAM = 1
+    BY_HAND = 2
+    NO_MOVES = 3
 
 
 def face_in_force() -> bool:
@@ -46,13 +54,13 @@ def face_in_force() -> bool:
 def modes_found(interp: Interp) -> str:
     """Return the block that restores the modes that `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
-    centres = next(CENTRES[code] for code in active if code in CENTRES)
+    centres = next(IJK_MODES[code] for code in active if code in IJK_MODES)
     return f"{PLANES[interp.plane]}{centres}{adaptive_feed(interp)}"
 
 
 def adaptive_feed(interp: Interp) -> str:
     """Return the block that restores M52."""
-    return f"M52P{int(ADAPTIVE in without_line(interp.active_m_codes))}"
+    return f"M52P{int(ADAPTIVE_FEED in without_line(interp.active_m_codes))}"
 
 
 def accelerate(interp: Interp, share: float) -> None:
@@ -64,11 +72,11 @@ def accelerate(interp: Interp, share: float) -> None:
         return
     of_ini = getattr(interp, "g12_accelerations", None)
     if not of_ini:
-        of_ini = [hal.get_value(pin) for pin in ACCELERATIONS]
-        for pin, acceleration in zip(ACCELERATIONS, of_ini):
+        of_ini = [hal.get_value(pin) for pin in ACCELERATION_PINS]
+        for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
             _try_to_set(pin, acceleration)
         interp.g12_accelerations = of_ini
-    for pin, acceleration in zip(ACCELERATIONS, of_ini):
+    for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
         hal.set_p(pin, repr(share * acceleration))
 
 
@@ -82,28 +90,32 @@ def _try_to_set(pin: str, acceleration: float) -> None:
 
 def restore_accelerations(interp: Interp) -> None:
     """Set X's and Y's acceleration to the INI's, if they were ever set."""
-    for pin, acceleration in zip(ACCELERATIONS, getattr(interp, "g12_accelerations", ())):
+    for pin, acceleration in zip(ACCELERATION_PINS, getattr(interp, "g12_accelerations", ())):
         hal.set_p(pin, repr(acceleration))
 
 
 def limit_override(interp: Interp, machine_unit: float, most: float) -> None:
     """Pass the highest feed override on the face to polar_xzc."""
     if interp.task and not is_older():
-        hal.set_p(OVERRIDE, repr(most))
-        hal.set_p(UNIT, repr(1.0 / machine_unit))
+        hal.set_p(OVERRIDE_PIN, repr(most))
+        hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
 
 
 def is_older() -> bool:
     """Tell whether the module polar_xzc that is loaded cannot limit the override."""
     try:
-        hal.get_value(OVERRIDE)
+        hal.get_value(OVERRIDE_PIN)
     except RuntimeError:
         return True
     return False
 
 
 def to_face(
-    interp: Interp, machine_unit: float, asked: int, share: float = 1.0, override: float = 1.0
+    interp: Interp,
+    machine_unit: float,
+    request: FaceRequest,
+    share: float = 1.0,
+    override: float = 1.0,
 ) -> Iterator[str]:
     """Switch to the face; yield the block to wait for.
 
@@ -114,16 +126,20 @@ def to_face(
     limit_override(interp, machine_unit, override)
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
-    interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")  # the last request may have ended by itself
-    interp.execute(f"M68E{FACE_OUTPUT}Q{asked}")
+    _request(interp, FaceRequest.OFF)  # the last request may have ended by itself
+    _request(interp, request)
     yield f"M66P{FACE_INPUT}L3Q{decimal(MACHINE.settings.polar_switch_time)}"
 
 
 def to_axes(interp: Interp) -> Iterator[str]:
     """Switch back to X, Z and C; yield the block to wait for."""
-    interp.execute(f"M68E{FACE_OUTPUT}Q{OFF}")
+    _request(interp, FaceRequest.OFF)
     yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
     restore_accelerations(interp)  # only now, after the wait: LinuxCNC reads ahead
+
+
+def _request(interp: Interp, request: FaceRequest) -> None:
+    interp.execute(f"M68E{FACE_OUTPUT}Q{request:d}")
 
 
 def has_switched(interp: Interp) -> bool:

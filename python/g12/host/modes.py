@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units, spindle and diameter mode of the interpreter; execution of a code to its end."""
+"""Units, modes and spindle of the interpreter; execution of a code to its end."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import emccanon
 
 from g12.host.interp import Interp
 from g12.lengths import MM_PER_INCH
+from g12.section.block_rules import NO_CODE, GGroup
 
-DIAMETER = 15  # index into a block's g_modes, and into active_g_codes
 G7 = 70
 INCH = 1  # length_units
 
@@ -44,8 +44,9 @@ def feed_spindle(interp: Interp) -> int:
 
 def diameter_mode(interp: Interp) -> bool:
     """Return whether G7 is active (the active codes are those before this block)."""
-    commanded = interp.blocks[interp.remap_level].g_modes[DIAMETER]
-    return (interp.active_g_codes[DIAMETER] if commanded == -1 else commanded) == G7
+    commanded = interp.blocks[interp.remap_level].g_modes[GGroup.DIAMETER]
+    active = interp.active_g_codes[GGroup.DIAMETER]
+    return (active if commanded == NO_CODE else commanded) == G7
 
 
 def run_code(interp: Interp, block: str) -> None:

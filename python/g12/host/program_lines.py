@@ -16,16 +16,16 @@ from itertools import accumulate
 from typing import NamedTuple
 
 from g12.host.interp import Interp
+from g12.section.block_rules import NO_CODE
 
 INTERP_OK = 0
-NO_MOTION = -1
 NO_REPEATS = 0  # L of an M98
-MOVING = (
+JUMPING = (
     "call",
     "endsub",
     "return",
 )  # O-words that always change the interpreter's position in its file
-SHORT = 200  # characters: every LinuxCNC reads longer lines than that
+SHORT_LINE = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # ngc/g12_skipped_over.ngc
 
 
@@ -152,7 +152,7 @@ class ProgramLines:
     def parse_rewritten(self, text: str) -> None:
         """Let the interpreter parse the line taken, rewritten; refuse it if it is too long."""
         length = len(self.source.lines[self.line - 1])
-        if length > SHORT:
+        if length > SHORT_LINE:
             self.parse(" " * length)
         self.parse(text)
 
@@ -169,7 +169,7 @@ class ProgramLines:
             return INTERP_OK  # LinuxCNC 2.9 would count a level that nothing ends
         interp.blocks[0].offset = self.source.starts[line - 1]
         status = interp.execute(None)
-        if kind in MOVING or interp.sequence_number != line:
+        if kind in JUMPING or interp.sequence_number != line:
             self._locate()
         return status
 
@@ -203,7 +203,7 @@ class ProgramLines:
     def skipping(self) -> bool:
         """Return whether the interpreter skips lines: a false if, or on the way to a sub."""
         self.interp.read("G1")
-        return self.interp.blocks[0].motion_to_be == NO_MOTION
+        return self.interp.blocks[0].motion_to_be == NO_CODE
 
     def _locate(self) -> None:
         """Continue at the interpreter's position in its file."""

@@ -16,7 +16,7 @@ from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 
 INPUT = 2  # of motion, as in spindle_c.hal and spindle_c_on.ngc
-SECTIONS = ("polar_on", "cylinder_mode")  # handlers
+SECTION_HANDLERS = ("polar_on", "cylinder_mode")  # handlers
 
 
 @messages.handler
@@ -50,7 +50,7 @@ def spindle_c_off(self, **words):
 def in_section(interp: Interp) -> bool:
     """Return whether the remapped block is in a section."""
     remaps = (interp.blocks[level].executing_remap for level in range(1, interp.remap_level))
-    return any(remap and remap.remap_py in SECTIONS for remap in remaps)
+    return any(remap and remap.remap_py in SECTION_HANDLERS for remap in remaps)
 
 
 def is_c() -> bool:

@@ -20,16 +20,18 @@ A stop costs v / a in time, about as much as the blending.
 from collections.abc import Callable, Sequence
 from math import hypot, inf, sqrt
 
-from g12.compensation.contour import Element, Mark, PlaneMove, Plunge
+from g12.compensation.contour import Mark, PathElement, PlaneMove, Plunge
 
 Direction = tuple[float, float, float]  # unit vector: along x and c of the plane, and z
-Move = PlaneMove | Plunge
+MotionElement = PlaneMove | Plunge
 TANGENT = 1e-4  # half the angle between two directions that are one
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
 
 def stops(
-    path: Sequence[Element], rounding: float, acceleration: Callable[[Direction, complex], float]
+    path: Sequence[PathElement],
+    rounding: float,
+    acceleration: Callable[[Direction, complex], float],
 ) -> list[bool]:
     """Return for each element of the tool centre's path whether the tool must stop at its end.
 
@@ -38,7 +40,7 @@ def stops(
     are, in program units per second squared; where that is 0 they have to stop.
     """
     marked = [False] * len(path)
-    following: Move | None = None
+    following: MotionElement | None = None
     stopping = True
     for k in range(len(path) - 1, -1, -1):
         element = path[k]
@@ -53,7 +55,10 @@ def stops(
 
 
 def _corner(
-    a: Move, b: Move, acceleration: Callable[[Direction, complex], float], stopping: bool
+    a: MotionElement,
+    b: MotionElement,
+    acceleration: Callable[[Direction, complex], float],
+    stopping: bool,
 ) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
@@ -74,14 +79,14 @@ def _corner(
     return half_sine * square / (2.0 * from_a) * max(1.0, min(unequal, MOST_UNEQUAL))
 
 
-def _corner_point(a: Move, b: Move) -> complex:
+def _corner_point(a: MotionElement, b: MotionElement) -> complex:
     """Return where two elements meet in the plane; anywhere between two plunges."""
     if isinstance(a, PlaneMove):
         return a.end
     return b.start if isinstance(b, PlaneMove) else 1 + 0j
 
 
-def _direction(element: Move, share: float) -> Direction:
+def _direction(element: MotionElement, share: float) -> Direction:
     """Return the unit vector (X, C, Z) of an element at a share of it."""
     if isinstance(element, Plunge):
         return 0.0, 0.0, 1.0 if element.z1 > element.z0 else -1.0
@@ -93,7 +98,7 @@ def _direction(element: Move, share: float) -> Direction:
     return along.real * length / whole, along.imag * length / whole, z / whole
 
 
-def _length(element: Move) -> float:
+def _length(element: MotionElement) -> float:
     """Return the length of an element in space."""
     along = element.length if isinstance(element, PlaneMove) else 0.0
     return hypot(along, element.z1 - element.z0)

@@ -5,14 +5,13 @@ from collections.abc import Collection, Iterable
 from typing import Generic, NamedTuple, TypeVar
 
 from g12.errors import number
-from g12.lengths import is_inch
+from g12.lengths import ROUNDING_MM, is_inch
 from g12.machine_ini import Axis
 from g12.moves.soft_limits import AxisScale, SoftLimits
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
 LEAST_MM = 0.001  # with a smaller move of a slide beside C, LinuxCNC 2.9.0~pre1 gets the feed wrong
-ROUNDING_MM = 1e-6  # of an offset that was given in another unit
 CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
 
 

@@ -28,7 +28,7 @@ BULGE = 1.5  # deviations: of a segment between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a segment with both ends exactly on the path
 LOSS = 0.18  # segments: lost where an element ends exactly on the path
 WORTH_A_CUT = 0.5  # segments: an apsis nearer to an end of the element is left alone
-MOST_SEGMENTS = 100_000  # of an element: more would cost LinuxCNC too much time and memory
+MOST_SEGMENTS_OF_MOVE = 100_000  # of an element: more would cost LinuxCNC too much time and memory
 
 Density = Callable[[float], tuple[float, float]]
 
@@ -126,7 +126,7 @@ def _portion(
 
 
 def _check_count(segments: float) -> None:
-    if segments > MOST_SEGMENTS:
+    if segments > MOST_SEGMENTS_OF_MOVE:
         raise TooManySegments
 
 

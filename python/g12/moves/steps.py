@@ -4,9 +4,9 @@
 from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Start
+from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Start
 from g12.moves.feed import Segment, Split, keeps_slide
-from g12.moves.spacing import MOST_SEGMENTS, TooManySegments
+from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, TooManySegments
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
 STOP_SHARE = 0.7  # of the tolerance, before a stop: into a G61 a segment cuts a corner deeper
@@ -14,7 +14,7 @@ ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' o
 LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
 
 
-class Position(NamedTuple):
+class MachinePosition(NamedTuple):
     """The machine's position: X radius value, C in degrees, Z."""
 
     x: float
@@ -48,7 +48,7 @@ class SectionPlan(NamedTuple):
     """
 
     steps: list[object]
-    position: Position
+    position: MachinePosition
     angle: float
     notes: list[str]
 
@@ -61,7 +61,7 @@ class SectionPlan(NamedTuple):
 class StepMaker:
     """Makes the steps of a plan, one element of the tool centre's path after the other."""
 
-    def __init__(self, contour: Contour, position: Position) -> None:
+    def __init__(self, contour: Contour, position: MachinePosition) -> None:
         self.steps: list[object] = []
         self.position = position
         self._contour = contour
@@ -69,9 +69,9 @@ class StepMaker:
     def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
         if segments:
             self.steps.append(BlockMoves(line, axes, segments, stop))
-            self.position = Position(*segments[-1][:3])
+            self.position = MachinePosition(*segments[-1][:3])
 
-    def _make_up(self, path: Sequence[Element], x: float, z: float, least: float) -> None:
+    def _make_up(self, path: Sequence[PathElement], x: float, z: float, least: float) -> None:
         """Move the slides to x and z, by what the last segments of a path have left over."""
         rest = {"X": x - self.position.x, "Z": z - self.position.z}
         axes = "".join(axis for axis, off in rest.items() if abs(off) > LEFT_OVER * least)
@@ -100,7 +100,8 @@ class StepMaker:
         except TooManySegments:
             self._contour.refuse(
                 move.line,
-                f"more than {MOST_SEGMENTS} moves would be needed to stay within POLAR_TOLERANCE",
+                f"more than {MOST_SEGMENTS_OF_MOVE} moves would be needed to stay within"
+                " POLAR_TOLERANCE",
             )
 
 

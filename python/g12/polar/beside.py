@@ -27,7 +27,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import copysign, pi, sqrt
 
-from g12.compensation.contour import Contour, Element, PlaneMove
+from g12.compensation.contour import Contour, PathElement, PlaneMove
 from g12.errors import number
 from g12.geometry.curve import Arc, Curve, Line, angle_of
 from g12.moves.feed import Split
@@ -51,7 +51,9 @@ def along_and_around(direction: complex, slide_direction: complex) -> tuple[floa
     return turned.real, turned.imag
 
 
-def check_reach(contour: Contour, path: Sequence[Element], beside: float, tolerance: float) -> None:
+def check_reach(
+    contour: Contour, path: Sequence[PathElement], beside: float, tolerance: float
+) -> None:
     """Refuse a path that comes nearer to the pole than the tool can."""
     least = abs(beside) + tolerance
     for move in (element for element in path if isinstance(element, PlaneMove)):

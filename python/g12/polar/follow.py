@@ -37,7 +37,7 @@ OVERSHOOT = 0.002  # seconds until polar_xzc notices a higher override
 LEAST_SPEED = 1e-3  # program units per second
 MOST_TURNING = 1e6  # radians for a unit of length: at the pole
 LEAST_SQUARE = 1e-12  # of p and q / R together: the axis does not accelerate
-SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
+FOLLOW_SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 SEGMENTS, SOFT = 1.2, 4.0  # measured on a circle: how far segments fall short of their speed
 
 
@@ -86,7 +86,7 @@ def followed(move: PlaneMove, demand: Demand, limits: FaceLimits, share: float =
     square = demand.fastest * demand.fastest
     for p, q in demand.axes:
         at_rest = q * most
-        if at_rest > SLACK:
+        if at_rest > FOLLOW_SLACK:
             return 0.0
         both = p * p + q * q * bend * bend
         under = p * p - both * (1.0 - at_rest * at_rest)
@@ -106,7 +106,9 @@ def can_follow_at(
     move: PlaneMove, demands: Sequence[Demand], limits: FaceLimits, share: float
 ) -> bool:
     """Return the same, by the move's demands."""
-    return all(SLACK * followed(move, demand, limits, share) >= move.feed for demand in demands)
+    return all(
+        FOLLOW_SLACK * followed(move, demand, limits, share) >= move.feed for demand in demands
+    )
 
 
 def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
@@ -122,7 +124,7 @@ def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
     sliding = along + beside * turning
     pushed = (bent * along - 2.0 * turning * sliding + beside * turning * turning) / slide
     lifted = turning * turning * slide - bent * around + beside * pushed
-    slowest = max(abs(turning) / limits.c_speed, abs(sliding) / (limits.slide_speed * SLACK))
+    slowest = max(abs(turning) / limits.c_speed, abs(sliding) / (limits.slide_speed * FOLLOW_SLACK))
     axes = (
         (abs(pushed) / limits.c_acceleration, abs(turning) / limits.c_acceleration),
         (abs(lifted) / limits.slide_acceleration, abs(sliding) / limits.slide_acceleration),

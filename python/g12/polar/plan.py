@@ -9,12 +9,12 @@ from math import copysign, degrees, pi, radians, remainder
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Element, Mark, PlaneMove, Plunge
+from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Plunge
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.steps import (
     ROUNDING_SHARE,
-    Position,
+    MachinePosition,
     SectionPlan,
     StepMaker,
 )
@@ -26,7 +26,7 @@ from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
 
 POLE_SHARE = 0.5  # of the tolerance: a path nearer to the pole than this runs through it
-SAME_ANGLE = 1e-9  # radians
+NO_ROTATION = 1e-9  # radians
 RIPPLE = 0.01  # relative: how much the speed may differ from F inside a segment
 
 
@@ -110,7 +110,7 @@ class _SlideAndSpindle(StepMaker):
 
     def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
-        super().__init__(contour, Position(x, c + degrees(self.angle), z))
+        super().__init__(contour, MachinePosition(x, c + degrees(self.angle), z))
         self._settings, self._entry = settings, c
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
         self._laws: dict[tuple[float, float], Law] = {}
@@ -150,13 +150,13 @@ class _SlideAndSpindle(StepMaker):
             self.angle = there[-1][1]
             points = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
         self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
-        self.position = Position(*points[-1])
+        self.position = MachinePosition(*points[-1])
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         """Add a move of Z alone."""
         self._run(move.line, "Z", [(self.position.x, self.position.c, move.z1, move.feed)], stop)
 
-    def finish(self, path: Sequence[Element]) -> None:
+    def finish(self, path: Sequence[PathElement]) -> None:
         """Switch back from the face; add what the last segments left over of X and Z."""
         self.switch(path[-1].line if path else 0, None)
         slide, z = self.position.x, self.position.z
@@ -170,10 +170,10 @@ class _SlideAndSpindle(StepMaker):
     def _turn(self, move: PlaneMove, angle: float) -> None:
         """Rotate C at the pole, the shorter way; by half a turn in the direction that unwinds C."""
         turn = remainder(angle - self.angle, 2 * pi)
-        if abs(abs(turn) - pi) < SAME_ANGLE:
+        if abs(abs(turn) - pi) < NO_ROTATION:
             turn = copysign(pi, -self.angle)
         self.angle += turn
-        if abs(turn) > SAME_ANGLE:
+        if abs(turn) > NO_ROTATION:
             x, _, z = self.position
             segment = (x, self._entry + degrees(self.angle), z, self._settings.c_speed)
             self._run(move.line, "XC", [segment], True)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import asin, sqrt
 
-from g12.compensation.contour import Contour, Element, PlaneMove, Plunge
+from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.geometry.curve import Arc, Line, sweep_between
 
 POLE = 0j
@@ -19,10 +19,10 @@ FLAT_SHARE = 0.2  # of the pole_radius: how far the radii that replace an arc ma
 
 
 def through_pole(
-    contour: Contour, path: Sequence[Element], pole_radius: float, refused: bool
-) -> list[Element]:
+    contour: Contour, path: Sequence[PathElement], pole_radius: float, refused: bool
+) -> list[PathElement]:
     """Return the path with each move that comes within ``pole_radius`` of the pole led into it."""
-    led: list[Element] = []
+    led: list[PathElement] = []
     for move in path:
         portions = _led(move, pole_radius) if isinstance(move, PlaneMove) else None
         if portions is None:
@@ -38,7 +38,7 @@ def through_pole(
     return led
 
 
-def _led(move: PlaneMove, pole_radius: float) -> list[Element] | None:
+def _led(move: PlaneMove, pole_radius: float) -> list[PathElement] | None:
     """Return what replaces a move within ``pole_radius`` of the pole, None for others."""
     curve = move.curve
     ends = [float(k) for k, end in enumerate((curve.start, curve.end)) if abs(end) <= pole_radius]
@@ -72,11 +72,11 @@ def _arc_passes(arc: Arc, pole_radius: float) -> list[float]:
 
 def _replaced(
     move: PlaneMove, passes: list[float], half: float, pole_radius: float
-) -> list[Element] | None:
+) -> list[PathElement] | None:
     """Return the move with what is up to ``half`` beside each pass replaced by radii."""
     if not passes:
         return None
-    moves, done = list[Element](), 0.0
+    moves, done = list[PathElement](), 0.0
     for share in passes:
         if share - half > done:
             moves.append(move.portion(done, share - half))
@@ -91,7 +91,7 @@ def _replaced(
 
 def _radius(
     move: PlaneMove, share: float, at_pole: float, pole_radius: float, outwards: bool = False
-) -> list[Element]:
+) -> list[PathElement]:
     """Return the radius between a point of a move and the pole: nothing where it is there."""
     point, level, pole_level = move.curve.point(share), move.level(share), move.level(at_pole)
     if abs(point) > pole_radius:

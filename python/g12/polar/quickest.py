@@ -19,7 +19,7 @@ from math import ceil, log, radians, sqrt
 from operator import itemgetter
 from typing import NamedTuple
 
-from g12.compensation.contour import Element, PlaneMove
+from g12.compensation.contour import PathElement, PlaneMove
 from g12.polar.follow import Demand, FaceLimits, can_follow, can_follow_at, demands_of, followed
 
 ACCELERATION_SHARES = (
@@ -32,7 +32,7 @@ ACCELERATION_SHARES = (
     0.05,
 )  # of the INI's
 PLANNED = 0.7  # of the acceleration: the planner's along the path, measured
-FEED_STEP, LEAST_FEED = (
+FEED_RATIO, LEAST_FEED = (
     0.85,
     0.08,
 )  # tried feeds are F times powers of FEED_STEP, down to LEAST_FEED
@@ -57,18 +57,18 @@ class FaceStretch(NamedTuple):
 class OnFace(NamedTuple):
     """A path with the stretch that each element belongs to, None for one in segments."""
 
-    path: list[Element]
+    path: list[PathElement]
     stopping: list[bool]
     stretches: list[FaceStretch | None]
 
 
-class _Element(NamedTuple):
+class _TimedElement(NamedTuple):
     """An element of the path with its demands; without any it is no move in the plane.
 
     ``corner``: a corner follows. ``in_segments`` is the approximate time in segments, in seconds.
     """
 
-    move: Element
+    move: PathElement
     stop: bool
     length: float = 0.0
     demands: Sequence[Demand] = ()
@@ -79,7 +79,7 @@ class _Element(NamedTuple):
 class _Span(NamedTuple):
     """A portion of an element, with its feed on the face, 0.0 in segments."""
 
-    element: _Element
+    element: _TimedElement
     first: float
     last: float
     feed: float
@@ -89,7 +89,7 @@ class _Span(NamedTuple):
         return (self.last - self.first) * self.element.length
 
 
-def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) -> OnFace:
+def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimits) -> OnFace:
     """Return a path with its moves divided so that it takes the least time.
 
     ``stopping``, given and returned, holds for each element whether it ends in a stop.
@@ -107,12 +107,14 @@ def quickest(path: Sequence[Element], stopping: list[bool], limits: FaceLimits) 
     return OnFace([_move_of(span) for span in best], stops, _on_face(best, limits, chosen))
 
 
-def _element(move: Element, stop: bool, following: Element | None, limits: FaceLimits) -> _Element:
+def _element(
+    move: PathElement, stop: bool, following: PathElement | None, limits: FaceLimits
+) -> _TimedElement:
     if not isinstance(move, PlaneMove):
-        return _Element(move, stop)
+        return _TimedElement(move, stop)
     demands, length = demands_of(move, limits), move.length
     corner = not isinstance(following, PlaneMove) or not _goes_straight_on(move, following)
-    return _Element(move, stop, length, demands, corner, length * _slowness(demands))
+    return _TimedElement(move, stop, length, demands, corner, length * _slowness(demands))
 
 
 def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
@@ -127,7 +129,7 @@ def _slowness(demands: Sequence[Demand]) -> float:
     )
 
 
-def _spans(element: _Element, limits: FaceLimits, share: float) -> list[_Span]:
+def _spans(element: _TimedElement, limits: FaceLimits, share: float) -> list[_Span]:
     """Return an element in spans, each with a feed that C and the slide follow along all of it."""
     move, demands = element.move, element.demands
     if not isinstance(move, PlaneMove):
@@ -153,7 +155,7 @@ def _level(share: float) -> float:
     """Return the greatest tried share of the feed that is at most ``share``, 0.0 for too little."""
     if share >= 1.0:
         return 1.0
-    return FEED_STEP ** ceil(log(share) / log(FEED_STEP)) if share > LEAST_FEED else 0.0
+    return FEED_RATIO ** ceil(log(share) / log(FEED_RATIO)) if share > LEAST_FEED else 0.0
 
 
 def _worth(feed: float, ends: Sequence[Demand]) -> float:
@@ -189,7 +191,7 @@ def _joined(run: list[_Span]) -> _Span:
     return run[0]._replace(last=run[-1].last)
 
 
-def _move_of(span: _Span) -> Element:
+def _move_of(span: _Span) -> PathElement:
     """Return the element, or the portion of it, that a span covers."""
     move = span.element.move
     if not isinstance(move, PlaneMove):

@@ -14,7 +14,9 @@ from g12.request.context import XY, Context, Tool
 from g12.request.words import Words
 
 SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
-ROUNDING_MM = 1e-6  # lengths closer than this are equal
+CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
+LEFT_OUT = -9999.0  # an entry of a call that is left out
 WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
 COUNTLESS = 1e9  # steps; a quotient beyond it could not even be rounded
 MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview

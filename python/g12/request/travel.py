@@ -6,13 +6,12 @@ from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import converts, is_inch
-from g12.request.common import ROUNDING_MM
+from g12.lengths import ROUNDING_MM, converts, is_inch
 from g12.request.context import XY, XZ, YZ
 from g12.request.words import Words
 
-Point = tuple[float, float, float]  # X, Y, Z
-LETTERS = "XYZ"
+SpacePoint = tuple[float, float, float]  # X, Y, Z
+TRAVEL_AXES = "XYZ"
 X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 DIRECTIONS = {XY: (X, Y), XZ: (Z, X), YZ: (Y, Z)}
 
@@ -24,11 +23,11 @@ class CycleExtent(NamedTuple):
     """
 
     plane: str
-    centre: Point
+    centre: SpacePoint
     radius: float
     heights: tuple[float, ...] = ()
 
-    def points(self) -> list[Point]:
+    def points(self) -> list[SpacePoint]:
         """Return the centre at each height."""
         x, y, z = self.centre
         return [(x, y, height) for height in self.heights or (z,)]
@@ -41,13 +40,13 @@ class MachineFrame(NamedTuple):
     offset). All are in program units, which are ``unit`` machine units of ``millimetres`` each.
     """
 
-    shift: Point
+    shift: SpacePoint
     rotation: float
-    offset: Point
+    offset: SpacePoint
     unit: float
     millimetres: float
 
-    def position(self, point: Point) -> Point:
+    def position(self, point: SpacePoint) -> SpacePoint:
         """Return a point in machine coordinates and units."""
         turned = self._turned(*(value + plus for value, plus in zip(point, self.shift)))
         x, y, z = (self.unit * (value + plus) for value, plus in zip(turned, self.offset))
@@ -58,7 +57,7 @@ class MachineFrame(NamedTuple):
         first, second = (self._turned(*along) for along in DIRECTIONS[extent.plane])
         return [self.unit * extent.radius * hypot(*pair) for pair in zip(first, second)]
 
-    def _turned(self, x: float, y: float, z: float) -> Point:
+    def _turned(self, x: float, y: float, z: float) -> SpacePoint:
         turn = radians(self.rotation)
         return x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn), z
 
@@ -72,7 +71,9 @@ def check_travel(
     """Refuse a cycle that leaves the limits of an axis, its lowest and highest machine position."""
     centres = [frame.position(point) for point in extent.points()]
     rounding = ROUNDING_MM / frame.millimetres
-    for letter, centre_positions, width in zip(LETTERS, zip(*centres), frame.half_widths(extent)):
+    for letter, centre_positions, width in zip(
+        TRAVEL_AXES, zip(*centres), frame.half_widths(extent)
+    ):
         low, high = limits[letter]
         for position, limit, side in (
             (min(centre_positions) - width, low, -1),

@@ -5,63 +5,91 @@ Codes are the parser's: a G code times ten, by modal group.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from enum import IntEnum
 from typing import NamedTuple
 
 from g12.section.line import BlockLocation, TextLine
 from g12.section.words import SectionWords
 
 NO_CODE = -1
-# Modal groups of the G codes, as the parser numbers them, and two of the M codes.
-NON_MODAL, MOTION, PLANE, DISTANCE, CENTRE = 0, 1, 2, 3, 4
-FEED, UNITS, COMPENSATION, LENGTH, RETRACT = 5, 6, 7, 8, 10
-WORK_OFFSET, PATH, SPINDLE, DIAMETER, SHIFT = 12, 13, 14, 15, 16
-M_STOP, M_STATE = 4, 7
+
+
+class GGroup(IntEnum):
+    """The modal groups of the G codes, as the parser numbers them (GM_… in interp_internal.hh)."""
+
+    NON_MODAL = 0
+    MOTION = 1
+    PLANE = 2
+    DISTANCE = 3
+    IJK_DISTANCE = 4
+    FEED = 5
+    UNITS = 6
+    COMPENSATION = 7
+    TOOL_LENGTH = 8
+    RETURN_LEVEL = 10
+    WORK_OFFSET = 12
+    PATH_CONTROL = 13
+    SPINDLE = 14
+    DIAMETER = 15
+    G92_OFFSET = 16
+
+
+class MGroup(IntEnum):
+    """The modal groups of the M codes, those that a section has rules for."""
+
+    STOP = 4
+    INPUT_OUTPUT = 5
+    MODAL_STATE = 7
+
+
 G0, G1, G2, G3, G4 = 0, 10, 20, 30, 40
 M2, M30 = 2, 30
-STATE_CODES = SAVE, FORGET, RESTORE, SAVE_FOR_SUB = 70, 71, 72, 73
-KNOWN_G = {
-    NON_MODAL: {G4},
-    MOTION: {G0, G1, G2, G3},
-    DISTANCE: {900, 910},
-    CENTRE: {911},
-    FEED: {940, 950},
-    COMPENSATION: {400, 410, 420},
-    RETRACT: {980, 990},
-    PATH: {610, 611, 640},
-    SPINDLE: {970},
+STATE_CODES = M_SAVE, M_INVALIDATE, M_RESTORE, M_AUTORESTORE = 70, 71, 72, 73
+KNOWN_G: dict[int, Collection[int]] = {
+    GGroup.NON_MODAL: {G4},
+    GGroup.MOTION: {G0, G1, G2, G3},
+    GGroup.DISTANCE: {900, 910},
+    GGroup.IJK_DISTANCE: {911},
+    GGroup.FEED: {940, 950},
+    GGroup.COMPENSATION: {400, 410, 420},
+    GGroup.RETURN_LEVEL: {980, 990},
+    GGroup.PATH_CONTROL: {610, 611, 640},
+    GGroup.SPINDLE: {970},
 }
 REFUSED_G = {  # the others that LinuxCNC knows
-    NON_MODAL: (100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923),
-    MOTION: (
+    GGroup.NON_MODAL: (100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923),
+    GGroup.MOTION: (
         *range(50, 54),
         *(330, 331, 382, 383, 384, 385),
         *(700, 710, 711, 712, 720, 721, 722, 730, 740, 760),
         *range(800, 900, 10),
     ),
-    PLANE: (171, 181, 190, 191),
-    CENTRE: (901,),
-    FEED: (930,),
-    UNITS: (200, 210),
-    COMPENSATION: (411, 421),
-    LENGTH: (430, 431, 432, 490),
-    WORK_OFFSET: (540, 550, 560, 570, 580, 590, 591, 592, 593),
-    SPINDLE: (960,),
-    DIAMETER: (70, 80),
+    GGroup.PLANE: (171, 181, 190, 191),
+    GGroup.IJK_DISTANCE: (901,),
+    GGroup.FEED: (930,),
+    GGroup.UNITS: (200, 210),
+    GGroup.COMPENSATION: (411, 421),
+    GGroup.TOOL_LENGTH: (430, 431, 432, 490),
+    GGroup.WORK_OFFSET: (540, 550, 560, 570, 580, 590, 591, 592, 593),
+    GGroup.SPINDLE: (960,),
+    GGroup.DIAMETER: (70, 80),
 }
-GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in codes} | {G0: MOTION}
-FEED_MODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
+GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in codes} | {
+    G0: GGroup.MOTION
+}
+FEED_CODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
 MOVING_WORDS = ("X", "C", "Z", "I", "J", "K")
 NO_TOOL_CHANGE = "the tool cannot change inside the section"
 OWN_RADIUS = "the radius is that of the loaded tool"
-REASON_OF_GROUP = {
-    MOTION: "only G1, G2 and G3 move inside the section",
-    FEED: "the feed of a section is G94 or G95 (G98 or G99)",
-    UNITS: "the units cannot change inside the section",
-    COMPENSATION: "the radius is that of the loaded tool: G41 or G42 without D",
-    LENGTH: "the tool length offset cannot change inside the section",
-    SPINDLE: "the spindle keeps its speed inside the section (G97)",
-    DIAMETER: "X cannot change between diameter and radius inside the section",
+REASON_OF_GROUP: dict[int, str] = {
+    GGroup.MOTION: "only G1, G2 and G3 move inside the section",
+    GGroup.FEED: "the feed of a section is G94 or G95 (G98 or G99)",
+    GGroup.UNITS: "the units cannot change inside the section",
+    GGroup.COMPENSATION: "the radius is that of the loaded tool: G41 or G42 without D",
+    GGroup.TOOL_LENGTH: "the tool length offset cannot change inside the section",
+    GGroup.SPINDLE: "the spindle keeps its speed inside the section (G97)",
+    GGroup.DIAMETER: "X cannot change between diameter and radius inside the section",
 }
 REASON_OF_G = {
     G0: "a rapid leaves the contour. Is the section's end missing above? "
@@ -77,7 +105,7 @@ REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE)
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
 ORIENT = 19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
-LONGEST_WAIT = "Q above zero, the longest wait in seconds"
+WAIT_RULE = "Q above zero, the longest wait in seconds"
 
 MADE_OUTSIDE = re.compile(r"o<(face_holes?(?:_at)?|side_holes|polar_(?:polygon|slot|pocket))>call")
 
@@ -158,18 +186,18 @@ def check_block(
 def _check_g(
     group: int, code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation
 ) -> None:
-    taken = known.planes if group == PLANE else KNOWN_G.get(group, ())
+    taken = known.planes if group == GGroup.PLANE else KNOWN_G.get(group, ())
     if code not in taken or (code == G0 and not rapid_allowed):
         reason = REASON_OF_G.get(code) or _reason_of_group(group, known)
         raise location.refuse(f"G{code / 10:g} is refused: {reason}")
 
 
 def _reason_of_group(group: int, known: SectionWords) -> str:
-    if group in (NON_MODAL, WORK_OFFSET, SHIFT):
+    if group in (GGroup.NON_MODAL, GGroup.WORK_OFFSET, GGroup.G92_OFFSET):
         return known.origin
-    if group == PLANE:
+    if group == GGroup.PLANE:
         return f"the section's plane is {known.plane_name}"
-    if group == CENTRE:
+    if group == GGroup.IJK_DISTANCE:
         return f"{known.centre_name} are always incremental inside the section"
     return REASON_OF_GROUP.get(group, "it is not known here")
 
@@ -187,7 +215,7 @@ def _check_arguments(block: SectionBlock, location: BlockLocation) -> None:
         if needed and words.get(needed, -1.0) < 0.0:
             raise location.refuse(f"M{code} needs {needed}, the number of the output")
     if ORIENT in block.m and words.get("Q", 1.0) <= 0.0:
-        raise location.refuse(f"M{ORIENT} needs {LONGEST_WAIT}")
+        raise location.refuse(f"M{ORIENT} needs {WAIT_RULE}")
     if WAIT_FOR_INPUT in block.m:
         _check_waiting(words, location)
 
@@ -198,7 +226,7 @@ def _check_waiting(words: dict[str, float], location: BlockLocation) -> None:
     for wrong, reason in (
         (("P" in words) == ("E" in words), "either P or E, the number of the input"),
         (waits and "E" in words, "L0 with E: only a digital input can be waited for"),
-        (waits and words.get("Q", 0.0) <= 0.0, LONGEST_WAIT),
+        (waits and words.get("Q", 0.0) <= 0.0, WAIT_RULE),
         (words.get("L", 0.0) not in range(5), "L from 0 to 4"),
     ):
         if wrong:
@@ -207,12 +235,16 @@ def _check_waiting(words: dict[str, float], location: BlockLocation) -> None:
 
 def feed_modes(block: SectionBlock) -> set[bool]:
     """Return the feed modes that a block commands; True is per revolution."""
-    return {FEED_MODES[code] for code in (block.g[FEED], block.g[RETRACT]) if code in FEED_MODES}
+    return {
+        FEED_CODES[code]
+        for code in (block.g[GGroup.FEED], block.g[GGroup.RETURN_LEVEL])
+        if code in FEED_CODES
+    }
 
 
 def alone(block: SectionBlock, words: str = "") -> bool:
     """Return whether the block holds only a motion code, and its ``words``."""
-    others = [*block.g[:MOTION], *block.g[MOTION + 1 :], *block.m]
+    others = [*block.g[: GGroup.MOTION], *block.g[GGroup.MOTION + 1 :], *block.m]
     return set(block.words) <= set(words) and max(others) == NO_CODE
 
 

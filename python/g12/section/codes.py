@@ -5,7 +5,7 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number
-from g12.section.block_rules import MOTION, SectionBlock
+from g12.section.block_rules import GGroup, SectionBlock
 
 
 class SectionCodes(NamedTuple):
@@ -24,12 +24,12 @@ class SectionCodes(NamedTuple):
 
     def begins(self, block: SectionBlock) -> bool:
         """Return whether a block switches on."""
-        return block.g[MOTION] in self.on and not self.ends(block)
+        return block.g[GGroup.MOTION] in self.on and not self.ends(block)
 
     def ends(self, block: SectionBlock) -> bool:
         """Return whether a block switches off."""
         off = not self.word or block.words.get(self.word) == 0.0
-        return off and block.g[MOTION] in self.off
+        return off and block.g[GGroup.MOTION] in self.off
 
 
 def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) -> SectionCodes:

@@ -7,23 +7,23 @@ from typing import NamedTuple
 
 from g12.errors import LONGEST_BLOCK
 from g12.section.block_rules import (
-    CENTRE,
-    DISTANCE,
-    M_STOP,
-    MOTION,
     NO_CODE,
-    NON_MODAL,
     ORIENT,
-    PATH,
-    SPINDLE,
     STATE_CODES,
+    GGroup,
+    MGroup,
     SectionBlock,
     feed_modes,
 )
 from g12.section.line import TextLine
 
-PASSED_ON = (NON_MODAL, CENTRE, PATH, SPINDLE)  # modal groups of actions of the machine
-ARGUMENTS = ("S", "P", "Q", "L", "E")  # words of the codes without motion
+PASSED_ON = (
+    GGroup.NON_MODAL,
+    GGroup.IJK_DISTANCE,
+    GGroup.PATH_CONTROL,
+    GGroup.SPINDLE,
+)  # modal groups of actions of the machine
+ACTION_WORDS = ("S", "P", "Q", "L", "E")  # words of the codes without motion
 _IN_REPORT = re.compile(r"%(d|f|\.\df)|#(\d+|<[^>]*>)")
 _REPORTS = ("debug,", "print,", "log,", "abort,")
 
@@ -45,7 +45,7 @@ class SectionModes(NamedTuple):
 def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> SectionModes:
     """Return the modes after the codes and F of ``block``, with ``speed`` by its S."""
     words = block.words
-    distance, commanded = block.g[DISTANCE], feed_modes(block)
+    distance, commanded = block.g[GGroup.DISTANCE], feed_modes(block)
     per_revolution = commanded.pop() if commanded else modes.per_revolution
     feed = modes.feed if per_revolution == modes.per_revolution else 0.0  # F in the other unit
     return SectionModes(
@@ -53,7 +53,7 @@ def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> Secti
         per_revolution=per_revolution,
         feed=words.get("F", feed),
         speed=speed,
-        motion=modes.motion if block.g[MOTION] == NO_CODE else block.g[MOTION],
+        motion=modes.motion if block.g[GGroup.MOTION] == NO_CODE else block.g[GGroup.MOTION],
     )
 
 
@@ -63,16 +63,16 @@ def action_text(block: SectionBlock, line: TextLine) -> str:
     codes += [
         f"M{code}"
         for group, code in enumerate(block.m)
-        if code != NO_CODE and group != M_STOP and code not in STATE_CODES
+        if code != NO_CODE and group != MGroup.STOP and code not in STATE_CODES
     ]
-    letters = (*ARGUMENTS, "R") if ORIENT in block.m else ARGUMENTS
+    letters = (*ACTION_WORDS, "R") if ORIENT in block.m else ACTION_WORDS
     codes += [letter + decimal(block.words[letter]) for letter in letters if letter in block.words]
     return "".join(codes) + line.spindle if codes else ""
 
 
 def stop_text(block: SectionBlock) -> str:
     """Return the block's M0, M1 or M60, which acts after its motion; "" without one."""
-    return "" if block.m[M_STOP] == NO_CODE else f"M{block.m[M_STOP]}"
+    return "" if block.m[MGroup.STOP] == NO_CODE else f"M{block.m[MGroup.STOP]}"
 
 
 def decimal(value: float) -> str:

@@ -20,7 +20,7 @@ from math import atan2, ceil, degrees, hypot, sqrt
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.request.common import ROUNDING_MM
+from g12.lengths import DEGREES_PER_TURN, ROUNDING_MM
 from g12.request.context import Context
 from g12.shapes.entries import (
     Extent,
@@ -32,10 +32,9 @@ HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 FACE_HOLES = ("count", "circle_diameter", "first_angle", "step_angle", *HOLE)
 SIDE_HOLES = ("count", "z", "first_angle", "step_angle", "surface_diameter", *HOLE)
 FACE_HOLE_AT = ("x", "c", *HOLE)
-MOST_HOLES = 360
+MOST_HOLES_OF_CALL = 360
 DRILL, TAP_RIGHT, TAP_LEFT, BORE = range(4)  # kind
-SPINDLE_CODES = {TAP_RIGHT: 3, TAP_LEFT: 4}  # M codes
-TURN = 360.0
+TAP_SPINDLE_CODES = {TAP_RIGHT: 3, TAP_LEFT: 4}  # M codes
 CHIP_MM = 0.254  # chip break: retract; full retract: clearance of the rapid back to the bottom
 
 
@@ -189,20 +188,20 @@ def check_tool(entries: ShapeEntries, context: Context) -> None:
 
 def count_of(entries: ShapeEntries) -> int:
     """Return how many holes there are."""
-    return entries.require_whole("count", "how many holes", least=1, most=MOST_HOLES)
+    return entries.require_whole("count", "how many holes", least=1, most=MOST_HOLES_OF_CALL)
 
 
 def hole_turn(entries: ShapeEntries, count: int) -> float:
     """Return the angle from hole to hole: step_angle, or a full circle by the number of holes."""
     if "step_angle" not in entries:
-        return TURN / count
+        return DEGREES_PER_TURN / count
     return entries.angle("step_angle")
 
 
 def shorter_turn(angle: float) -> float:
     """Return an angle as the shorter turn, from -180 to 180; 180 keeps its sign."""
-    short = angle - TURN * ceil((angle - TURN / 2) / TURN)
-    return -short if short == TURN / 2 and angle < 0 else short
+    short = angle - DEGREES_PER_TURN * ceil((angle - DEGREES_PER_TURN / 2) / DEGREES_PER_TURN)
+    return -short if short == DEGREES_PER_TURN / 2 and angle < 0 else short
 
 
 def on_face(
@@ -226,7 +225,7 @@ def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Ho
     depth = entries.require_positive("depth", "how deep, from the face or surface")
     retract = entries.require_positive("retract", "the height at which the tool is clear")
     kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)
-    tap = kind in SPINDLE_CODES
+    tap = kind in TAP_SPINDLE_CODES
     feed = hole_feed(entries, context, tap)
     peck = entries.take("peck") or 0.0
     if peck and kind != DRILL:
@@ -257,7 +256,7 @@ def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
 
 def check_tapping(entries: ShapeEntries, machine: HoleMachine, kind: int) -> None:
     """Refuse a tap with its spindle off or reversed: the machine would wait, or the tap break."""
-    code = SPINDLE_CODES[kind]
+    code = TAP_SPINDLE_CODES[kind]
     if machine.spindle_code != code or not machine.speed:
         hand = "right" if kind == TAP_RIGHT else "left"
         its = f" and S, ${machine.spindle} beside them" if machine.spindle else " and S"

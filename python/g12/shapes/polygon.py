@@ -26,7 +26,8 @@ from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.request.common import ROUNDING_MM, loaded_tool
+from g12.lengths import ROUNDING_MM
+from g12.request.common import loaded_tool
 from g12.request.context import Context
 from g12.shapes.entries import (
     CLEAR_MM,
@@ -45,7 +46,7 @@ from g12.shapes.entries import (
     rounds_between,
 )
 
-ENTRIES = (
+POLYGON_ENTRIES = (
     "sides",
     "across_flats",
     "depth",
@@ -57,10 +58,10 @@ ENTRIES = (
     "plunge_feed",
     "angle",
 )
-FLATS = 2  # corner distance of two flats, which do not meet
+TWO_FLATS = 2  # corner distance of two flats, which do not meet
 MOST_SIDES = 100
 FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one
-FAR = 1e9  # half the length of an unlimited flat
+UNLIMITED = 1e9  # half the length of an unlimited flat
 
 
 class PolygonForm(NamedTuple):
@@ -92,8 +93,8 @@ class PolygonForm(NamedTuple):
     @property
     def side(self) -> float:
         """Return half the length of a flat."""
-        if self.sides == FLATS:
-            return FAR
+        if self.sides == TWO_FLATS:
+            return UNLIMITED
         return self.inner * tan(radians(self.half_turn))
 
     @property
@@ -167,14 +168,14 @@ def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine)
 
 def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
     """Return the polygon and the stock's radius."""
-    sides = entries.require_whole("sides", "how many, 2 for two flats", FLATS, MOST_SIDES)
+    sides = entries.require_whole("sides", "how many, 2 for two flats", TWO_FLATS, MOST_SIDES)
     flats = entries.require_positive("across_flats", "the distance between two flats")
     stock = entries.require_positive("stock_diameter", "the bar's")
     if not stock > flats:
         rule = f"must be greater than across_flats {number(flats)}"
         raise entries.refuse(f"{entries.written('stock_diameter', stock)} {rule}")
     radius = entries.from_zero("corner_radius")
-    if radius and sides == FLATS:
+    if radius and sides == TWO_FLATS:
         raise entries.refuse(
             f"{entries.written('corner_radius', radius)}: two flats have no corners"
         )

@@ -16,7 +16,8 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.request.common import ROUNDING_MM, SMALLEST_RING_MM
+from g12.lengths import ROUNDING_MM
+from g12.request.common import CLEARED, SMALLEST_RING_MM
 from g12.request.context import Context
 from g12.shapes.entries import (
     Heights,
@@ -28,7 +29,6 @@ from g12.shapes.entries import (
     rounds_between,
 )
 
-CLEARED = 0.9  # of the cutter's radius: a first ring up to this radius leaves no core
 MOST_RAMP_HALF_TURNS = 20_000
 
 

@@ -32,7 +32,16 @@ from g12.shapes.entries import (
 )
 from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
 
-ENTRIES = ("x", "c", "diameter", "depth", "depth_per_pass", "allowance", "feed", "plunge_feed")
+ROUND_POCKET_ENTRIES = (
+    "x",
+    "c",
+    "diameter",
+    "depth",
+    "depth_per_pass",
+    "allowance",
+    "feed",
+    "plunge_feed",
+)
 
 
 class RoundPocketPlan(NamedTuple):

@@ -32,7 +32,7 @@ from g12.shapes.entries import (
 )
 from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
 
-ENTRIES = (
+SLOT_ENTRIES = (
     "width",
     "length",
     "depth",

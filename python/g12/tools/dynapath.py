@@ -20,16 +20,15 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 
 from g12.cycles.circle_mill import (
-    CLOCKWISE,
-    ENTRIES,
-    LEFT_OUT,
+    EVENT_ENTRIES,
     PERIMETER_CYCLE,
     POCKET_CYCLE,
-    ROUGH_FINISH,
-    SIDES,
+    ROUGH_FINISH_ARCS,
+    TOOL_SIDES,
 )
 from g12.errors import LONGEST_BLOCK, Refusal, number
 from g12.lengths import LARGEST
+from g12.request.common import CLOCKWISE, LEFT_OUT
 
 EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
 ENTRY = re.compile(
@@ -43,8 +42,8 @@ INCREMENTAL = "XYZL"
 POSITIVE = "RKJPFV"
 CHOICES = {
     "G": (PERIMETER_CYCLE, POCKET_CYCLE),
-    "D": range(len(ROUGH_FINISH)),
-    "C": range(len(SIDES[CLOCKWISE])),
+    "D": range(len(ROUGH_FINISH_ARCS)),
+    "C": range(len(TOOL_SIDES[CLOCKWISE])),
 }
 UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 
@@ -88,7 +87,7 @@ def call_of_event(event: str, modal: dict[str, WrittenEntry], line: int) -> str:
     modal.update((letter, entry) for letter, entry in entries.items() if letter in MODAL)
     entries = {**modal, **entries}
     check_entries(entries, line)
-    values = " ".join(f"[{argument(letter, entries)}]" for letter in ENTRIES)
+    values = " ".join(f"[{argument(letter, entries)}]" for letter in EVENT_ENTRIES)
     call = f"N{match['number']} o<circle_mill> call {values}"
     if len(call) > LONGEST_BLOCK:
         raise refusal(
@@ -105,7 +104,7 @@ def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
         match = ENTRY.match(text, position)
         written = match["letter"] if match else ""
         letter = OTHER_LETTERS.get(written, written)
-        if not match or letter not in ENTRIES:
+        if not match or letter not in EVENT_ENTRIES:
             raise refusal(line, f"{text[position:][:20]} does not start with an entry")
         if letter in entries:
             raise refusal(line, repeated(entries[letter].letter, written))

@@ -10,7 +10,14 @@ import functools
 import itertools
 
 from g12.cycles.entry import PocketEntry
-from g12.host.interp import NO_CODE, Block, Interp, ToolEntry
+from g12.host.interp import (
+    INVERSE_TIME,
+    PER_REVOLUTION,
+    PLANES,
+    Interp,
+    ParsedBlock,
+    ToolTableEntry,
+)
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program, message_once
 from g12.host.modes import (
@@ -22,34 +29,29 @@ from g12.host.modes import (
     spindle_speed,
 )
 from g12.lengths import converts
-from g12.request.context import XY, XZ, YZ, Context, Tool
+from g12.request.context import Context, Tool
 from g12.request.travel import CycleExtent, MachineFrame, check_travel
 from g12.request.words import Words
+from g12.section.block_rules import NO_CODE, GGroup
 
-# indices into a block's g_modes
-MODAL_0, TOOL_LENGTH, PATH_CONTROL, SPINDLE = 0, 8, 13, 14
-READING_WORDS = (
-    (TOOL_LENGTH, 430, "H"),
-    (TOOL_LENGTH, 431, "XYZABCUVW"),
-    (TOOL_LENGTH, 432, "HXYZABCUVW"),
-    (PATH_CONTROL, 640, "PQ"),
-    (SPINDLE, 960, "D"),
+READING_WORDS = (  # codes that read words of a cycle's block
+    (GGroup.TOOL_LENGTH, 430, "H"),
+    (GGroup.TOOL_LENGTH, 431, "XYZABCUVW"),
+    (GGroup.TOOL_LENGTH, 432, "HXYZABCUVW"),
+    (GGroup.PATH_CONTROL, 640, "PQ"),
+    (GGroup.SPINDLE, 960, "D"),
 )
-M_GROUPS = 11
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
-INCREMENTAL = 1  # distance_mode and ijk_distance_mode: 0 absolute, 1 incremental
-INVERSE_TIME, PER_REVOLUTION = 1, 2  # feed_mode
-PLANES = {1: XY, 2: YZ, 3: XZ}
+INCREMENTAL_MODE = 1  # distance_mode
 
-# every word a block can carry besides F, S, T, N, M and O, which the interpreter deals with
-LETTERS = "ABCDEHIJKPQRUVWXYZ"
+# every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
 WORD_FIELDS = [
     (
         letter,
         f"{letter.lower()}_flag",
         "d_number_float" if letter == "D" else f"{letter.lower()}_number",
     )
-    for letter in LETTERS
+    for letter in "ABCDEHIJKPQRUVWXYZ"
 ]
 NO_L = -1  # a block's l_number without an L word
 
@@ -99,21 +101,21 @@ def words_of_block(interp: Interp) -> Words:
     return words
 
 
-def code_reading_words(block: Block, words: Words) -> str | None:
+def code_reading_words(block: ParsedBlock, words: Words) -> str | None:
     """Return a code of the block that would read a word of the cycle too, or change its tool.
 
     (The interpreter knows the tool that M6 brings only after the block.)
     """
     g_modes = block.g_modes
-    if g_modes[MODAL_0] != NO_CODE:
-        return f"G{g_modes[MODAL_0] / 10:g}"
+    if g_modes[GGroup.NON_MODAL] != NO_CODE:
+        return f"G{g_modes[GGroup.NON_MODAL] / 10:g}"
     for group, code, letters in READING_WORDS:
         if g_modes[group] == code and any(letter in words for letter in letters):
             return f"G{code / 10:g}"
     if block.m_count:
-        for group in range(M_GROUPS):
-            if block.m_modes[group] not in HARMLESS_M:
-                return f"M{block.m_modes[group]}"
+        for code in block.m_modes:
+            if code not in HARMLESS_M:
+                return f"M{code}"
     return None
 
 
@@ -127,7 +129,7 @@ def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
     return [interp.params[index] for index in range(1, count + 1)]
 
 
-def tool_from_entry(interp: Interp, entry: ToolEntry) -> Tool:
+def tool_from_entry(interp: Interp, entry: ToolTableEntry) -> Tool:
     """Return a tool table entry's number and radius in program units."""
     return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
 
@@ -145,8 +147,8 @@ def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     another number. Entry 0 is the spindle, with a random tool changer the tool's only entry.
     """
     table = interp.tool_table
-    for place in itertools.chain(range(1, len(table)), (0,)):
-        entry = table[place]
+    for index in itertools.chain(range(1, len(table)), (0,)):
+        entry = table[index]
         if entry.toolno == tool_number:
             return tool_from_entry(interp, entry)
     return None
@@ -200,7 +202,7 @@ def snapshot(interp: Interp) -> Context:
         x=interp.current_x,
         y=interp.current_y,
         z=interp.current_z,
-        incremental=interp.distance_mode == INCREMENTAL,
+        incremental=interp.distance_mode == INCREMENTAL_MODE,
         plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
         per_revolution=per_revolution(interp),

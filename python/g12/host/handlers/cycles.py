@@ -11,10 +11,8 @@ from g12.host import messages
 from g12.host.handlers import cycle_state
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
-from g12.request.common import other_cutter
+from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, other_cutter
 from g12.request.words import Words
-
-CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # arc codes
 
 
 def check_at_start() -> None:
@@ -108,7 +106,7 @@ def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
     """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     plane = cycle_state.first_plane(interp)
-    entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.ENTRIES))
+    entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))
     if entries is None:
         event = circle_mill.plan_code(words, context, plane, pocket)
     else:

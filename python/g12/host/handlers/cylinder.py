@@ -16,12 +16,11 @@ from g12.host.section.kind import (
     NOT_IN_MDI,
     SectionKind,
     check_ini,
+    has_move_words,
     is_typed,
     run_section,
 )
 from g12.section.codes import SectionCodes, codes_with_word
-
-DROPPED_WORDS = "abdhijkruvwxyz"  # nothing else in a block with G7.1 could read them
 
 
 def check_at_start() -> None:
@@ -35,14 +34,14 @@ def cylinder_mode(self, **words) -> Iterator[int]:
         messages.forget_return(self)
         block = self.blocks[self.remap_level]
         if block.c_flag and block.c_number == 0.0:
-            if any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS):
+            if has_move_words(block, but=RADIUS):
                 raise BlockRefusal(
                     messages.code_of_block(self), f"{RADIUS}0 stands alone in its block"
                 )
         else:
             if is_typed(self):
                 raise BlockRefusal(messages.code_of_block(self), NOT_IN_MDI)
-            yield from run_section(self, CYLINDER)
+            yield from run_section(self, CYLINDER_SECTION)
     except Exception as error:
         yield messages.refuse_block(self, error)
     yield INTERP_OK
@@ -52,7 +51,7 @@ def _codes(code: str) -> SectionCodes:
     return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
 
 
-CYLINDER = SectionKind(
+CYLINDER_SECTION = SectionKind(
     letters=RADIUS,
     check=lambda start: check_cylinder_start(start, MACHINE.coordinates),
     setup=lambda start: cylinder_setup(start, MACHINE.settings, MACHINE.axes),

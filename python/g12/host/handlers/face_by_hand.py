@@ -19,11 +19,9 @@ from g12.host import messages
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp
 from g12.host.kinematics_switch import (
-    BY_HAND,
     FACE_OUTPUT,
-    NO_MOVES,
-    OFF,
     ON_THE_FACE,
+    FaceRequest,
     face_in_force,
     has_switched,
     modes_found,
@@ -61,8 +59,8 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
     if y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
     interp.g12_found = modes_found(interp)
-    asked = to_face(interp, start.machine_unit, BY_HAND)
-    yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, asked)
+    blocks = to_face(interp, start.machine_unit, FaceRequest.BY_HAND)
+    yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, blocks)
     wrong = other_module(interp, beside)
     if wrong:
         yield from switch_off(interp)
@@ -96,7 +94,8 @@ def abort(interp: Interp) -> None:
     """
     by_hand = _unlock(interp)
     restore_accelerations(interp)
-    emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(NO_MOVES if by_hand else OFF))
+    request = FaceRequest.NO_MOVES if by_hand else FaceRequest.OFF
+    emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(request))
     if by_hand:
         interp.g12_by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:

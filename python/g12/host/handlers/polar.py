@@ -18,6 +18,7 @@ from g12.host.section.kind import (
     NOT_IN_MDI,
     SectionKind,
     check_ini,
+    has_move_words,
     is_typed,
     run_section,
 )
@@ -29,9 +30,7 @@ from g12.polar.plan import PolarSettings
 from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
-from g12.shapes import SUBS
-
-DROPPED_WORDS = "abcdhijkruvwxyz"  # nothing else in a block with G13.1 could read them
+from g12.shapes import SHAPE_SUBS
 
 
 def check_at_start() -> None:
@@ -50,8 +49,8 @@ def polar_on(self, **words) -> Iterator[int]:
         if is_typed(self):
             yield from run_by_hand(self)
         else:
-            in_shape = self.sub_context[self.call_level - 1].subname in SUBS
-            yield from run_section(self, POLAR_IN_SHAPE if in_shape else POLAR)
+            in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
+            yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
     except Exception as error:
         yield messages.refuse_block(self, error)
     yield INTERP_OK
@@ -66,8 +65,9 @@ def polar_off(self, **words) -> Iterator[int]:
     try:
         messages.forget_return(self)
         block = self.blocks[self.remap_level]
-        others = any(getattr(block, f"{letter}_flag") for letter in DROPPED_WORDS)
-        if others or (block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)):
+        if has_move_words(block) or (
+            block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)
+        ):
             raise BlockRefusal(messages.code_of_block(self), "stands alone in its block")
         if block.p_flag:
             after_abort(self)
@@ -109,7 +109,7 @@ def _codes(code: str) -> SectionCodes:
     return codes_of_section(code, MACHINE.remaps.values(), polar_on.__name__, polar_off.__name__)
 
 
-POLAR = SectionKind(
+POLAR_SECTION = SectionKind(
     letters="",
     check=lambda start: check_section_start(start, MACHINE.coordinates),
     setup=_setup,
@@ -124,4 +124,4 @@ def _setup_of_shape(start: SectionStart) -> SectionSetup[PolarSettings]:
     return setup._replace(words=setup.words._replace(third_with_others=True))
 
 
-POLAR_IN_SHAPE = POLAR._replace(setup=_setup_of_shape)
+SHAPE_SECTION = POLAR_SECTION._replace(setup=_setup_of_shape)

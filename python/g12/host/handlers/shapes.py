@@ -46,22 +46,22 @@ class Plan(Protocol):
         """Return the extent of the axes' motion."""
 
 
-Machine = TypeVar("Machine")
+AnyMachine = TypeVar("AnyMachine")
 
 
-class Shape(NamedTuple, Generic[Machine]):
+class Shape(NamedTuple, Generic[AnyMachine]):
     """A shape: the names of its entries, and its planner for a machine."""
 
     entries: tuple[str, ...]
-    plan: Callable[[ShapeEntries, Context, Machine], Plan]
+    plan: Callable[[ShapeEntries, Context, AnyMachine], Plan]
 
 
-SHAPES: dict[str, Shape[ShapeMachine]] = {
-    "polar_polygon": Shape(polygon.ENTRIES, polygon.plan_polygon),
-    "polar_slot": Shape(slot.ENTRIES, slot.plan_slot),
-    "polar_pocket": Shape(round_pocket.ENTRIES, round_pocket.plan_round_pocket),
+SHAPE_CALLS: dict[str, Shape[ShapeMachine]] = {
+    "polar_polygon": Shape(polygon.POLYGON_ENTRIES, polygon.plan_polygon),
+    "polar_slot": Shape(slot.SLOT_ENTRIES, slot.plan_slot),
+    "polar_pocket": Shape(round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
 }
-HOLES: dict[str, Shape[HoleMachine]] = {
+HOLE_CALLS: dict[str, Shape[HoleMachine]] = {
     "face_holes": Shape(holes.FACE_HOLES, holes.plan_face_holes),
     "side_holes": Shape(holes.SIDE_HOLES, holes.plan_side_holes),
     "face_hole_at": Shape(holes.FACE_HOLE_AT, holes.plan_face_hole_at),
@@ -82,11 +82,11 @@ def polar_shape(self, **words):
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
     setup = polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
-    if name in HOLES:
+    if name in HOLE_CALLS:
         return prepare_holes(self, level, name, start, setup)
-    entries = ShapeEntries(name, SHAPES[name].entries, locals_at(self, level))
+    entries = ShapeEntries(name, SHAPE_CALLS[name].entries, locals_at(self, level))
     machine = shape_machine(setup)
-    plan = SHAPES[name].plan(entries, cycle_state.snapshot(self), machine)
+    plan = SHAPE_CALLS[name].plan(entries, cycle_state.snapshot(self), machine)
     check_nearest(entries, plan.extent(), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
@@ -109,10 +109,10 @@ def prepare_holes(
     With blended rapids C would turn before the tool is out of its hole, or before the move ahead of
     the call has ended.
     """
-    entries = ShapeEntries(name, HOLES[name].entries, locals_at(interp, level))
+    entries = ShapeEntries(name, HOLE_CALLS[name].entries, locals_at(interp, level))
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
     machine = hole_machine(interp, start, setup)
-    plan = HOLES[name].plan(entries, cycle_state.snapshot(interp), machine)
+    plan = HOLE_CALLS[name].plan(entries, cycle_state.snapshot(interp), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
     for x_word in ("at_x", "at_x_axis"):
@@ -135,7 +135,7 @@ def hole_machine(
     return HoleMachine(
         c=start.c,
         spindle=spindle,
-        spindle_code=SPINDLE_CODES.get(turning, 5),
+        spindle_code=DIRECTION_M_CODES.get(turning, 5),
         speed=interp.speed[spindle],
         beside=setup.words.beside,
         diameters=setup.words.diameter,
@@ -155,7 +155,7 @@ def polar_shape_done(self, **words):
     return INTERP_OK
 
 
-SPINDLE_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1: stopped
+DIRECTION_M_CODES = {2: 3, 3: 4}  # M codes by CANON_DIRECTION; 1: stopped
 LIVE_SPINDLE = 1  # where the main spindle is C
 
 
@@ -169,8 +169,8 @@ def tool_spindle(interp: Interp) -> int:
 def shape_at_work(interp: Interp) -> str:
     """Return the name of the shape that calls the code; refuse the code outside a shape's sub."""
     name, code = interp.sub_context[interp.call_level - 1].subname, messages.code_of_block(interp)
-    if name not in SHAPES and name not in HOLES:
-        *names, last = *SHAPES, *HOLES
+    if name not in SHAPE_CALLS and name not in HOLE_CALLS:
+        *names, last = *SHAPE_CALLS, *HOLE_CALLS
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise BlockRefusal(code, where)
     if not is_alone(interp.blocks[interp.remap_level]):

@@ -14,7 +14,7 @@ from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
-from g12.host.interp import Interp
+from g12.host.interp import Interp, ParsedBlock
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
@@ -22,16 +22,17 @@ from g12.host.section.output import SectionOutput
 from g12.host.section.reader import SectionReader
 from g12.host.section.run import Section
 from g12.host.section.start import start_of_section
+from g12.lengths import DEGREES_PER_TURN
 from g12.moves.setup import Planning, SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
-OWN_CODES, USER_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
+LINUXCNC_M_CODES, USER_M_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block outside any sub
-TURN, REPORTED_TURN = 360.0, 540.0  # a contour that closes and its leads take more than one
+REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
 NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
 
 
@@ -58,6 +59,11 @@ def check_ini() -> None:
 def is_typed(interp: Interp) -> bool:
     """Return whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
     return messages.in_mdi(interp) and interp.call_level == TYPED
+
+
+def has_move_words(block: ParsedBlock, but: str = "") -> bool:
+    """Return whether a block that only ends a section has words of a move, other than ``but``."""
+    return any(getattr(block, f"{word}_flag") for word in "abcdhijkruvwxyz" if word != but.lower())
 
 
 def rest_of_program(interp: Interp) -> ProgramLines:
@@ -94,7 +100,7 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
 def report_turns(interp: Interp, turned: float) -> None:
     """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
     if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
-        code, turns = messages.code_of_block(interp), abs(turned) / TURN
+        code, turns = messages.code_of_block(interp), abs(turned) / DEGREES_PER_TURN
         text = (
             f"{code}: C has turned {turns:.1f} times, and G0 C0"
             " unwinds all of it. With [AXIS_C] WRAPPED_ROTARY = 1 it takes the short way"
@@ -105,7 +111,11 @@ def report_turns(interp: Interp, turned: float) -> None:
 def clamp_codes(refuse: Callable[[str], Refusal], codes: Sequence[int]) -> Sequence[int]:
     """Return M codes of C's clamp; refuse those that this LinuxCNC cannot know."""
     for code in codes:
-        if f"M{code}" not in MACHINE.remaps and code not in OWN_CODES and code not in USER_CODES:
+        if (
+            f"M{code}" not in MACHINE.remaps
+            and code not in LINUXCNC_M_CODES
+            and code not in USER_M_CODES
+        ):
             raise refuse(f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?")
     if codes and not MACHINE.settings.c_clamp:
         raise refuse("[G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp")

@@ -23,11 +23,11 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
-from g12.host.interp import Canon, Interp
+from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp
 from g12.host.kinematics_switch import (
-    BY_PROGRAM,
     INPUT_FOUND,
     ON_THE_FACE,
+    FaceRequest,
     has_switched,
     modes_found,
     not_switched,
@@ -44,7 +44,6 @@ from g12.section.block_rules import G1
 from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes, decimal
 
-PER_MINUTE, PER_REVOLUTION = 0, 2  # feed_mode
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
@@ -74,7 +73,7 @@ class Action(NamedTuple):
     level: int | None = None
 
 
-Step = BlockMoves | FaceMove | FaceSwitch | Action  # of a plan
+PlanStep = BlockMoves | FaceMove | FaceSwitch | Action  # of a plan
 
 
 def tolerances(settings: Sequence[float]) -> str:
@@ -173,7 +172,7 @@ class SectionOutput:
         initial: float,
         machine_unit: float,
         absolute: int,
-        canon: Canon,
+        canon: CanonModule,
         beside: float = 0.0,
     ) -> None:
         self.interp, self.code = interp, code
@@ -186,7 +185,7 @@ class SectionOutput:
         self._flows = False  # the last segment is blended into the next
 
     def run(
-        self, steps: Sequence[Step], modes: SectionModes, exact_lines: Container[int]
+        self, steps: Sequence[PlanStep], modes: SectionModes, exact_lines: Container[int]
     ) -> Iterator[str]:
         """Execute all steps, and release the interpreter in ``modes``.
 
@@ -215,7 +214,7 @@ class SectionOutput:
         interp.execute("G91" if modes.incremental else "G90")
         interp.motion_mode = modes.motion
 
-    def _stop_in_front(self, steps: Sequence[Step]) -> None:
+    def _stop_in_front(self, steps: Sequence[PlanStep]) -> None:
         if steps and not self._begun:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
@@ -276,7 +275,7 @@ class SectionOutput:
         if step.on:
             interp.g12_found = modes_found(interp)
             most = step.share, step.override
-            yield from to_face(interp, self.machine_unit, BY_PROGRAM, *most)
+            yield from to_face(interp, self.machine_unit, FaceRequest.BY_PROGRAM, *most)
             interp.execute(ON_THE_FACE)
             self.path.renew()
         else:

@@ -17,24 +17,23 @@ from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.errors import number
-from g12.host.interp import Block, Interp
+from g12.host.interp import PER_MINUTE, PER_REVOLUTION, Interp, ParsedBlock
 from g12.host.program_lines import ProgramLines, error_text
-from g12.host.section.output import BLOCK_END, PER_MINUTE, PER_REVOLUTION, Action
+from g12.host.section.output import BLOCK_END, Action
 from g12.section.block_rules import (
-    COMPENSATION,
-    FEED,
-    FORGET,
     G0,
     G1,
     G2,
     G3,
-    M_STATE,
+    M_AUTORESTORE,
+    M_INVALIDATE,
+    M_RESTORE,
+    M_SAVE,
     NO_CODE,
     REASON_OF_G,
-    RESTORE,
-    SAVE,
-    SAVE_FOR_SUB,
     STATE_CODES,
+    GGroup,
+    MGroup,
     SectionBlock,
 )
 from g12.section.line import BlockLocation, TextLine
@@ -49,14 +48,17 @@ from g12.section.modes import (
 from g12.section.start import SectionStart, WordRules
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
-MOTIONS = (G0, G1, G2, G3)
+SECTION_MOTIONS = (G0, G1, G2, G3)
 MOST_FEED = 1e9  # program units per minute
 
-WORDS = [
+WORD_ATTRIBUTES = [
     (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRKFSPQLE"
 ]
 plain_words = attrgetter(
-    "f_flag", "f_number", "motion_to_be", *(name for word in WORDS[:6] for name in word[1:])
+    "f_flag",
+    "f_number",
+    "motion_to_be",
+    *(name for word in WORD_ATTRIBUTES[:6] for name in word[1:]),
 )
 
 
@@ -76,10 +78,12 @@ class MoveWords(NamedTuple):
     relative: str = ""
 
 
-def block_of(parsed: Block) -> SectionBlock:
+def block_of(parsed: ParsedBlock) -> SectionBlock:
     """Return the interpreter's parsed block as plain data."""
     words = {
-        letter: getattr(parsed, value) for letter, flag, value in WORDS if getattr(parsed, flag)
+        letter: getattr(parsed, value)
+        for letter, flag, value in WORD_ATTRIBUTES
+        if getattr(parsed, flag)
     }
     return SectionBlock(tuple(parsed.g_modes), tuple(parsed.m_modes), parsed.motion_to_be, words)
 
@@ -214,7 +218,7 @@ class SectionReader:
 
     def set_state(self, line: TextLine, block: SectionBlock) -> None:
         """Set the modes of a block, and save or restore those it names."""
-        code = block.m[M_STATE]
+        code = block.m[MGroup.MODAL_STATE]
         if code in STATE_CODES:
             self._state_code(code)
         self.set_modes(modes_after(self.modes, block, self._speed(line, block)))
@@ -229,7 +233,7 @@ class SectionReader:
         if "S" in block.words:
             for spindle in range(count) if named == ALL_SPINDLES else (named,):
                 self._speeds[spindle] = block.words["S"]
-        if block.g[FEED] != NO_CODE:
+        if block.g[GGroup.FEED] != NO_CODE:
             self._spindle = max(named, MAIN_SPINDLE)
         return self._speeds[self._spindle]
 
@@ -253,8 +257,8 @@ class SectionReader:
             self.exact_lines.add(self.program.line)
         if block.moves:
             self._keep_apart()
-        if block.g[COMPENSATION] != NO_CODE:
-            self._compensate(block.g[COMPENSATION] // 10)
+        if block.g[GGroup.COMPENSATION] != NO_CODE:
+            self._compensate(block.g[GGroup.COMPENSATION] // 10)
         if block.moves:
             x, c, z, i, j, r, k = map(block.words.get, "XCZIJRK")
             self._move(block.motion, MoveWords(x, c, z, i, j, r, k, line.relative))
@@ -302,7 +306,7 @@ class SectionReader:
         """Add a move."""
         contour, modes = self.contour, self.modes
         x, c, z, i, j, r, k, relative = words
-        if motion not in MOTIONS:
+        if motion not in SECTION_MOTIONS:
             code = f"G{motion / 10:g}"
             raise self.location.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
         if x is not None:
@@ -377,20 +381,20 @@ class SectionReader:
     def _state_code(self, code: int) -> None:
         """Execute M70 to M73: here for the section's modes, between the moves for the machine's."""
         level = self.interp.call_level
-        if code == RESTORE:
+        if code == M_RESTORE:
             self._restore(level)
-        elif code == FORGET:
+        elif code == M_INVALIDATE:
             self._saved.pop(level, None)
             self._restored_on_return.discard(level)
-            self._keep(Action(self.program.shown_line, f"M{FORGET}", self.modes, level))
+            self._keep(Action(self.program.shown_line, f"M{M_INVALIDATE}", self.modes, level))
         else:
             self._saved[level] = self.modes
-            if code == SAVE_FOR_SUB and level > self.start.level:
+            if code == M_AUTORESTORE and level > self.start.level:
                 self._restored_on_return.add(level)
-            self._keep(Action(self.program.shown_line, f"M{SAVE}", self.modes, level))
+            self._keep(Action(self.program.shown_line, f"M{M_SAVE}", self.modes, level))
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
             raise self.location.refuse("M72: no modes were saved in this section")
-        self._keep(Action(self.program.shown_line, f"M{RESTORE}", self.modes, level))
+        self._keep(Action(self.program.shown_line, f"M{M_RESTORE}", self.modes, level))
         self.set_modes(self._saved[level])

@@ -17,16 +17,16 @@ from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.host import messages
 from g12.host.call_frame import CallFrame
-from g12.host.program_lines import MOVING
-from g12.host.section.output import SectionOutput, Step
+from g12.host.program_lines import JUMPING
+from g12.host.section.output import PlanStep, SectionOutput
 from g12.host.section.reader import SectionReader, block_of
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
 from g12.section.block_rules import (
     M2,
     M30,
-    M_STOP,
     WAIT_FOR_INPUT,
+    MGroup,
     SectionBlock,
     alone,
     check_block,
@@ -38,8 +38,7 @@ from g12.section.block_rules import (
 from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, split_line
 
-WAITING_GROUP = 5
-MOST_LINES = 1_000_000  # LinuxCNC handles no abort while a section is read
+MOST_SECTION_LINES = 1_000_000  # LinuxCNC handles no abort while a section is read
 
 
 class Phase(Enum):
@@ -109,7 +108,7 @@ class Section:
             self.program.parse_rewritten(self._first)
             first = split_line(self._first, known)
             yield from self._obey(first, block_of(self.reader.parsed))
-        for _ in range(MOST_LINES):
+        for _ in range(MOST_SECTION_LINES):
             raw = program.take()
             if raw is None:
                 self._end_of_file()
@@ -119,8 +118,8 @@ class Section:
                     return
             elif self._phase is Phase.READING:
                 plain_line(raw)
-        off = self.codes.off_code
-        raise self._refuse(f"{MOST_LINES} lines were read and {off} did not come: an endless loop?")
+        read = f"{MOST_SECTION_LINES} lines were read and {self.codes.off_code} did not come"
+        raise self._refuse(f"{read}: an endless loop?")
 
     def _refuse(self, reason: str) -> Refusal:
         return self.reader.location.refuse(reason)
@@ -161,7 +160,7 @@ class Section:
         line = reader.with_spindle(line)
         reader.set_parameters(line)
         reader.set_state(line, block)
-        if block.m[WAITING_GROUP] == WAIT_FOR_INPUT:
+        if block.m[MGroup.INPUT_OUTPUT] == WAIT_FOR_INPUT:
             yield from self._wait_for_input(reader.action_text(line, block))
         elif any(self.codes.remapped.get(code) for code in block.m):
             self._call_remapped(line)
@@ -173,8 +172,8 @@ class Section:
         codes, location = self.codes, self.reader.location
         if codes.begins(block):
             raise location.refuse(f"the section is already on: {codes.off_code} ends it")
-        if block.m[M_STOP] in (M2, M30):
-            raise self._missing_off(f"M{block.m[M_STOP]} comes before it")
+        if block.m[MGroup.STOP] in (M2, M30):
+            raise self._missing_off(f"M{block.m[MGroup.STOP]} comes before it")
         check_block(block, self.setup.words.words, self._rapid_allowed, location)
         for code in block.m:
             if code in codes.remapped and not m_code_alone(block, code):
@@ -190,7 +189,7 @@ class Section:
 
     def _control(self, line: TextLine) -> None:
         """Let the interpreter execute an O-word, which may jump."""
-        if self._phase is Phase.SKIPPING and line.control in MOVING:
+        if self._phase is Phase.SKIPPING and line.control in JUMPING:
             return
         if self._phase is Phase.READING and self.frame.is_current:
             self._check_level(line)
@@ -265,7 +264,7 @@ class Section:
             messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
-        steps = cast(list[Step], plan.steps)  # the reader set the marks' actions
+        steps = cast(list[PlanStep], plan.steps)  # the reader set the marks' actions
         for waiting in self.output.run(steps, reader.modes, reader.exact_lines):
             yield from self.frame.execute_and_wait(waiting)
         self._phase = Phase.READING

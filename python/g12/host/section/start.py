@@ -6,19 +6,17 @@ from __future__ import annotations
 from interpreter import MODE_INCREMENTAL
 
 from g12.host import messages, modes
-from g12.host.interp import Block, Interp
+from g12.host.interp import INVERSE_TIME, PER_REVOLUTION, PLANES, Interp, ParsedBlock
 from g12.host.program_lines import without_line
-from g12.host.section.output import PER_REVOLUTION
 from g12.host.section.reader import block_of
 from g12.host.spindle_c import missing_code
+from g12.request.context import YZ
 from g12.section.block_rules import alone
 from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.start import SectionStart
 
 OTHER_WORDS = "abdhktuvwy"
-YZ_PLANE = 2
-INVERSE_TIME = 1  # feed_mode
 G96 = 960
 
 
@@ -46,7 +44,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
         tool_radius=_tool_radius(interp, machine_unit),
         diameter=modes.diameter_mode(interp),
-        yz_plane=interp.plane == YZ_PLANE,
+        yz_plane=PLANES.get(interp.plane) == YZ,
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
         inverse_time=interp.feed_mode == INVERSE_TIME,
@@ -56,7 +54,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     )
 
 
-def is_alone(block: Block, words: str = "") -> bool:
+def is_alone(block: ParsedBlock, words: str = "") -> bool:
     """Return whether a block holds only its code and these words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
@@ -56,7 +56,7 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
         yield f"message: {message.text}"
     if result.error and not result.seconds:
         return
-    axes = [(axis, AXES.index(axis)) for axis in result.samples.axes]
+    axes = [(axis, AXIS_LETTERS.index(axis)) for axis in result.samples.axes]
     ends = (f"{axis}{number_text(round(result.position[at], DECIMALS))}" for axis, at in axes)
     unit = UNITS[name_of_unit(ini.mm)].name
     units = unit if all(IS_LENGTH[at] for _, at in axes) else f"{unit} and degrees"

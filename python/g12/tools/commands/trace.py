@@ -8,7 +8,7 @@ in machine coordinates. A line begins with the program's own line number.
 
 from typing import Any
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
@@ -35,7 +35,9 @@ exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 
 def line_of(move: Move, digits: int) -> str:
     """Return a move as text: line, kind, what changes, centre of an arc, feed."""
-    words = [f"{axis}{end:.{digits}f}" for axis, end in zip(AXES, move.end) if _moves(move, axis)]
+    words = [
+        f"{axis}{end:.{digits}f}" for axis, end in zip(AXIS_LETTERS, move.end) if _moves(move, axis)
+    ]
     if move.kind == "arc":
         words += [f"{name}{value:.{digits}f}" for name, value in zip("IJK", move.centre)]
         words.append(f"turns {move.turns:+d} G{move.plane}")
@@ -45,7 +47,7 @@ def line_of(move: Move, digits: int) -> str:
 
 
 def _moves(move: Move, axis: str) -> bool:
-    index = AXES.index(axis)
+    index = AXIS_LETTERS.index(axis)
     return move.start[index] != move.end[index]
 
 

@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from g12.ini_sections import entries_of
-from g12.settings import SECTION, TABLE
+from g12.settings import INI_SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding
@@ -50,7 +50,7 @@ def check_config(
 
 def settings_of(config: Config) -> dict[str, str]:
     """Return the settings that section [G12] changes."""
-    entries = entries_of(config.ini.lines, SECTION)
+    entries = entries_of(config.ini.lines, INI_SECTION)
     return {key: value for _, key, value in entries if key in TABLE}
 
 
@@ -92,7 +92,7 @@ def lines_of_check(report: dict) -> Iterator[str]:
     for code, text in report["other_remaps"].items():
         yield f"  {code:6} {'not ours':12} REMAP = {text}"
     for key, value in report["settings"].items():
-        yield f"  [{SECTION}] {key} = {value}"
+        yield f"  [{INI_SECTION}] {key} = {value}"
     for finding in report["findings"]:
         yield f"{finding['level']} [{finding['kind']}]: {finding['text']}"
         yield f"  cure: {finding['cure']}"

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from g12.settings import SECTION as SETTINGS
+from g12.settings import INI_SECTION as SETTINGS
 from g12.tools.install import package_copy
 from g12.tools.install.config import features, forms
 from g12.tools.install.config.findings import problem

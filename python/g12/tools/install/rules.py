@@ -12,7 +12,7 @@ from pathlib import Path
 from g12.errors import Refusal
 from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import remap_from_value
-from g12.settings import SECTION, settings_from_lines
+from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
@@ -31,7 +31,7 @@ TRANSLATE = "translate"  # the command in a [FILTER] line
 LONGEST_LINE = 254  # characters: LinuxCNC 2.9 reads no more of a line
 HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
-OWN_HEADER = f"[{SECTION}]"
+OWN_HEADER = f"[{INI_SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
@@ -91,11 +91,11 @@ def lines_not_read(config: Config) -> Iterator[ConfigFinding]:
                 f"{line.location}: {line.text.strip()}: not in the section [RS274NGC] that is read",
                 "move the line into the first [RS274NGC]; LinuxCNC 2.9 reads no second one",
             )
-    for header in config.text.headers(SECTION)[1:]:
+    for header in config.text.headers(INI_SECTION)[1:]:
         yield problem(
             "not-read",
-            f"{header.location}: a second [{SECTION}], which LinuxCNC 2.9 does not read",
-            f"move its lines into the first [{SECTION}]",
+            f"{header.location}: a second [{INI_SECTION}], which LinuxCNC 2.9 does not read",
+            f"move its lines into the first [{INI_SECTION}]",
         )
 
 
@@ -115,7 +115,7 @@ def broken_headers(config: Config) -> Iterator[ConfigFinding]:
 
 def long_lines(config: Config) -> Iterator[ConfigFinding]:
     """Find lines that LinuxCNC would truncate."""
-    for section in ("RS274NGC", "PYTHON", SECTION):
+    for section in ("RS274NGC", "PYTHON", INI_SECTION):
         for line in config.text.section(section):
             if len(line.text) > LONGEST_LINE:
                 yield problem(
@@ -378,7 +378,7 @@ def bad_settings(config: Config) -> Iterator[ConfigFinding]:
     try:
         settings_from_lines(config.ini.lines)
     except Refusal as refusal:
-        yield problem("setting", refusal.message, f"correct the line in [{SECTION}]")
+        yield problem("setting", refusal.message, f"correct the line in [{INI_SECTION}]")
 
 
 def missing_axes(config: Config) -> Iterator[ConfigFinding]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import re
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 
 STORED_VALUE = re.compile(r"^\s*([0-9]+)\s+(-?[0-9]+(?:\.[0-9]+)?)", re.MULTILINE)
@@ -20,5 +20,5 @@ def unset_positions(ini: Ini) -> tuple[str, ...]:
     return tuple(
         code
         for code, first in FIRST.items()
-        if not any(float(values.get(str(n), 0)) for n in range(first, first + len(AXES)))
+        if not any(float(values.get(str(n), 0)) for n in range(first, first + len(AXIS_LETTERS)))
     )

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.path.nearest import on_segments
 from g12.tools.path.part import CHORD_ERROR, Part, paths
 from g12.tools.preview.moves import Move
@@ -45,7 +45,7 @@ def gap_between(part: Part, moves: Sequence[Move], others: Sequence[Move]) -> Ga
 
 def _is_beyond(part: Part, move: Move) -> bool:
     known = "XYZC" if part.turning else "XYZ"
-    ends = zip(AXES, move.start, move.end)
+    ends = zip(AXIS_LETTERS, move.start, move.end)
     return any(a != b for axis, a, b in ends if axis not in known)
 
 

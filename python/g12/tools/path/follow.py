@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Y, plane_axes
 from g12.tools.path.samples import Samples
@@ -153,9 +153,9 @@ def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
 
 def _positions(samples: Samples, unit: float) -> np.ndarray:
     """Return axis positions (n, 9) of samples, mm and degrees."""
-    positions = np.zeros((len(samples.time), len(AXES)))
+    positions = np.zeros((len(samples.time), len(AXIS_LETTERS)))
     for letter, values in samples.axes.items():
-        index = AXES.index(letter)
+        index = AXIS_LETTERS.index(letter)
         positions[:, index] = values * (unit if IS_LENGTH[index] else 1.0)
     return positions
 

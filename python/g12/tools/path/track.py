@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import CHORD_ERROR, Part
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
@@ -119,7 +119,7 @@ class Track:
 def limits_of(ini: Ini) -> Limits:
     """Return the greatest speeds that an INI allows."""
     known, scale = ini.axis_limits, [ini.mm if linear else 1.0 for linear in IS_LENGTH]
-    axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXES]
+    axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXIS_LETTERS]
     path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * ini.mm
     return Limits(tuple(map(float.__mul__, axes, scale)), path)
 

@@ -14,10 +14,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 
 G92_OFF_CODE = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
-IS_LENGTH = tuple(letter in "XYZUVW" for letter in AXES)  # for each of AXES: whether it is a length
+IS_LENGTH = tuple(
+    letter in "XYZUVW" for letter in AXIS_LETTERS
+)  # for each of AXES: whether it is a length
 CLOSED_ARC = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in motion
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
 

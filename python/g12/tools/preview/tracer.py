@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Self
 
 from g12.lengths import is_inch
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.preview.moves import Error, Event, Message, Move, Trace, modes
 from g12.tools.system import PYTHON
@@ -232,7 +232,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
         "units": 1.0 / unit,
         "beside": ini.tool_beside,
-        "axis_mask": sum(1 << AXES.index(letter) for letter in ini.axes),
+        "axis_mask": sum(1 << AXIS_LETTERS.index(letter) for letter in ini.axes),
         "setup": [start_block(unit), *([startup] if startup else [])],
     }
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.path.farthest_apart import gap_between
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Move
@@ -22,7 +22,7 @@ from g12.tools.units import UNITS, counted_as
 DECIMALS = 6  # shown, if the two numbers differ in them
 LONG_RUN = 10  # edits; fewer are reported together even if they differ
 DIGITS = ".4g"
-MOVED = (*AXES, "radius")
+MOVED = (*AXIS_LETTERS, "radius")
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class Phrases:
         if not moved:
             return Difference("changed", text)
         worst = max(moved, key=lambda change: abs(change.by))
-        axis = worst.what if worst.what in AXES else ""
+        axis = worst.what if worst.what in AXIS_LETTERS else ""
         return Difference(
             "moved", text, axis=axis, by=round(worst.by / self._scale(worst.what), 10)
         )
@@ -179,9 +179,9 @@ class Phrases:
         """Return the extent of moves on each axis that they move."""
         ends = np.array([position for move in moves for position in (move.start, move.end)])
         low, high = ends.min(axis=0), ends.max(axis=0)
-        scales = [self._scale(axis) for axis in AXES]
+        scales = [self._scale(axis) for axis in AXIS_LETTERS]
         texts = [[number_text(round(v, DECIMALS)) for v in bound / scales] for bound in (low, high)]
-        words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXES, *texts) if a != b]
+        words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXIS_LETTERS, *texts) if a != b]
         return " ".join(words) or "standing still"
 
     def _apart(self, before: list[Move], after: list[Move]) -> float | None:

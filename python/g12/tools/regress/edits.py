@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.alignment import pairs
 from g12.tools.regress.recording_text import Note, Step, turns_only
@@ -174,7 +174,7 @@ def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
     assert isinstance(was, Move) and isinstance(now, Move)
     found = [
         Change(axis, b - a, a, b)
-        for axis, a, b, most in zip(AXES, was.end, now.end, tolerance.ends)
+        for axis, a, b, most in zip(AXIS_LETTERS, was.end, now.end, tolerance.ends)
         if abs(b - a) > most
     ]
     if was.kind != now.kind:

@@ -31,7 +31,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.preview.moves import IS_LENGTH, Error, Modes, Move, Position, Trace
 from g12.tools.units import UNITS
 
@@ -120,7 +120,7 @@ def _steps(trace: Trace, unit: float) -> Iterator[Step]:
 
 
 def _offset(offset: Position, unit: float) -> str:
-    values = zip(AXES, offset, IS_LENGTH)
+    values = zip(AXIS_LETTERS, offset, IS_LENGTH)
     texts = [(axis, number_text(v / unit if linear else v)) for axis, v, linear in values]
     return " ".join(f"{axis}{text}" for axis, text in texts if text != "0") or "0"
 
@@ -180,7 +180,7 @@ class RecordingWriter:
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
-    return [f"{axis}{new}" for axis, old, new in zip(AXES, before, after) if old != new]
+    return [f"{axis}{new}" for axis, old, new in zip(AXIS_LETTERS, before, after) if old != new]
 
 
 def turns_only(move: Move) -> bool:
@@ -250,7 +250,7 @@ class RecordingReader:
     def _position(self, words: str, start: Position | None = None) -> Position:
         position = list(start or self._at)
         for word in words.split():
-            axis = AXES.index(word[0])
+            axis = AXIS_LETTERS.index(word[0])
             position[axis] = float(word[1:]) * self._scales[axis]
         return tuple(position)
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from g12.machine_ini import AXES
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, Z
@@ -171,7 +171,7 @@ def judge_words(section: SectionContour, moves: Sequence[Move], tool: float) -> 
         yield Finding("zero-line-turned", section.line, values)
     if not zero.commanded and not zero.line:
         yield Finding("zero-line-unknown", section.line, {"angle": first.start[C]})
-    letter, factor = AXES[third], 2 if section.surface and section.diameters else 1
+    letter, factor = AXIS_LETTERS[third], 2 if section.surface and section.diameters else 1
     depths = [each.depth for each in section.elements if each.side and not each.ramp]
     if depths and min(depths) > section.height + LEVEL:
         levels = {"level": factor * min(depths), "start": factor * section.height}
