@@ -170,7 +170,7 @@ def installed(ini, *arguments):
     ],
 )
 def test_features_install_do_what_install_says_to_try_and_go(tmp_path, capsys, names):
-    ini = write_config(tmp_path, LATHE if set(names) & set(features.AXES) else MILL)
+    ini = write_config(tmp_path, LATHE if set(names) & set(features.AXES_NEEDED) else MILL)
     before = content_of(tmp_path)
     assert installed(ini, *names) == 0
     said = capsys.readouterr().out
@@ -324,7 +324,7 @@ def test_what_check_calls_a_problem_is_refused_and_nothing_is_touched(
 def test_a_code_of_linuxcncs_own_is_refused(tmp_path, capsys, monkeypatch):
     lines = (features.INCLUDES / "polar.inc").read_text().replace("G12.1", "G33.1")
     (tmp_path / "includes").mkdir()
-    for name in features.FILES.values():
+    for name in features.REMAP_FILES.values():
         content = lines if name == "polar.inc" else (features.INCLUDES / name).read_text()
         (tmp_path / "includes" / name).write_text(content)
     monkeypatch.setattr(features, "INCLUDES", tmp_path / "includes")

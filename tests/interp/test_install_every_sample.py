@@ -27,16 +27,21 @@ from support.sample_configs import SAMPLES, copy_samples, tree
 SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
 MILL = ["haas", "circle-mill"]
 LATHE = ["polar", "polar-shapes", "cylinder"]
-HANDLERS = {name: "g12.remap" for feature in features.FILES
+HANDLERS = {name: "g12.remap" for feature in features.REMAP_FILES
             for name in features.functions_of(feature)}  # fmt: skip
 SUBS = {
-    *(name for feature in features.FILES for name in features.names_of(feature)),
-    *(f"{form}_{unit}" for names in forms.OF.values() for form in names for unit in forms.UNITS),
-    *(*forms.PARTS, *forms.FACE_PARTS),
+    *(name for feature in features.REMAP_FILES for name in features.names_of(feature)),
+    *(
+        f"{form}_{unit}"
+        for names in forms.FORMS_OF.values()
+        for form in names
+        for unit in forms.UNIT_NAMES
+    ),
+    *(*forms.FORM_SUBS, *forms.FACE_FORM_SUBS),
 }
 PACKAGE = {
     **{name: (features.ROOT / name).read_bytes() for name in
-       ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.PAGE)},
+       ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.GLADE_FILE)},
     **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
 }  # fmt: skip
 # of samples that are no machines by themselves
@@ -69,7 +74,7 @@ def full_set(ini):
     lathe = "Y" not in ini.axes
     control = "programs-fanuc-lathe" if lathe else "programs-haas-mill"
     codes = [name for name in (LATHE if lathe else MILL) if not why_not(ini, name)]
-    wanted = [*codes, "forms"] if any(name in forms.OF for name in codes) else codes
+    wanted = [*codes, "forms"] if any(name in forms.FORMS_OF for name in codes) else codes
     return wanted if ini.get("FILTER", "nc") else [*wanted, control]
 
 
@@ -81,16 +86,18 @@ def is_outside(ini):
 
 def why_not(ini, name):
     """Return the kind of finding by which a machine must refuse a single feature, None if none."""
-    if name in features.FILES and is_outside(ini):
+    if name in features.REMAP_FILES and is_outside(ini):
         return "outside"
-    if name == features.SPINDLE_C:
+    if name == features.SPINDLE_AS_C:
         return "pins"
     own = {remap_from_value(value).number for value in ini.all("RS274NGC", "REMAP")}
-    if name in features.FILES and own & {remap.number for remap in features.remaps_of(name)}:
+    if name in features.REMAP_FILES and own & {remap.number for remap in features.remaps_of(name)}:
         return "taken"
-    if name in features.FILES and not set(features.AXES.get(name, "XYZ")) <= set(ini.axes):
+    if name in features.REMAP_FILES and not set(features.AXES_NEEDED.get(name, "XYZ")) <= set(
+        ini.axes
+    ):
         return "no-axis"
-    if name in features.PROGRAMS and ini.get("FILTER", "nc"):
+    if name in features.CONTROLS and ini.get("FILTER", "nc"):
         return "filter"
     return {"polar-shapes": "no-polar", "forms": "forms", features.KINEMATICS: "kinematics"}.get(
         name
@@ -163,8 +170,8 @@ def in_and_out_in_memory(path, name):
     assert plan.changes()
     refuse_problems(findings_of(checking.load_config(plan.text, set())))
     blocks = plan.text.blocks()
-    removal.take_out_blocks(plan.text, blocks)
-    removal.take_out_elsewhere(plan.text, removal.notes_in(blocks), False)
+    removal.remove_blocks(plan.text, blocks)
+    removal.remove_noted(plan.text, removal.notes_in(blocks), False)
     assert plan.text.files == IniText(path).files
 
 
@@ -194,7 +201,7 @@ def test_every_feature_goes_in_and_out(samples, content, package, name):
         in_and_out(path, wanted)
     (path.parent / "g12").symlink_to(package)
     try:
-        for feature in features.NAMES:
+        for feature in features.FEATURE_NAMES:
             kinds, why = refusal_in_memory(path, feature), why_not(ini, feature)
             assert kinds if unfit else kinds >= ({why} - {None}) and bool(kinds) == bool(why)
     finally:

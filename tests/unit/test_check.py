@@ -15,7 +15,7 @@ from g12.tools.install.rules import findings_of, last_words
 from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 
-HANDLERS = {name: "g12.remap" for f in features.FILES for name in features.functions_of(f)}
+HANDLERS = {name: "g12.remap" for f in features.REMAP_FILES for name in features.functions_of(f)}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
 SUBS = "SUBROUTINE_PATH = ngc\n"
 GOOD = with_lines(MILL, "RS274NGC", f"{SUBS}{HAAS}") + PYTHON
@@ -26,7 +26,7 @@ def found(tmp_path):
     """Return a function: the findings about an INI with everything else in order."""
 
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
-        names = {name for feature in features.FILES for name in features.names_of(feature)}
+        names = {name for feature in features.REMAP_FILES for name in features.names_of(feature)}
         subs = {f"ngc__{name}_ngc": "" for name in names}
         in_order = {"toplevel_py": "", "mill_var": "5161\t50.0\n", **dict(files)}
         ini = write_config(tmp_path, text, **in_order, **subs)

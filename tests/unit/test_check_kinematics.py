@@ -61,7 +61,7 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("COMMAND = G13.1 P", "COMMAND = O <mine> call", "abort", "= O <mine> call"),
     ("HALFILE = polar.hal", "HALFILE = gone.hal", "kinematics-hal", "never leave"),
     ("HALFILE = motion.hal\nHALFILE = polar.hal", "HALFILE = polar.hal\nHALFILE = motion.hal",
-     "kinematics-hal", "in front of"),
+     "kinematics-hal", "comes before"),
     ("[AXIS_Y]", "[AXIS_B]", "face-axis", "[AXIS_Y] has no MAX_LIMIT"),
     ("MIN_LIMIT = -200", "MIN_LIMIT = -5", "face-limits", "MIN_LIMIT = -200"),
     ("MAX_VELOCITY = 100", "MAX_VELOCITY = 150", "face-speed", "[AXIS_X] MAX_VELOCITY 150"),

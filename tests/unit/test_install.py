@@ -18,8 +18,8 @@ from g12.tools.errors import UsageError
 from g12.tools.install import installation, package_copy, removal, trial
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import (
-    BEGIN,
-    END,
+    BEGIN_MARK,
+    END_MARK,
     IniError,
     IniText,
     lines_with_ends,
@@ -68,14 +68,14 @@ def test_the_lines_stand_at_the_end_of_their_section(tmp_path):
     section = text[text.index("[RS274NGC]") : text.index("[TRAJ]")]
     assert section == (
         "[RS274NGC]\nPARAMETER_FILE = mill.var\n"
-        f"{BEGIN} (g12 uninstall takes these lines out again)\n"
+        f"{BEGIN_MARK} (g12 uninstall takes these lines out again)\n"
         "SUBROUTINE_PATH = g12/ngc\n"
         "REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done\n"
         "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done\n"
-        f"{END}\n\n"
+        f"{END_MARK}\n\n"
     )
     assert text.endswith(
-        f"[PYTHON]\nTOPLEVEL = g12/python/toplevel.py\nPATH_PREPEND = g12/python\n{END}\n"
+        f"[PYTHON]\nTOPLEVEL = g12/python/toplevel.py\nPATH_PREPEND = g12/python\n{END_MARK}\n"
     )
 
 
@@ -97,7 +97,11 @@ def test_what_the_user_changed_since_survives_uninstall(tmp_path):
     ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", f"{PATH}a\n"))
     put_in(ini)
     changed = ini.read_text()
-    edits = ("mill.var", "other.var"), ("a:g12/ngc", "a:g12/ngc:b"), (END, f"{own}{END}")
+    edits = (
+        ("mill.var", "other.var"),
+        ("a:g12/ngc", "a:g12/ngc:b"),
+        (END_MARK, f"{own}{END_MARK}"),
+    )
     for old, new in edits:
         assert old in changed
         changed = changed.replace(old, new, 1)
@@ -124,7 +128,7 @@ def test_a_second_feature_joins_the_first(tmp_path):
     put_in(ini, "circle-mill", remap={}, package=tmp_path / "g12" / "python" / "g12")
     lines = [line for line in ini.read_text().splitlines() if line.startswith("REMAP")]
     assert [line.split()[2] for line in lines] == ["G12", "G13", "G12.2", "G13.2"]
-    assert [block[0].text.startswith(BEGIN) for block in IniText(ini).blocks()] == [True] * 3
+    assert [block[0].text.startswith(BEGIN_MARK) for block in IniText(ini).blocks()] == [True] * 3
     take_out(ini)
     assert content_of(tmp_path) == before
 
@@ -179,8 +183,8 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
 @pytest.mark.parametrize(
     ("marker", "count", "missed"),
     [
-        (END, 2, f'mill.ini:6: the line "{END}"'),
-        (BEGIN, 2, f'the line "{BEGIN}"'),
+        (END_MARK, 2, f'mill.ini:6: the line "{END_MARK}"'),
+        (BEGIN_MARK, 2, f'the line "{BEGIN_MARK}"'),
     ],
 )
 def test_a_marker_without_its_other_one_is_refused(tmp_path, capsys, marker, count, missed):
@@ -403,8 +407,8 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
     monkeypatch.undo()
     names = package_copy.package_files()
     assert {"python/toplevel.py", "python/remap.py", "python/g12/__main__.py"} <= names.keys()
-    assert {f"configs/include/{name}" for name in features.FILES.values()} <= names.keys()
-    subs = {f"ngc/{sub}.ngc" for f in features.FILES for sub in features.names_of(f)}
+    assert {f"configs/include/{name}" for name in features.REMAP_FILES.values()} <= names.keys()
+    subs = {f"ngc/{sub}.ngc" for f in features.REMAP_FILES for sub in features.names_of(f)}
     assert subs <= names.keys()
     assert not any("__pycache__" in name or name.startswith("tests") for name in names)
 
@@ -495,18 +499,18 @@ def test_a_damaged_copy_is_mended(tmp_path):
     whole = content_of(tmp_path)
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").unlink()
     (tmp_path / "g12" / "python" / "remap.py").write_bytes(b"")
-    assert installation.lost_files(IniText(ini))
+    assert installation.missing_files(IniText(ini))
     installation.bring_copy_up_to_date(tmp_path / "g12")
     assert content_of(tmp_path) == whole
-    assert installation.lost_files(IniText(ini)) == []
+    assert installation.missing_files(IniText(ini)) == []
 
 
 def test_the_copy_that_only_a_users_module_names_is_missed_too(tmp_path):
     ini, python = own_config(tmp_path)
-    assert installation.lost_files(IniText(ini)) == []
+    assert installation.missing_files(IniText(ini)) == []
     put_in(ini, "polar", **python)
     shutil.rmtree(tmp_path / "g12")
-    assert installation.lost_files(IniText(ini))
+    assert installation.missing_files(IniText(ini))
 
 
 def test_a_copy_does_not_mend_itself(tmp_path, monkeypatch):
@@ -681,7 +685,13 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
 
 
 def test_every_feature_has_a_next_step():
-    wanted = ["polar", features.SHAPES, features.SPINDLE_C, features.KINEMATICS, features.FORMS]
+    wanted = [
+        "polar",
+        features.POLAR_SHAPES,
+        features.SPINDLE_AS_C,
+        features.KINEMATICS,
+        features.FORMS,
+    ]
     _, *steps, _ = installation.next_steps(Path("mill.ini"), [*wanted, "programs-haas-mill"])
     assert [step.split()[0] for step in steps] == [
         "G13.1", "o<polar_polygon>", "home,", "home,", "fill", "open",

@@ -28,8 +28,8 @@ SUBS = {
 @pytest.fixture(autouse=True)
 def small_package(monkeypatch):
     files = {name.removeprefix("g12/"): content for name, content in SUBS.items()}
-    page = (features.ROOT / forms.PAGE).read_bytes()
-    package = {"python/g12/__init__.py": b"", forms.PAGE: page, **files}
+    page = (features.ROOT / forms.GLADE_FILE).read_bytes()
+    package = {"python/g12/__init__.py": b"", forms.GLADE_FILE: page, **files}
     monkeypatch.setattr(package_copy, "package_files", lambda: package)
 
 
@@ -132,7 +132,7 @@ TKPKG = "TKPKG = Ngcgui 1.0\n"
 )
 def test_what_keeps_forms_from_being_shown_is_found(tmp_path, screen, lines, remaps, finding):
     if "PROGRAM_PREFIX" in lines:
-        screen = with_lines(f"[HAL]\n\n{screen}", "HAL", f"HALCMD = {forms.WINDOW}forms.ui\n")
+        screen = with_lines(f"[HAL]\n\n{screen}", "HAL", f"HALCMD = {forms.OWN_WINDOW}forms.ui\n")
         (tmp_path / "forms.ui").write_text("PyNgcGui")
     (found,) = shown_in(tmp_path, screen, lines + HAAS_PAGE, remaps)
     assert finding in found

@@ -199,7 +199,7 @@ def test_an_included_file_is_left_alone(tmp_path):
     )
     begin, end = LATHE.index("[KINS]"), LATHE.index("[HAL]")
     text = f"{LATHE[:begin]}#INCLUDE kins.inc\n{LATHE[end:]}"
-    refused_in(tmp_path, text, HAL, "kins.inc:2: KINEMATICS stands in an included file")
+    refused_in(tmp_path, text, HAL, "kins.inc:2: KINEMATICS is in an included file")
 
 
 def test_without_g12_1_it_says_how(tmp_path):

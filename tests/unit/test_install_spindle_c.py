@@ -89,7 +89,7 @@ def pins_of(folder, text=PINS):
 def put_in(folder, text=LATHE, hal=HAL):
     ini = write_config(folder, text, "lathe.ini", motion_hal=hal)
     before = content_of(folder)
-    plan = make_plan(config_of(ini), [features.SPINDLE_C], pins_of(folder))
+    plan = make_plan(config_of(ini), [features.SPINDLE_AS_C], pins_of(folder))
     installation.write_changes(plan, folder)
     return ini, before
 
@@ -119,7 +119,7 @@ def test_what_is_written(tmp_path):
 def test_install_asks_for_the_pins(tmp_path):
     ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
     with pytest.raises(Refused) as refused:
-        make_plan(config_of(ini), [features.SPINDLE_C])
+        make_plan(config_of(ini), [features.SPINDLE_AS_C])
     assert [finding.kind for finding in refused.value.args] == ["pins"]
     assert "--pins spindle.toml" in refused.value.args[0].cure
 

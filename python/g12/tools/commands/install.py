@@ -51,7 +51,7 @@ def command_parser() -> Parser:
 
 def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
     """Return the INI, which may come after the features, and the features, each once."""
-    if not ini and len(words) > 1 and words[-1].lower() not in features.NAMES:
+    if not ini and len(words) > 1 and words[-1].lower() not in features.FEATURE_NAMES:
         *words, last = words
         ini = Path(last)
     features_named = [name for word in words for name in word.lower().split(",") if name]
@@ -60,8 +60,10 @@ def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | Non
 
 def wrong_words(ini: Path | None, wanted: Sequence[str]) -> str:
     """Return the fault of the command line's features, "" without one."""
-    known = ", ".join(features.NAMES)
-    unknown = [f"{name!r} is none of {known}" for name in wanted if name not in features.NAMES]
+    known = ", ".join(features.FEATURE_NAMES)
+    unknown = [
+        f"{name!r} is none of {known}" for name in wanted if name not in features.FEATURE_NAMES
+    ]
     given = {"the INI": ini, "--with": wanted}
     return ", ".join(unknown[:1] or [f"{name} is missing" for name in given if not given[name]])
 

@@ -56,8 +56,8 @@ def settings_of(config: Config) -> dict[str, str]:
 
 def check_report(config: Config, found: list[ConfigFinding]) -> dict:
     """Return the whole report of `check` as data."""
-    mine = {code.line for code in config.codes}
-    others = [remap for line, remap in config.remaps if line not in mine]
+    own = {code.line for code in config.codes}
+    others = [remap for line, remap in config.remaps if line not in own]
     return {
         "ini": str(config.text.path),
         "linuxcnc": config.version,

@@ -11,42 +11,42 @@ from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, load_config
 from g12.tools.install.lathe.spindle_c import Pins
-from g12.tools.install.plan import FILTERED, InstallPlan, make_plan, names_copy, refuse
+from g12.tools.install.plan import FILTER_SUFFIX, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 
-SOME = 3  # missing files are named
-BEFORE = {
+MOST_NAMED = 3  # missing files are named
+PREVENTING = {
     "no-linuxcnc",
     "python-fails",
     "does-not-load",
-}  # findings that prevent a config from being read
+}  # kinds of findings, of a config that cannot be read
 
 
 def install(
-    text: IniText, wanted: Sequence[str], dry_run: bool, pins: Pins | None = None
+    text: IniText, requested: Sequence[str], dry_run: bool, pins: Pins | None = None
 ) -> Iterator[str]:
     """Install features in a machine config; yield the lines to show."""
-    lost = lost_files(text)
-    if lost:
-        more = " …" if len(lost) > SOME else ""
-        names = f"{', '.join(lost[:SOME])}{more}"
+    missing = missing_files(text)
+    if missing:
+        more = " …" if len(missing) > MOST_NAMED else ""
+        names = f"{', '.join(missing[:MOST_NAMED])}{more}"
         yield f"{text.path.parent / package_copy.NAME}: missing: {names}"
         if dry_run:
-            yield "dry run: nothing was written; without these files nothing more can be told"
+            yield "dry run: nothing was written; without these files nothing more can be checked"
             return
         yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
     config = readable_config(text)
     programs = [f"programs-{control}" for control in installed_programs(config)]
-    for pair in excluding([*config.features, *programs, *wanted]):
+    for pair in excluding([*config.features, *programs, *requested]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
-    plan = make_plan(config, wanted, pins)
+    plan = make_plan(config, requested, pins)
     changes = plan.changes()
     old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
     if not changes and not old_copy:
-        yield f"{text.path}: {', '.join(wanted)}: installed already, nothing to do"
+        yield f"{text.path}: {', '.join(requested)}: installed already, nothing to do"
         return
     warnings = try_out(plan)
     for path, content in changes.items():
@@ -60,7 +60,7 @@ def install(
     if dry_run:
         yield "dry run: nothing was written"
     else:
-        yield from next_steps(text.path, wanted)
+        yield from next_steps(text.path, requested)
 
 
 def size_of_package() -> str:
@@ -69,18 +69,18 @@ def size_of_package() -> str:
     return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
 
 
-def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
-    """Yield the next steps: a first test without motion, and the way to uninstall."""
+def next_steps(ini: Path, installed: Sequence[str]) -> Iterator[str]:
+    """Yield the next steps: a first test without motion, and the command that uninstalls."""
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
-    for feature in wanted:
+    for feature in installed:
         block = features.harmless(feature)
         if block:
             yield f"  {block:6} does nothing, and is no error"
-        elif feature == features.SHAPES:
+        elif feature == features.POLAR_SHAPES:
             yield "  o<polar_polygon> call is answered with what it needs; nothing moves"
-        elif feature == features.SPINDLE_C:
+        elif feature == features.SPINDLE_AS_C:
             yield "  home, M254: the spindle turns to its index and to C; M255 gives it back"
-        elif feature in features.FILES:
+        elif feature in features.REMAP_FILES:
             code = features.remaps_of(feature)[0].code
             yield f"  {code:6} is answered with what it needs; nothing moves"
         elif feature == features.KINEMATICS:
@@ -88,26 +88,26 @@ def next_steps(ini: Path, wanted: Sequence[str]) -> Iterator[str]:
         elif feature == features.FORMS:
             yield "  fill in a form on its page, Create Feature, Finalize: the program is open"
         else:
-            yield f"  open a .{FILTERED} program of {features.PROGRAMS[feature]}"
+            yield f"  open a .{FILTER_SUFFIX} program of {features.CONTROLS[feature]}"
     yield f"to take it out again: {COMMAND} uninstall {ini}"
 
 
 def readable_config(text: IniText) -> Config:
     """Return the present config; refuse one that LinuxCNC cannot load."""
     config = load_config(text, set())
-    refuse_problems([finding for finding in findings_of(config) if finding.kind in BEFORE])
+    refuse_problems([finding for finding in findings_of(config) if finding.kind in PREVENTING])
     return config
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:
     """Yield texts for features that exclude each other."""
-    for group in features.ONE_OF:
+    for group in features.EXCLUSIVE:
         chosen = [name for name in group if name in names]
         if len(chosen) > 1:
             yield " and ".join(chosen)
 
 
-def lost_files(text: IniText) -> list[str]:
+def missing_files(text: IniText) -> list[str]:
     """Return the missing files of the copy that the config's lines name."""
     copy = text.path.parent / package_copy.NAME
     if copy.exists():
@@ -119,25 +119,25 @@ def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
     """Write all changes; return a line for each."""
     changes, copy = plan.changes(), folder / package_copy.NAME
     require_writable(changes)
-    fresh, kept = plan.copied and not copy.exists(), {}
+    new_copy, backups = plan.copied and not copy.exists(), {}
     try:
         done = bring_copy_up_to_date(copy) if plan.copied else []
         for path in changes:
-            if not is_marked(path):
-                kept[path] = back_up(path)
+            if not has_own_lines(path):
+                backups[path] = back_up(path)
         write_all(changes)
     except BaseException:
-        take_back(kept, copy if fresh else None)
+        roll_back(backups, copy if new_copy else None)
         raise
     for path in changes:
-        before = f"; as it was: {kept[path].name}" if path in kept else ""
+        before = f"; as it was: {backups[path].name}" if path in backups else ""
         done.append(f"{path}: changed{before}")
     return done
 
 
-def take_back(kept: Iterable[Path], copy: Path | None) -> None:
-    """Remove the files of a failed installation: backups, a new copy."""
-    for path in kept:
+def roll_back(changed: Iterable[Path], copy: Path | None) -> None:
+    """Remove the files of a failed installation: the backups of files, a new copy."""
+    for path in changed:
         drop_backup(path)
     if copy and copy.exists():
         shutil.rmtree(copy)
@@ -147,9 +147,9 @@ def bring_copy_up_to_date(copy: Path) -> list[str]:
     """Update the copy of the package; return a line for each change."""
     if not out_of_date(copy):
         return []
-    aside = package_copy.write_copy(copy)
-    kept = [f"{copy / name}: your version, kept beside the new one" for name in aside]
-    return [f"{copy}: {size_of_package()}", *kept]
+    renamed = package_copy.write_copy(copy)
+    notes = [f"{copy / name}: your version, kept beside the new one" for name in renamed]
+    return [f"{copy}: {size_of_package()}", *notes]
 
 
 def out_of_date(copy: Path) -> bool:
@@ -162,6 +162,6 @@ def out_of_date(copy: Path) -> bool:
     return False
 
 
-def is_marked(path: Path) -> bool:
+def has_own_lines(path: Path) -> bool:
     """Return whether a file has lines of an earlier installation, and so a backup."""
     return b"by g12 install" in path.read_bytes() or b">>> g12 install" in path.read_bytes()

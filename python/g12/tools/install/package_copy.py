@@ -14,7 +14,7 @@ from g12.tools.machine.files import take_owner, write
 
 NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
-PAGES = (  # the pages that a machinist reads at the machine; they link only to each other
+PAGE_FILES = (  # the pages that a machinist reads at the machine; they link only to each other
     "ngc/*.md",
     "ngc/pictures/*.png",
     "configs/README.md",
@@ -24,7 +24,7 @@ PAGES = (  # the pages that a machinist reads at the machine; they link only to 
     "python/g12/tools/regress/README.md",
     "python/g12/tools/translate/README.md",
 )
-CODE = (
+CODE_FILES = (
     "ngc/*.ngc",
     "ngc/*.png",
     "configs/include/*.inc",
@@ -35,14 +35,14 @@ CODE = (
     "python/g12/**/*.py",
     "python/g12/tools/translate/controls/*.toml",
 )
-PARTS = ("LICENSE", *CODE, *PAGES)
-EDITED = ".edited"
-ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")
+FILES = ("LICENSE", *CODE_FILES, *PAGE_FILES)
+EDITED_SUFFIX = ".edited"
+MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")
 
 
 def package_files() -> dict[str, bytes]:
     """Return the files of this package, by their names below its folder."""
-    paths = sorted(path for part in PARTS for path in ROOT.glob(part))
+    paths = sorted(path for part in FILES for path in ROOT.glob(part))
     return {path.relative_to(ROOT).as_posix(): path.read_bytes() for path in paths}
 
 
@@ -74,7 +74,7 @@ def listed(folder: Path) -> dict[str, str]:
     manifest = folder / MANIFEST
     content = manifest.read_bytes() if manifest.is_file() else b""
     lines = content.decode("utf-8", "replace").splitlines()
-    entries, here = [ENTRY.fullmatch(line) for line in lines], folder.resolve()
+    entries, here = [MANIFEST_ENTRY.fullmatch(line) for line in lines], folder.resolve()
     for number, (line, entry) in enumerate(zip(lines, entries), start=1):
         if not entry or not is_below(here, entry[2]):
             raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
@@ -91,15 +91,15 @@ def is_below(folder: Path, name: str) -> bool:
 def edited(folder: Path) -> list[str]:
     """Return the files of a copy that were changed since their installation."""
     found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
-    return [name for name, value, there in found if there not in ("", value)]
+    return [name for name, value, present in found if present not in ("", value)]
 
 
 def missing(folder: Path) -> list[str]:
     """Return the missing files of a copy, and those that have become empty."""
-    return [name for name, value in listed(folder).items() if is_lost(folder / name, value)]
+    return [name for name, value in listed(folder).items() if is_damaged(folder / name, value)]
 
 
-def is_lost(path: Path, value: str) -> bool:
+def is_damaged(path: Path, value: str) -> bool:
     """Return whether a file is missing, or empty with another digest in the list."""
     found = digest_of(path)
     return not found or found == digest(b"") != value
@@ -107,11 +107,11 @@ def is_lost(path: Path, value: str) -> bool:
 
 def stale(folder: Path) -> list[str]:
     """Return the files of this package that a copy lacks or has in another version."""
-    there = listed(folder)
+    installed = listed(folder)
     return [
         name
         for name, content in package_files().items()
-        if there.get(name) != digest(content) or is_lost(folder / name, digest(content))
+        if installed.get(name) != digest(content) or is_damaged(folder / name, digest(content))
     ]
 
 
@@ -119,7 +119,7 @@ def leftovers(folder: Path) -> list[str]:
     """Return the files of a folder if all are of the kinds that `uninstall` leaves, else none."""
     names = files_below(folder)
     known = package_files()
-    return names if all(name.partition(EDITED)[0] in known for name in names) else []
+    return names if all(name.partition(EDITED_SUFFIX)[0] in known for name in names) else []
 
 
 def files_below(folder: Path) -> list[str]:
@@ -132,18 +132,18 @@ def write_copy(folder: Path) -> list[str]:
 
     Returns the new names of edited files that a newer version replaces.
     """
-    for begun in abandoned(folder):
-        shutil.rmtree(begun)
+    for unfinished in abandoned(folder):
+        shutil.rmtree(unfinished)
     if folder.exists():
         return update_copy(folder)
-    fresh = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
+    new = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
     try:
-        fresh.chmod(0o755)
-        take_owner(fresh)
-        update_copy(fresh)
-        fresh.rename(folder)
+        new.chmod(0o755)
+        take_owner(new)
+        update_copy(new)
+        new.rename(folder)
     except BaseException:
-        shutil.rmtree(fresh)
+        shutil.rmtree(new)
         raise
     return []
 
@@ -152,40 +152,40 @@ def abandoned(folder: Path) -> list[Path]:
     """Return the unfinished copies beside a folder, of an `install` that was killed."""
     ours = {*package_files(), MANIFEST}
     return [
-        begun
-        for begun in folder.parent.glob(f".{folder.name}.????????")
-        if begun.is_dir()
-        and all(name in ours or Path(name).name.startswith(".") for name in files_below(begun))
+        path
+        for path in folder.parent.glob(f".{folder.name}.????????")
+        if path.is_dir()
+        and all(name in ours or Path(name).name.startswith(".") for name in files_below(path))
     ]
 
 
 def update_copy(folder: Path) -> list[str]:
     """Update a copy; return the new names of edited files."""
-    files, old, late = package_files(), listed(folder), stale(folder)
-    gone = [name for name in old if name not in files]
-    digests = {name: digest(files[name]) for name in late}
-    theirs = [
+    files, old, outdated = package_files(), listed(folder), stale(folder)
+    obsolete = [name for name in old if name not in files]
+    digests = {name: digest(files[name]) for name in outdated}
+    users = [
         name
-        for name in (*late, *gone)
-        if not is_lost(folder / name, old.get(name, ""))
+        for name in (*outdated, *obsolete)
+        if not is_damaged(folder / name, old.get(name, ""))
         and digest_of(folder / name) not in (old.get(name), digests.get(name))
     ]
-    aside = [put_aside(folder, name) for name in theirs]
-    write_files(folder, {name: files[name] for name in late})
+    renamed = [rename_edited(folder, name) for name in users]
+    write_files(folder, {name: files[name] for name in outdated})
     lines = [f"{digest(content)}  {name}\n" for name, content in files.items()]
     write_files(folder, {MANIFEST: "".join(lines).encode()})
-    remove_files(folder, gone)
-    return aside
+    remove_files(folder, obsolete)
+    return renamed
 
 
-def put_aside(folder: Path, name: str) -> str:
+def rename_edited(folder: Path, name: str) -> str:
     """Rename an edited file to a free name; return that."""
-    number, aside = 1, f"{name}{EDITED}"
-    while (folder / aside).exists():
+    number, free = 1, f"{name}{EDITED_SUFFIX}"
+    while (folder / free).exists():
         number += 1
-        aside = f"{name}{EDITED}.{number}"
-    (folder / name).rename(folder / aside)
-    return aside
+        free = f"{name}{EDITED_SUFFIX}.{number}"
+    (folder / name).rename(folder / free)
+    return free
 
 
 def write_files(folder: Path, files: dict[str, bytes]) -> None:

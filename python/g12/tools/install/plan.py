@@ -16,8 +16,8 @@ from g12.tools.install import package_copy
 from g12.tools.install.config import features, forms
 from g12.tools.install.config.findings import problem
 from g12.tools.install.config.ini_edit import (
-    BEGIN,
-    END,
+    BEGIN_MARK,
+    END_MARK,
     IniLine,
     IniText,
     InsertionPoint,
@@ -27,22 +27,22 @@ from g12.tools.install.config.ini_edit import (
 )
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe import kinematics_lines, spindle_c
-from g12.tools.install.lathe.kinematics_rules import uses_them
+from g12.tools.install.lathe.kinematics_rules import uses_face_kinematics
 from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
 from g12.tools.install.rules import installed_programs, odd_folder
 from g12.tools.translate.blocks.control import read_control
 
-BEGIN_LINE = f"{BEGIN} (g12 uninstall takes these lines out again)"
-NOTE = "# also by g12 install: "
+BEGIN_LINE = f"{BEGIN_MARK} (g12 uninstall takes these lines out again)"
+BLOCK_NOTE = "# also by g12 install: "
 PATH_NOTE = " at the end of SUBROUTINE_PATH"
 MODULE_NOTE = "a line in "
-MARK = "  # by g12 install"
+MODULE_MARK = "  # by g12 install"
 NAMES_COPY = re.compile(
     rf"\s*(#INCLUDE\s+|[^\s#;].*[=:\s])(\./|{forms.HERE}/)?{package_copy.NAME}/"
 )
 IMPORT_HANDLERS = "from g12.remap import *"
 IMPORT_REMAP = "import remap"
-FILTERED = "nc"  # the suffix of other controls' programs
+FILTER_SUFFIX = "nc"  # the suffix of other controls' programs
 
 
 class Refused(Exception):
@@ -86,23 +86,23 @@ def with_lines(path: Path, new: Sequence[str]) -> bytes:
 
 def marked(path: Path, statement: str) -> bool:
     """Return whether an earlier installation added a statement to a module."""
-    return any(line.rstrip().endswith(statement + MARK) for line in lines_with_ends(path))
+    return any(line.rstrip().endswith(statement + MODULE_MARK) for line in lines_with_ends(path))
 
 
 def make_plan(
-    config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None = None
+    config: Config, requested: Sequence[str], pins: spindle_c.Pins | None = None
 ) -> InstallPlan:
     """Return the plan to install features in a config."""
     prefix, copied = package_folder(config)
     plan = InstallPlan(IniText(config.text.path), prefix, copied)
-    mend_remaps(plan.text, config)
-    codes = [feature for feature in wanted if feature in features.FILES]
+    update_remaps(plan.text, config)
+    codes = [feature for feature in requested if feature in features.REMAP_FILES]
     python = python_lines(plan, config, codes) if codes else []
     subs = subroutine_lines(plan, config, codes)
     remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
-    filters = filter_lines(plan, config, wanted)
-    added = face_lines(plan, config, wanted)
-    spindle = spindle_lines(plan, config, wanted, pins)
+    filters = filter_lines(plan, config, requested)
+    added = face_lines(plan, config, requested)
+    spindle = spindle_lines(plan, config, requested, pins)
     point = plan.text.end_of_section("RS274NGC")
     noted = {line.text for block in plan.text.blocks() for line in block}
     put_block(
@@ -118,10 +118,10 @@ def make_plan(
     put_section(plan.text, "PYTHON", point, python)
     put_section(plan.text, "FILTER", point, filters)
     alone = {
-        "DISPLAY": geometry_lines(plan, config, wanted),
-        SETTINGS: program_settings(config, wanted),
+        "DISPLAY": geometry_lines(plan, config, requested),
+        SETTINGS: program_settings(config, requested),
     }
-    for lines_of in (form_lines(plan, config, wanted), alone, added, spindle):
+    for lines_of in (form_lines(plan, config, requested), alone, added, spindle):
         for section, lines in lines_of.items():
             put_section(plan.text, section, point, lines)
     for path in plan.changes():
@@ -129,7 +129,7 @@ def make_plan(
     return plan
 
 
-def mend_remaps(text: IniText, config: Config) -> None:
+def update_remaps(text: IniText, config: Config) -> None:
     """Update the REMAP lines of an older `install`."""
     ours = {line for block in text.blocks() for line in block}
     for line, remap in config.remaps:
@@ -143,8 +143,8 @@ def names_copy(text: IniText) -> list[IniLine]:
     here = text.path.parent
     found = [line for line in text.lines() if NAMES_COPY.match(line.text)]
     for line in (line for block in text.blocks() for line in block):
-        module = here / line.text.removeprefix(f"{NOTE}{MODULE_NOTE}")
-        if line.text.startswith(f"{NOTE}{MODULE_NOTE}") and module.is_file():
+        module = here / line.text.removeprefix(f"{BLOCK_NOTE}{MODULE_NOTE}")
+        if line.text.startswith(f"{BLOCK_NOTE}{MODULE_NOTE}") and module.is_file():
             found += [line] * (f'"{package_copy.NAME}/python"' in "".join(lines_with_ends(module)))
     return found
 
@@ -152,7 +152,7 @@ def names_copy(text: IniText) -> list[IniLine]:
 def put_block(text: IniText, point: InsertionPoint, lines: Sequence[str]) -> None:
     """Insert lines between the markers."""
     if lines:
-        text.insert(point, [BEGIN_LINE, *lines, END])
+        text.insert(point, [BEGIN_LINE, *lines, END_MARK])
 
 
 def put_section(
@@ -186,12 +186,13 @@ def package_folder(config: Config) -> tuple[str, bool]:
         return package_copy.NAME, True
     if package_copy.is_package(own):
         return package_copy.NAME, False
-    left = package_copy.leftovers(own)
-    what = f"left from an uninstall, with files you changed: {', '.join(left)}"
+    edited = package_copy.leftovers(own)
+    what = f"left from an uninstall, with files you changed: {', '.join(edited)}"
+    advice = ", and put your changes into the new one afterwards" if edited else ""
     raise refuse(
         "folder",
-        f"{own} is there already, {what if left else 'and is not this package'}",
-        "rename that folder" + (", and put your changes into the new one afterwards" * bool(left)),
+        f"{own} is there already, {what if edited else 'and is not this package'}",
+        f"rename that folder{advice}",
     )
 
 
@@ -201,24 +202,24 @@ def name_in_ini(config: Config, folder: Path) -> str:
     return folder.relative_to(here).as_posix() if folder.is_relative_to(here) else str(folder)
 
 
-def new_remaps(config: Config, wanted: Sequence[str]) -> list[features.Remap]:
+def new_remaps(config: Config, requested: Sequence[str]) -> list[features.Remap]:
     """Return the REMAP lines that the config does not have yet."""
-    there = [remap for _, remap in config.remaps]
+    present = [remap for _, remap in config.remaps]
     return [
         remap
-        for feature in wanted
+        for feature in requested
         for remap in features.remaps_of(feature)
         if not any(
             other.number == remap.number and features.own_names(other) & features.own_names(remap)
-            for other in there
+            for other in present
         )
     ]
 
 
-def subroutine_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+def subroutine_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
     """Return the SUBROUTINE_PATH line to insert; an existing one is extended instead."""
     name = f"{plan.prefix}/ngc"
-    if not any(features.names_of(feature) for feature in wanted):
+    if not any(features.names_of(feature) for feature in requested):
         return []
     for finding in odd_folder(folder_from_ini(config.ini, name)):
         raise Refused(finding)
@@ -233,52 +234,53 @@ def subroutine_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -
     ours = any(line in block for block in plan.text.blocks())
     if missing or (line.file != plan.text.path and not ours):
         # in an included file the entry may come from another INI's installation
-        plan.notes.append(f"{NOTE}{name}{PATH_NOTE}")
+        plan.notes.append(f"{BLOCK_NOTE}{name}{PATH_NOTE}")
     return []
 
 
-def filter_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+def filter_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
     """Return the lines for [FILTER] that open .nc files as programs of another control."""
-    control = next((features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS), None)
-    if not control:
+    names = [features.CONTROLS[name] for name in requested if name in features.CONTROLS]
+    if not names:
         return []
-    there = config.ini.get("FILTER", FILTERED)
-    if there and control in installed_programs(config):
+    control, present = names[0], config.ini.get("FILTER", FILTER_SUFFIX)
+    if present and control in installed_programs(config):
         return []
-    if there:
+    if present:
         raise refuse(
             "filter",
-            f"[FILTER] {FILTERED} = {there} is there already",
+            f"[FILTER] {FILTER_SUFFIX} = {present} is there already",
             "take that line out, or give your programs another suffix and add the line by hand "
             "(python/g12/tools/translate/README.md)",
         )
     return [
-        f"PROGRAM_EXTENSION = .{FILTERED} Programs of {control}",
-        f"{FILTERED} = python3 {plan.prefix}/python/g12 translate --control {control}",
+        f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {control}",
+        f"{FILTER_SUFFIX} = python3 {plan.prefix}/python/g12 translate --control {control}",
     ]
 
 
-def program_settings(config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the settings that a lathe's programs need; the user's own stay."""
-    names = [features.PROGRAMS[name] for name in wanted if name in features.PROGRAMS]
+def program_settings(config: Config, requested: Sequence[str]) -> list[str]:
+    """Return the settings that a lathe's programs need, but for those of the user."""
+    names = [features.CONTROLS[name] for name in requested if name in features.CONTROLS]
     controls = [control for name in names if (control := read_control(name)).turns_c]
     if not controls:
         return []
     depth = "CYLINDER_X" if controls[0].onto == "round" else "POLAR_Z"
     several = config.ini.number("TRAJ", "SPINDLES", 1) > 1
-    asked = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
-    return [f"{key} = {value}" for key, value in asked.items() if not config.ini.get(SETTINGS, key)]
+    needed = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
+    unset = (key for key in needed if not config.ini.get(SETTINGS, key))
+    return [f"{key} = {needed[key]}" for key in unset]
 
 
-def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
+def form_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> dict[str, list[str]]:
     """Return the lines, by section, that show the forms of present and new codes."""
-    if features.FORMS not in wanted:
+    if features.FORMS not in requested:
         return {}
     if not forms.screen_of(config):
         raise refuse(
             "forms", "[DISPLAY] DISPLAY is missing: no screen could show a form", "name the screen"
         )
-    codes = dict.fromkeys([*config.features, *wanted])
+    codes = dict.fromkeys([*config.features, *requested])
     if not forms.files_of(config, codes):
         raise refuse(
             "forms", "no code here has a form", "install a code with them: --with haas forms"
@@ -286,10 +288,10 @@ def form_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict
     return forms.lines_for(config, list(codes), plan.prefix)
 
 
-def geometry_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
-    """Return the GEOMETRY that rotates the part on a lathe's screen; the user's own stays."""
-    on_face = features.KINEMATICS in wanted or uses_them(config)
-    lathe = set(ON_A_LATHE).intersection(wanted) or on_face
+def geometry_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
+    """Return the GEOMETRY that rotates the part on a lathe's screen, if the user has none."""
+    on_face = features.KINEMATICS in requested or uses_face_kinematics(config)
+    lathe = set(ON_A_LATHE).intersection(requested) or on_face
     axes = config.ini.axes
     if not lathe or "C" not in axes or ("Y" in axes and not on_face):
         return []
@@ -301,24 +303,24 @@ def geometry_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> 
     return [line_text] if config.ini.get("DISPLAY", "DISPLAY") else []
 
 
-def face_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> dict[str, list[str]]:
+def face_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> dict[str, list[str]]:
     """Change the entries for the face's kinematics; return the lines to add."""
-    if features.KINEMATICS not in wanted or uses_them(config):
+    if features.KINEMATICS not in requested or uses_face_kinematics(config):
         return {}
-    reasons = list(kinematics_lines.obstacles(config, plan.text, wanted))
+    reasons = list(kinematics_lines.obstacles(config, plan.text, requested))
     if reasons:
         raise Refused(*reasons)
     for section, key, value in kinematics_lines.in_place(config):
         line, _ = plan.text.entries(section, key)[0]
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
-    return kinematics_lines.added(config, wanted, plan.prefix)
+    return kinematics_lines.added(config, requested, plan.prefix)
 
 
 def spindle_lines(
-    plan: InstallPlan, config: Config, wanted: Sequence[str], pins: spindle_c.Pins | None
+    plan: InstallPlan, config: Config, requested: Sequence[str], pins: spindle_c.Pins | None
 ) -> dict[str, list[str]]:
     """Return the lines of each section for a spindle that becomes C."""
-    if features.SPINDLE_C not in wanted or config.ini.get("SPINDLE_C", "JOINT"):
+    if features.SPINDLE_AS_C not in requested or config.ini.get("SPINDLE_C", "JOINT"):
         return {}
     reasons = list(spindle_c.spindle_obstacles(config, pins))
     if reasons:
@@ -326,23 +328,23 @@ def spindle_lines(
     return spindle_c.spindle_sections(config, pins, plan.prefix)
 
 
-def python_lines(plan: InstallPlan, config: Config, wanted: Sequence[str]) -> list[str]:
+def python_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
     """Return the lines for [PYTHON], and plan those for the user's own modules."""
     folder = f"{plan.prefix}/python"
     if not config.ini.get("PYTHON", "TOPLEVEL"):
         return [f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}"]
-    way = "" if config.python.package else f'import sys; sys.path.append("{folder}"); '
-    for path, statement, lacking in own_modules(config, wanted):
-        there = marked(path, statement)
-        if lacking and not there:
+    with_path = "" if config.python.package else f'import sys; sys.path.append("{folder}"); '
+    for path, statement, is_missing in own_modules(config, requested):
+        installed = marked(path, statement)
+        if is_missing and not installed:
             require_inside(config, path)
-            plan.modules[path] = [f"{way}{statement}{MARK}"]
-        if lacking or there:
-            plan.notes.append(f"{NOTE}{MODULE_NOTE}{name_in_ini(config, path)}")
+            plan.modules[path] = [f"{with_path}{statement}{MODULE_MARK}"]
+        if is_missing or installed:
+            plan.notes.append(f"{BLOCK_NOTE}{MODULE_NOTE}{name_in_ini(config, path)}")
     return []
 
 
-def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, bool]]:
+def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, str, bool]]:
     """Return the user's TOPLEVEL and module remap, with the imports, and if they are missing."""
     python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
     if not toplevel.is_file():
@@ -359,7 +361,7 @@ def own_modules(config: Config, wanted: Sequence[str]) -> list[tuple[Path, str, 
         )
     refuse_own_names(config)
     ours = {name for name, module in python.remap.items() if is_ours(module)}
-    needed = {name for feature in wanted for name in features.functions_of(feature)}
+    needed = {name for feature in requested for name in features.functions_of(feature)}
     remap = config.folder / python.remap_file if python.remap_file else remap_on_path(config)
     modules = [(toplevel, IMPORT_REMAP, not python.remap_file)]
     modules += [(remap, IMPORT_HANDLERS, bool(needed - ours))] if remap else []
@@ -379,7 +381,7 @@ def is_ours(module: str | None) -> bool:
 
 def refuse_own_names(config: Config) -> None:
     """Refuse if the import would replace functions of the user's own."""
-    handlers = {name for feature in features.FILES for name in features.functions_of(feature)}
+    handlers = {name for feature in features.REMAP_FILES for name in features.functions_of(feature)}
     for name in sorted(handlers & set(config.python.remap)):
         if not is_ours(config.python.remap[name]):
             raise refuse(

@@ -11,8 +11,8 @@ from g12.tools.install import package_copy
 from g12.tools.install.config import forms
 from g12.tools.install.config.features import model_of
 from g12.tools.install.config.ini_edit import (
-    BEGIN,
-    END,
+    BEGIN_MARK,
+    END_MARK,
     NEXT,
     NOW,
     WAS,
@@ -27,7 +27,7 @@ from g12.tools.install.config.ini_edit import (
 from g12.tools.install.config.loaded import codes_of, remaps_in
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.rules import GEOMETRY_LINE
-from g12.tools.install.plan import MARK, MODULE_NOTE, NOTE, PATH_NOTE, names_copy
+from g12.tools.install.plan import BLOCK_NOTE, MODULE_MARK, MODULE_NOTE, PATH_NOTE, names_copy
 from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
 
 OWN_ENDS = {
@@ -37,7 +37,7 @@ OWN_ENDS = {
     "PATH_APPEND": "/python",
 }
 HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "HAL", "G12", "AXIS_Y")}
-EDITED = "# before uninstall: "
+EDITED_NOTE = "# before uninstall: "
 OF_PROGRAMS = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
     r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
@@ -46,9 +46,9 @@ OF_PROGRAMS = re.compile(
 OWN_LINES = (
     OF_PROGRAMS,
     GEOMETRY_LINE,
-    forms.OWN_LINE,
-    kinematics_lines.OWN_LINE,
-    spindle_c.OWN_LINE,
+    forms.FORM_LINE,
+    kinematics_lines.KINEMATICS_LINE,
+    spindle_c.SPINDLE_C_LINE,
 )
 
 
@@ -56,19 +56,19 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     """Remove the package from a machine config; yield the lines to show."""
     blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
     package_copy.listed(copy)  # raises for a damaged list before anything is written
-    said = take_out_blocks(text, blocks)
+    notes = remove_blocks(text, blocks)
     shared = still_installed(text)
     if not blocks and (shared or not package_copy.is_copy(copy)):
         yield f"{text.path}: nothing that install put in"
         return
-    modules = take_out_elsewhere(text, notes_in(blocks), shared)
+    modules = remove_noted(text, notes_in(blocks), shared)
     if package_copy.is_copy(copy):
-        take_out_path(text, f"{package_copy.NAME}/ngc", shared)
+        remove_path(text, f"{package_copy.NAME}/ngc", shared)
     inis = {path: to_bytes(lines) for path, lines in text.files.items()}
     changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
     for path, content in changes.items():
         yield from difference(path, content)
-    yield from said
+    yield from notes
     needing = sorted({line.location: line for line in lines_needing_package(text)}.values())
     for line in needing:
         yield f"{line.location}: still needs the package: {line.text.strip()}"
@@ -82,10 +82,10 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     yield from after_all(copy, shared, bool(needing))
 
 
-def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
-    """Remove the blocks; return notes on the user's lines between the markers, which stay.
+def remove_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
+    """Remove the blocks; return notes on the user's lines between the markers, which remain.
 
-    An entry whose value the user changed stays as a comment, because the entry before `install` is
+    An entry whose value the user changed becomes a comment, because the entry before `install` is
     restored.
     """
     doomed = [line for block in blocks for line in own_lines(block)]
@@ -97,12 +97,12 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
         others = (line for line in section if line not in (*doomed, *headers, *edited))
         if not any(is_entry(line.text) for line in others):
             doomed.append(header)
-    gone = (*doomed, *headers, *was, *edited)
-    stay = [line for block in blocks for line in block if line not in gone]
+    handled = (*doomed, *headers, *was, *edited)
+    stay = [line for block in blocks for line in block if line not in handled]
     for line in was:
         text.replace(line, line.text[len(WAS) :])
     for line in edited:
-        text.replace(line, EDITED + line.text)
+        text.replace(line, EDITED_NOTE + line.text)
     text.remove(doomed)
     return [
         *(
@@ -116,30 +116,30 @@ def take_out_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
 def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
     """Yield the lines of a block by `install`; they may replace another."""
     edited = edited_lines(block)
-    standing_in = keys_standing_in(block)
+    replaced = replaced_keys(block)
     for line in block:
-        stands_in = key_and_value(line.text)[0] in standing_in and line not in edited
-        if is_by_install(line) or stands_in:
+        replaces = key_and_value(line.text)[0] in replaced and line not in edited
+        if is_by_install(line) or replaces:
             yield line
 
 
 def edited_lines(block: list[IniLine]) -> list[IniLine]:
     """Return the entries of a block whose value the user changed."""
     notes = [line.text[len(NOW) :] for line in block if line.text.startswith(NOW)]
-    put_in = {text for note in notes for text in note.split(NEXT)}
-    standing_in = keys_standing_in(block) if put_in else set()
+    inserted = {text for note in notes for text in note.split(NEXT)}
+    replaced = replaced_keys(block) if inserted else set()
     return [
         line
         for line in block
-        if key_and_value(line.text)[0] in standing_in and line.text not in put_in
+        if key_and_value(line.text)[0] in replaced and line.text not in inserted
     ]
 
 
-def keys_standing_in(block: list[IniLine]) -> set[str]:
-    """Return the keys of a block's entries that replace others, or limits."""
+def replaced_keys(block: list[IniLine]) -> set[str]:
+    """Return the keys whose entries a block replaces, and those of the limits that it adds."""
     texts = [line.text for line in block]
     keys = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
-    keys |= set(kinematics_lines.LIMITS) if "[AXIS_Y]" in texts else set()
+    keys |= set(kinematics_lines.LIMIT_KEYS) if "[AXIS_Y]" in texts else set()
     return keys - {""}
 
 
@@ -152,16 +152,16 @@ def is_by_install(line: IniLine) -> bool:
         return model_of(remap_from_value(value)) is not None
     if key:
         return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
-    return line.text.startswith((BEGIN, NOTE, NOW, END))
+    return line.text.startswith((BEGIN_MARK, BLOCK_NOTE, NOW, END_MARK))
 
 
 def notes_in(blocks: list[list[IniLine]]) -> list[str]:
     """Return the blocks' notes on insertions elsewhere."""
     lines = (line.text for block in blocks for line in block)
-    return [text[len(NOTE) :] for text in lines if text.startswith(NOTE)]
+    return [text[len(BLOCK_NOTE) :] for text in lines if text.startswith(BLOCK_NOTE)]
 
 
-def take_out_path(text: IniText, entry: str, shared: bool) -> None:
+def remove_path(text: IniText, entry: str, shared: bool) -> None:
     """Remove a folder from SUBROUTINE_PATH, unless it is alone or an include is still shared."""
     for line, _ in text.entries("RS274NGC", "SUBROUTINE_PATH")[:1]:
         if not shared or line.file == text.path:
@@ -180,17 +180,17 @@ def still_installed(text: IniText) -> bool:
 def without_imports(path: Path) -> bytes:
     """Return a module's content without the lines that `install` added at its end."""
     lines = lines_with_ends(path)
-    ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MARK)}
+    ours = {index for index, line in enumerate(lines) if line.rstrip().endswith(MODULE_MARK)}
     return to_bytes(without(lines, ours))
 
 
-def take_out_elsewhere(text: IniText, notes: list[str], shared: bool) -> dict[Path, bytes]:
+def remove_noted(text: IniText, notes: list[str], shared: bool) -> dict[Path, bytes]:
     """Remove the noted insertions; return the user's modules that change."""
     modules = {}
     for note in notes:
         module = text.path.parent / note.removeprefix(MODULE_NOTE)
         if note.endswith(PATH_NOTE):
-            take_out_path(text, note.removesuffix(PATH_NOTE), shared)
+            remove_path(text, note.removesuffix(PATH_NOTE), shared)
         elif not shared and module.is_file():
             modules[module] = without_imports(module)
     return modules
@@ -203,8 +203,8 @@ def lines_needing_package(text: IniText) -> list[IniLine]:
 
 def after_change(path: Path) -> Iterator[str]:
     """Delete the backup if the file equals it again; yield a line for it."""
-    kept = ", ".join(backup.name for backup in drop_backup(path))
-    yield f"{path}: changed" + (f"; you changed it since, so {kept} stays" if kept else "")
+    backups = ", ".join(backup.name for backup in drop_backup(path))
+    yield f"{path}: changed" + (f"; you changed it since, so {backups} stays" if backups else "")
 
 
 def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
@@ -216,6 +216,7 @@ def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
     elif needed:
         yield f"{copy}: stays, lines need it that are yours; take them out and run uninstall again"
     elif package_copy.is_copy(copy):
-        left = package_copy.remove_copy(copy)
-        yield f"{copy}: " + (f"taken away but for what you changed: {', '.join(left)}"
-                             if left else "taken away")  # fmt: skip
+        remaining = ", ".join(package_copy.remove_copy(copy))
+        yield f"{copy}: taken away" + (
+            f" but for what you changed: {remaining}" if remaining else ""
+        )

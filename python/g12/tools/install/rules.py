@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from g12.errors import Refusal
+from g12.errors import LONGEST_BLOCK, Refusal
 from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
@@ -28,15 +28,15 @@ from g12.tools.translate.blocks.control import ControlError, read_control
 
 OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
-LONGEST_LINE = 254  # characters: LinuxCNC 2.9 reads no more of a line
-HEADER = re.compile(r"\[[^\s\]]+\]")
+
+WELL_FORMED_HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
 OWN_HEADER = f"[{INI_SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
-FORM = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
-SOME = 8  # files are named in a line
+FORM_FILE = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
+MOST_NAMED = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
 STOPPING = {  # kinds that prevent LinuxCNC itself from loading the config
     "taken",
@@ -104,7 +104,7 @@ def broken_headers(config: Config) -> Iterator[ConfigFinding]:
     for line in config.text.lines():
         text = line.text.strip()
         other_case = text.upper().startswith(OWN_HEADER) and not text.startswith(OWN_HEADER)
-        if HEADER_LIKE.match(text) and (other_case or not HEADER.match(text)):
+        if HEADER_LIKE.match(text) and (other_case or not WELL_FORMED_HEADER.match(text)):
             yield problem(
                 "header",
                 f"{line.location}: {text:.40}: begins no section for LinuxCNC 2.9: "
@@ -117,10 +117,10 @@ def long_lines(config: Config) -> Iterator[ConfigFinding]:
     """Find lines that LinuxCNC would truncate."""
     for section in ("RS274NGC", "PYTHON", INI_SECTION):
         for line in config.text.section(section):
-            if len(line.text) > LONGEST_LINE:
+            if len(line.text) > LONGEST_BLOCK:
                 yield problem(
                     "long-line",
-                    f"{line.location}: {len(line.text)} characters; LinuxCNC reads {LONGEST_LINE}",
+                    f"{line.location}: {len(line.text)} characters; LinuxCNC reads {LONGEST_BLOCK}",
                     "shorten the line, or break it with a backslash at the end",
                 )
 
@@ -171,9 +171,9 @@ def codes_missing(config: Config) -> Iterator[ConfigFinding]:
 
 def taken_codes(config: Config) -> Iterator[ConfigFinding]:
     """Find a code with two REMAP lines: LinuxCNC does not start."""
-    mine = [code.line for code in config.codes]
+    own = [code.line for code in config.codes]
     for code in config.codes:
-        earlier = mine[: mine.index(code.line)]
+        earlier = own[: own.index(code.line)]
         for line, remap in config.remaps:
             if remap.number != code.remap.number or line in (code.line, *earlier):
                 continue
@@ -203,9 +203,9 @@ def owned_codes(config: Config) -> Iterator[ConfigFinding]:
 def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
     """Find REMAP lines that are nearly the package's."""
     for code in config.codes:
-        wanted, found = code.model.keywords, code.remap.keywords
-        wrong = [f"{key}={value}" for key, value in wanted.items() if found.get(key) != value]
-        wrong += [f"no {key}=" for key in found if key not in wanted]
+        expected, found = code.model.keywords, code.remap.keywords
+        wrong = [f"{key}={value}" for key, value in expected.items() if found.get(key) != value]
+        wrong += [f"no {key}=" for key in found if key not in expected]
         if wrong:
             yield problem(
                 "wrong-line",
@@ -218,8 +218,8 @@ def halves(config: Config) -> Iterator[ConfigFinding]:
     """Find one code of a pair without the other."""
     others = {remap.number: remap for _, remap in config.remaps}
     for feature in config.features:
-        there = {code.model for code in config.codes if code.feature == feature}
-        for model in set(features.remaps_of(feature)) - there:
+        present = {code.model for code in config.codes if code.feature == feature}
+        for model in set(features.remaps_of(feature)) - present:
             other = others.get(model.number)
             now = f"means something else here (REMAP = {other.text})" if other else "is missing"
             yield problem(
@@ -277,7 +277,7 @@ def shadowed_subs(config: Config) -> Iterator[ConfigFinding]:
 
 def shadowing_functions(config: Config) -> Iterator[ConfigFinding]:
     """Find a Python O-word of the name of a sub that programs call; REMAP lines bypass it."""
-    called = {name for feature in config.features for name in features.SUBS.get(feature, ())}
+    called = {name for feature in config.features for name in features.CALLED_SUBS.get(feature, ())}
     for name in sorted(called & set(config.python.oword if config.python else ())):
         yield problem(
             "shadowed",
@@ -385,7 +385,7 @@ def missing_axes(config: Config) -> Iterator[ConfigFinding]:
     """Find axes that a code needs."""
     axes = config.ini.axes
     for feature in config.features:
-        needed = features.AXES.get(feature, "XYZ")
+        needed = features.AXES_NEEDED.get(feature, "XYZ")
         missing = [axis for axis in needed if axis not in axes]
         if missing:
             yield problem(
@@ -398,11 +398,12 @@ def missing_axes(config: Config) -> Iterator[ConfigFinding]:
 
 def shapes_without_polar(config: Config) -> Iterator[ConfigFinding]:
     """Find the shapes on a machine without the polar interpolation that they need."""
-    if features.SHAPES in config.features and config.features.keys().isdisjoint(features.POLAR):
+    is_polar = not config.features.keys().isdisjoint(features.POLAR_FEATURES)
+    if features.POLAR_SHAPES in config.features and not is_polar:
         yield problem(
             "no-polar",
-            f"{features.SHAPES} needs polar or polar-g12.3: the subs use its codes",
-            f"install both: --with polar {features.SHAPES}",
+            f"{features.POLAR_SHAPES} needs polar or polar-g12.3: the subs use its codes",
+            f"install both: --with polar {features.POLAR_SHAPES}",
         )
 
 
@@ -430,7 +431,7 @@ def no_tool_table(config: Config) -> Iterator[ConfigFinding]:
 
 def tools_without_diameter(config: Config) -> Iterator[ConfigFinding]:
     """Find a tool table without any diameter."""
-    mill = bool(config.features.keys() - features.AXES)
+    mill = bool(config.features.keys() - features.AXES_NEEDED)
     unknown = config.diameters is None or any(no_tool_table(config))
     if mill and not unknown and not any(config.diameters.values()):
         yield warning(
@@ -490,7 +491,7 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
         yield problem("copy", f"{copy}: missing: {shortened(missing)}", MEND)
     changed = [name for name in edited if name not in missing]
     for name in changed:
-        report = note if FORM.fullmatch(name) else warning
+        report = note if FORM_FILE.fullmatch(name) else warning
         yield report(
             "copy",
             f"{copy / name}: was changed after it was installed",
@@ -501,11 +502,11 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
 
 def shortened(names: list[str]) -> str:
     """Return some names in one line, and the number of the others."""
-    more = f" and {len(names) - SOME} more" if len(names) > SOME else ""
-    return ", ".join(names[:SOME]) + more
+    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + more
 
 
-RULES: tuple[Rule, ...] = (
+CONFIG_RULES: tuple[Rule, ...] = (
     wrong_version,
     other_interpreter,
     codes_missing,
@@ -543,7 +544,7 @@ RULES: tuple[Rule, ...] = (
 
 def findings_of(config: Config) -> list[ConfigFinding]:
     """Return all findings; a failure without one is reported in LinuxCNC's own words."""
-    found = [finding for rule in RULES for finding in rule(config)]
+    found = [finding for rule in CONFIG_RULES for finding in rule(config)]
     failure = config.failure or function_missing(config)
     if failure and not any(finding.kind in STOPPING for finding in found):
         found.append(

@@ -29,14 +29,14 @@ def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     it does not have are warnings.
     """
     tried = trial(plan, plan.text)
-    others = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
-    warnings = others + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
+    filters = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
+    warnings = filters + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
     included = [path for path in plan.changes() if path in plan.text.files]
     for path, shared in others_including(plan.text, included):
         found = [of_other(each, path, shared) for each in trial(plan, with_changes(path, plan))]
         refuse_problems([each for each in found if each.kind not in SHOWN_ONLY | {OWN_FILTER}])
-        own = (each for each in found if each.kind in ("form", OWN_FILTER))
-        warnings += [replace(each, level=WARNING) for each in own]
+        harmless = (each for each in found if each.kind in ("form", OWN_FILTER))
+        warnings += [replace(each, level=WARNING) for each in harmless]
     return warnings
 
 
@@ -58,7 +58,7 @@ def with_changes(path: Path, plan: InstallPlan) -> IniText:
 
 
 def of_other(finding: ConfigFinding, ini: Path, shared: Path) -> ConfigFinding:
-    """Return a finding of another INI that says whose it is, and why that INI matters."""
+    """Return a finding of another INI with that INI's name and why it matters."""
     text = f"{ini.name} includes {shared.name} too and gets the same lines: {finding.text}"
     cure = f"in {ini.name}: {finding.cure}; if no machine uses {ini.name}, rename it to end in .old"
     return replace(finding, text=text, cure=cure)
@@ -107,8 +107,9 @@ def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, di
         values = [relocated(value, plan.prefix, scratch) for _, _, value in entries]
         moved = {entry.key for entry, value in zip(entries, values) if value != entry.value}
         for key in moved:
-            there = [value for entry, value in zip(entries, values) if entry.key == key]
-            found.setdefault(section, {})[key] = there
+            found.setdefault(section, {})[key] = [
+                value for entry, value in zip(entries, values) if entry.key == key
+            ]
     return found
 
 

@@ -12,9 +12,9 @@ from g12.tools.translate.blocks.control import shipped_controls
 ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
 
-SHAPES = "polar-shapes"  # they need polar or polar-g12.3
-SPINDLE_C = "spindle-c"
-FILES = {
+POLAR_SHAPES = "polar-shapes"  # they need polar or polar-g12.3
+SPINDLE_AS_C = "spindle-c"
+REMAP_FILES = {
     "haas": "g12_haas.inc",
     "yasnac": "g12_yasnac.inc",
     "mitsubishi": "g12_mitsubishi.inc",
@@ -22,19 +22,19 @@ FILES = {
     "polar": "polar.inc",
     "polar-g12.3": "polar_g12_3.inc",
     "cylinder": "cylinder.inc",
-    SHAPES: "polar_shapes.inc",
-    SPINDLE_C: "spindle_c.inc",
+    POLAR_SHAPES: "polar_shapes.inc",
+    SPINDLE_AS_C: "spindle_c.inc",
 }
-PROGRAMS = {f"programs-{control}": control for control in shipped_controls()}
+CONTROLS = {f"programs-{control}": control for control in shipped_controls()}
 FORMS = "forms"
 KINEMATICS = "polar-kinematics"
-NAMES = (*FILES, KINEMATICS, FORMS, *PROGRAMS)
-ONE_OF = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(PROGRAMS))
-POLAR = ("polar", "polar-g12.3")
-AXES = {  # of the machine; a mill's are XYZ
-    **dict.fromkeys((*POLAR, SHAPES), "XC"),
+FEATURE_NAMES = (*REMAP_FILES, KINEMATICS, FORMS, *CONTROLS)
+EXCLUSIVE = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(CONTROLS))
+POLAR_FEATURES = ("polar", "polar-g12.3")
+AXES_NEEDED = {  # of the machine; a mill's are XYZ
+    **dict.fromkeys((*POLAR_FEATURES, POLAR_SHAPES), "XC"),
     "cylinder": "XZC",
-    SPINDLE_C: "C",
+    SPINDLE_AS_C: "C",
 }
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
@@ -46,18 +46,19 @@ MEANING = {
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
     FORMS: "pages to fill in, with pictures, for the codes that the machine has",
-    SPINDLE_C: "M254/M255 the spindle becomes C, and the spindle again (--pins)",
-    SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, by G12.4/G13.4",
+    SPINDLE_AS_C: "M254/M255 the spindle becomes C, and the spindle again (--pins)",
+    POLAR_SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, "
+    "by G12.4/G13.4",
     **{
-        name: f".nc files are opened as programs of {control}" for name, control in PROGRAMS.items()
+        name: f".nc files are opened as programs of {control}" for name, control in CONTROLS.items()
     },
 }
-SHARED = {"cycle_done"}  # the common epilog does not identify a cycle
-SUBS = {  # subs that a program or a handler calls, besides those of the codes
+SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
+CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
-    **dict.fromkeys(AXES, ("g12_skipped_over",)),
-    SHAPES: (
+    **dict.fromkeys(AXES_NEEDED, ("g12_skipped_over",)),
+    POLAR_SHAPES: (
         "polar_polygon",
         "polar_slot",
         "polar_pocket",
@@ -66,30 +67,30 @@ SUBS = {  # subs that a program or a handler calls, besides those of the codes
         "face_hole_at",
         "g12_holes",
     ),
-    SPINDLE_C: (),
+    SPINDLE_AS_C: (),
 }
 
 CLOSE = 0.8  # least similarity of a misspelt name
-SECTION = "RS274NGC"  # which the files of configs/include go into
+INTERPRETER_SECTION = "RS274NGC"  # which the files of configs/include go into
 
 
 def own_names(remap: Remap) -> set[str]:
     """Return the names that identify a REMAP line's cycle: its subs and functions."""
     names = {remap.keywords[word] for word in ("ngc", *HANDLERS) if word in remap.keywords}
-    return names - SHARED
+    return names - {SHARED_EPILOG}
 
 
 @cache
 def remaps_of(feature: str) -> tuple[Remap, ...]:
     """Return the REMAP lines of a feature, from its file in configs/include."""
-    lines = (INCLUDES / FILES[feature]).read_text(encoding="utf-8").splitlines()
-    entries = entries_of([f"[{SECTION}]", *lines], SECTION)
+    lines = (INCLUDES / REMAP_FILES[feature]).read_text(encoding="utf-8").splitlines()
+    entries = entries_of([f"[{INTERPRETER_SECTION}]", *lines], INTERPRETER_SECTION)
     return tuple(remap_from_value(value) for _, key, value in entries if key == "REMAP")
 
 
 def model_of(remap: Remap) -> tuple[str, Remap] | None:
     """Return the feature of a machine's REMAP line, and the package's own line."""
-    models = [(feature, model) for feature in FILES for model in remaps_of(feature)]
+    models = [(feature, model) for feature in REMAP_FILES for model in remaps_of(feature)]
 
     def likeness(candidate: tuple[str, Remap]) -> tuple[int, bool]:
         _, model = candidate
@@ -111,12 +112,12 @@ def is_misspelt(remap: Remap, model: Remap) -> bool:
 def names_of(feature: str) -> list[str]:
     """Return the NGC subs that a feature's codes and programs call."""
     called = [remap.keywords["ngc"] for remap in remaps_of(feature) if "ngc" in remap.keywords]
-    return list(dict.fromkeys([*called, *SUBS.get(feature, ())]))
+    return list(dict.fromkeys([*called, *CALLED_SUBS.get(feature, ())]))
 
 
 def harmless(feature: str) -> str | None:
     """Return a block without effect outside a section, None without sections."""
-    if feature in POLAR:
+    if feature in POLAR_FEATURES:
         return remaps_of(feature)[1].code
     return f"{remaps_of(feature)[0].code} C0" if feature == "cylinder" else None
 

@@ -14,7 +14,7 @@ from g12.lengths import is_inch
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 
-OF = {  # the forms of a feature
+FORMS_OF = {  # the forms of a feature
     "haas": ("form_haas",),
     "yasnac": ("form_yasnac",),
     "mitsubishi": ("form_mitsubishi",),
@@ -27,17 +27,17 @@ OF = {  # the forms of a feature
         "form_side_holes",
     ),
 }
-UNITS = ("inch", "mm")
-PARTS = ("form_start", "form_end")  # subs that forms call
-FACE_PARTS = ("form_face_start", "form_face_end")  # and those of a lathe's face
+UNIT_NAMES = ("inch", "mm")
+FORM_SUBS = ("form_start", "form_end")  # subs that forms call
+FACE_FORM_SUBS = ("form_face_start", "form_face_end")  # and those of a lathe's face
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
-PAGE = "configs/include/forms.ui"
+GLADE_FILE = "configs/include/forms.ui"
 TAB = "gladevcp -x {XID} "
-WINDOW = "loadusr gladevcp -c forms "  # HAL ends it with LinuxCNC
+OWN_WINDOW = "loadusr gladevcp -c forms "  # HAL ends it with LinuxCNC
 TABS = {"gmoccapy": "ntb_user_tabs", "touchy": ""}  # screens with tabs, and the tabs' location
 QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
 HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
-OWN_LINE = re.compile(
+FORM_LINE = re.compile(
     r"TKPKG = Ngcgui 1\.0|NGCGUI_SUBFILE = (\S+/ngc/)?form_\w+\.ngc|NGCGUI_SUBFILE_PATH = \S+/ngc"
     r"|EMBED_TAB_NAME = Forms|EMBED_TAB_LOCATION = ntb_user_tabs"
     r"|EMBED_TAB_COMMAND = gladevcp -x \{XID\} \S+/forms\.ui"
@@ -63,8 +63,8 @@ def ngcgui_of(config: Config) -> str:
 
 def files_of(config: Config, features: Iterable[str]) -> list[str]:
     """Return the files of the features' forms, in the machine's unit."""
-    unit = UNITS[0] if is_inch(config.ini.mm) else UNITS[1]
-    return [f"{form}_{unit}.ngc" for feature in features for form in OF.get(feature, ())]
+    unit = UNIT_NAMES[0] if is_inch(config.ini.mm) else UNIT_NAMES[1]
+    return [f"{form}_{unit}.ngc" for feature in features for form in FORMS_OF.get(feature, ())]
 
 
 def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str, list[str]]:
@@ -72,8 +72,8 @@ def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str,
 
     ``prefix`` is the package's folder as the INI names it.
     """
-    there = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
-    pages = [name for name in files_of(config, features) if name not in there]
+    present = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
+    pages = [name for name in files_of(config, features) if name not in present]
     lines = screen_lines(config, prefix)
     folder = folder_of_pages(config, prefix)
     shown_pages = [f"NGCGUI_SUBFILE = {folder}{page}" for page in pages]
@@ -94,23 +94,23 @@ def own_page_folder(config: Config, prefix: str) -> str:
 
 
 def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
-    """Return the lines, by section, that make a screen show ngcgui, none if it does."""
+    """Return the lines, by section, that make a screen show ngcgui; none where it does already."""
     kind, screen = ngcgui_of(config), screen_of(config)
     if kind == AXIS:
         return {} if NGCGUI in packages(config) else {"DISPLAY": [f"TKPKG = {NGCGUI} 1.0"]}
     if kind == QTVCP:
-        there = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
-        return {} if there else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
+        present = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+        return {} if present else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
     if pages_of_gladevcp(config):
         return {}
     if screen not in TABS:
-        return {"HAL": [f"HALCMD = {WINDOW}{prefix}/{PAGE}"]}
+        return {"HAL": [f"HALCMD = {OWN_WINDOW}{prefix}/{GLADE_FILE}"]}
     locations, tabs = (
         config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME")
     )
     # Screens pair names and locations by number: if a tab of the user has none, this one has none.
     location = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(locations) == len(tabs) else []
-    command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{PAGE}"
+    command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{GLADE_FILE}"
     return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(location if TABS[screen] else []), command]}
 
 
@@ -145,11 +145,14 @@ def form_findings(config: Config) -> Iterator[ConfigFinding]:
 
 def form_finding(config: Config, form: str) -> Iterator[ConfigFinding]:
     """Find the fault of one form."""
-    own = {feature: names for feature, names in OF.items() if form.rpartition("_")[0] in names}
-    parts = FACE_PARTS if "polar-shapes" in own else PARTS
+    stem = form.rpartition("_")[0]
+    own = {feature: names for feature, names in FORMS_OF.items() if stem in names}
+    parts = FACE_FORM_SUBS if "polar-shapes" in own else FORM_SUBS
     missing = [name for name in (form, *parts) if not subs_named(config.ini, name)]
     if missing:
-        known = [f"{name}_{unit}" for names in OF.values() for name in names for unit in UNITS]
+        known = [
+            f"{name}_{unit}" for names in FORMS_OF.values() for name in names for unit in UNIT_NAMES
+        ]
         cure = "add the package's folder ngc to SUBROUTINE_PATH, or run install again"
         yield problem(
             "form",
@@ -169,20 +172,25 @@ def form_finding(config: Config, form: str) -> Iterator[ConfigFinding]:
 def axis_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find an AXIS that loads no ngcgui."""
     if NGCGUI not in packages(config):
-        said = f"[DISPLAY] TKPKG = {' and '.join(packages(config)) or 'nothing'}"
-        yield problem("form", f"{said}: AXIS shows no forms", f"have: TKPKG = {NGCGUI} 1.0")
+        loaded = " and ".join(packages(config)) or "nothing"
+        yield problem(
+            "form",
+            f"[DISPLAY] TKPKG = {loaded}: AXIS shows no forms",
+            f"have: TKPKG = {NGCGUI} 1.0",
+        )
 
 
 def gladevcp_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find a screen without GladeVCP's ngcgui, or one that has no folder for its programs."""
     screen = screen_of(config)
     if not any(file.is_file() for file in pages_of_gladevcp(config)):
-        tab = f"[DISPLAY] EMBED_TAB_NAME = Forms, EMBED_TAB_COMMAND = {TAB}g12/{PAGE}"
+        tab = f"[DISPLAY] EMBED_TAB_NAME = Forms, EMBED_TAB_COMMAND = {TAB}"
+        line = tab if screen in TABS else f"[HAL] HALCMD = {OWN_WINDOW}"
         yield problem(
             "form",
             "no EMBED_TAB_COMMAND of [DISPLAY] and no HALCMD of [HAL] names a file with ngcgui: "
             f"{screen} shows no forms",
-            f"have: {tab if screen in TABS else f'[HAL] HALCMD = {WINDOW}g12/{PAGE}'}",
+            f"have: {line}g12/{GLADE_FILE}",
         )
     prefix = config.ini.get("DISPLAY", "PROGRAM_PREFIX")
     if prefix and not folder_from_ini(config.ini, prefix).is_dir():
@@ -198,8 +206,8 @@ def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find forms outside QtVCP's search: below one folder, or by a full path."""
     folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
     for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"):
-        own = Path(name).name.startswith("form_")
-        if own and not (folder and qtvcp_file(config, folder, name).is_file()):
+        is_form = Path(name).name.startswith("form_")
+        if is_form and not (folder and qtvcp_file(config, folder, name).is_file()):
             yield problem(
                 "form",
                 f"[DISPLAY] NGCGUI_SUBFILE_PATH = {folder or 'nothing'}, NGCGUI_SUBFILE = {name}: "

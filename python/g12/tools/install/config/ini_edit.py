@@ -13,8 +13,8 @@ from typing import NamedTuple
 from g12.ini_sections import entries_of, included_file, section_extent
 from g12.tools.machine.ini import Ini, IniError
 
-BEGIN = "# >>> g12 install"
-END = "# <<< g12 install"
+BEGIN_MARK = "# >>> g12 install"
+END_MARK = "# <<< g12 install"
 WAS = "# was: "
 NOW = "# now: "  # the inserted text, several separated by NEXT, to detect later edits
 NEXT = "; "
@@ -68,7 +68,7 @@ def is_entry(text: str) -> bool:
 
 def belongs(text: str) -> bool:
     """Return whether a line belongs to the section before it; comments may not."""
-    return is_entry(text) or text.startswith(END)
+    return is_entry(text) or text.startswith(END_MARK)
 
 
 def opens_section(text: str, section: str) -> bool:
@@ -77,7 +77,7 @@ def opens_section(text: str, section: str) -> bool:
 
 
 def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
-    """Return lines without those at the indices; a missing last line end stays missing."""
+    """Return lines without those at the indices; a missing last line end remains missing."""
     kept = [line for index, line in enumerate(lines) if index not in doomed]
     unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
     return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
@@ -202,13 +202,13 @@ class IniText:
         lines[point.row : point.row] = new
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
-        """Insert an entry between markers instead of a line, which stays as a comment."""
-        self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END])
+        """Insert an entry between markers instead of a line, which becomes a comment."""
+        self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END_MARK])
         self.replace(line, WAS + line.text)
         self.insert(InsertionPoint(line.file, line.row), [begin])
 
     def replace(self, line: IniLine, text: str) -> None:
-        """Replace the text of a line; its line end stays."""
+        """Replace the text of a line, but not its line end."""
         lines = self.files[line.file]
         lines[line.row] = text + lines[line.row][len(line.text) :]
 
@@ -231,24 +231,24 @@ class IniText:
         blocks: list[list[IniLine]] = []
         open_ = False
         for line in self.lines():
-            if line.text.startswith(BEGIN):
+            if line.text.startswith(BEGIN_MARK):
                 if open_:
                     break
                 blocks.append([])
                 open_ = True
             if open_:
                 blocks[-1].append(line)
-            if line.text.startswith(END):
+            if line.text.startswith(END_MARK):
                 if not open_:
                     raise IniError(
-                        f'{line.location}: the line "{BEGIN}" that begins this is missing: put it '
-                        "in front of the first line that install wrote"
+                        f'{line.location}: the line "{BEGIN_MARK}" that begins this is missing: '
+                        "put it in front of the first line that install wrote"
                     )
                 open_ = False
         if open_:
             raise IniError(
-                f'{blocks[-1][0].location}: the line "{END}" that ends this is missing: put it '
-                "after the last line that install wrote there"
+                f'{blocks[-1][0].location}: the line "{END_MARK}" that ends this is missing: '
+                "put it after the last line that install wrote there"
             )
         return blocks
 

@@ -68,10 +68,10 @@ class Code:
 class Config:
     """A machine config: its lines, values and REMAP lines, and the loaded interpreter's state.
 
-    ``version`` is LinuxCNC's, empty if its Python modules are missing; ``python`` is None if the
-    interpreter did not run. ``owned`` has those of the queried codes that are LinuxCNC's own.
-    ``failure`` is the interpreter's own text if it does not load the config. ``diameters`` are its
-    values of the tool table: tool number to diameter in mm.
+    ``version`` is LinuxCNC's, empty if its Python modules are missing. ``python`` is None if the
+    interpreter did not run. ``owned`` has the queried codes that are LinuxCNC's own. ``failure`` is
+    the interpreter's own text if it does not load the config. ``diameters`` are those of the tool
+    table, in mm by tool number.
     """
 
     text: IniText
@@ -123,7 +123,7 @@ def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None
     python, owned, diameters = None, frozenset[str](), None
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
-            python = ask_python(tracer)
+            python = python_of(tracer)
             owned = frozenset(code for code in codes if is_owned(tracer, code))
             diameters = tracer.diameters
     except TraceFailure as refused:
@@ -142,7 +142,7 @@ def is_owned(tracer: Tracer, code: str) -> bool:
     return error is None or error.text.replace(code.upper(), unused) != unknown.text
 
 
-def ask_python(tracer: Tracer) -> Python:
+def python_of(tracer: Tracer) -> Python:
     """Return the definitions of the machine's Python modules in a running interpreter."""
     error = python_error(tracer.printed)
     if error:

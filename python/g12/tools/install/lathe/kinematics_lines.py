@@ -10,23 +10,22 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 from math import isclose
 
-from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, coordinates_of
-from g12.settings import settings_from_lines
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.ini_edit import CONTINUED, NEXT, NOW, IniText
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe.kinematics_rules import (
+    GUARD_HAL,
+    KINEMATICS_PAGE,
     OFFSET_HAL,
-    OWN_HAL,
-    PAGE,
+    codes_off,
     hal_files,
 )
 
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
-LIMITS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
+LIMIT_KEYS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
 IN_PLACE = (  # entries whose value changes
     ("KINS", "KINEMATICS"),
     ("TRAJ", "COORDINATES"),
@@ -34,38 +33,38 @@ IN_PLACE = (  # entries whose value changes
     ("AXIS_X", "MAX_ACCELERATION"),
     ("G12", "POLAR_KINEMATICS"),  # if it exists
 )
-LOADS = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
-CONTROLS = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
-OWN_LINE = re.compile(
+LOADS_MODULE = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
+ADDS_CONTROLLER = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
+KINEMATICS_LINE = re.compile(
     r"HALFILE = \S+/configs/kinematics/polar_(kinematics|tool_offset)\.hal"
     r"|ON_ABORT_COMMAND = G\S+ P|POLAR_KINEMATICS = 1"
 )
-CURE = f"by hand: the steps in {PAGE}, and check tells what is missing or wrong"
+CURE = f"by hand: the steps in {KINEMATICS_PAGE}, and check reports what is missing or wrong"
 
 
-def left_alone(text: str) -> ConfigFinding:
+def not_changed(text: str) -> ConfigFinding:
     """Return why `install` does not change a machine's kinematics."""
     return problem(
         "kinematics", f"{text}: install leaves the kinematics of this machine alone", CURE
     )
 
 
-def obstacles(config: Config, text: IniText, wanted: Sequence[str]) -> Iterator[ConfigFinding]:
+def obstacles(config: Config, text: IniText, requested: Sequence[str]) -> Iterator[ConfigFinding]:
     """Yield the obstacles to an installation of the kinematics."""
-    if not code_off(config, wanted):
+    if not code_off(config, requested):
         yield problem(
             "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
         )
     rules = (wrong_joints(config), wrong_limits(config), wrong_entries(config, text))
     for reason in chain(*rules, wrong_hal(config)):
-        yield left_alone(reason)
+        yield not_changed(reason)
 
 
-def code_off(config: Config, wanted: Sequence[str]) -> str:
+def code_off(config: Config, requested: Sequence[str]) -> str:
     """Return the code that ends a section, "" where there is none."""
-    there = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
-    asked = [features.remaps_of(name)[1].code for name in wanted if name in features.POLAR]
-    return next(iter([*there, *asked]), "")
+    new = [name for name in requested if name in features.POLAR_FEATURES]
+    codes = [*codes_off(config), *(features.remaps_of(name)[1].code for name in new)]
+    return next(iter(codes), "")
 
 
 def joints(config: Config) -> str:
@@ -96,8 +95,8 @@ def wrong_limits(config: Config) -> Iterator[str]:
     if "X" not in letters:
         return
     slide = f"JOINT_{letters.index('X')}"
-    needed = [*(("AXIS_X", key) for key in LIMITS), *((slide, key) for key in LIMITS)]
-    needed += [("AXIS_C", key) for key in LIMITS[2:]]
+    needed = [*(("AXIS_X", key) for key in LIMIT_KEYS), *((slide, key) for key in LIMIT_KEYS)]
+    needed += [("AXIS_C", key) for key in LIMIT_KEYS[2:]]
     values = {key: leading_number(config.ini.get(*key) or "") for key in needed}
     for (section, key), value in values.items():
         if value is None:
@@ -105,7 +104,7 @@ def wrong_limits(config: Config) -> Iterator[str]:
     ends = [values[section, "MAX_LIMIT"] for section in ("AXIS_X", slide)]
     if None not in ends and (ends[0] <= 0.0 or not isclose(*ends)):
         yield f"[AXIS_X] and [{slide}] have MAX_LIMIT {ends[0]:g} and {ends[1]:g}"
-    if any(config.ini.get("AXIS_Y", key) for key in LIMITS):
+    if any(config.ini.get("AXIS_Y", key) for key in LIMIT_KEYS):
         yield "there is an [AXIS_Y]"
 
 
@@ -116,7 +115,7 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
     for section, key in IN_PLACE:
         for line, _ in text.entries(section, key)[:1]:
             if line.file != text.path:
-                yield f"{line.location}: {key} stands in an included file"
+                yield f"{line.location}: {key} is in an included file"
             elif CONTINUED.search(text.files[line.file][line.row]):
                 yield f"{line.location}: {key} goes on in the next line"
 
@@ -132,9 +131,9 @@ def wrong_hal(config: Config) -> Iterator[str]:
     lines = [line for lines in hal_files(config) for line in lines]
     if any(line.text.startswith("source ") for line in lines):
         yield "a HAL file has a source line"
-    if not any(LOADS.match(line.text) for line in lines):
+    if not any(LOADS_MODULE.match(line.text) for line in lines):
         yield "no HAL file has loadrt [KINS]KINEMATICS"
-    if not any(CONTROLS.match(line.text) for line in lines):
+    if not any(ADDS_CONTROLLER.match(line.text) for line in lines):
         yield "no HAL file has addf motion-controller servo-thread"
 
 
@@ -155,26 +154,22 @@ def in_place(config: Config) -> Iterator[tuple[str, str, str]]:
 def limits(config: Config) -> dict[str, str]:
     """Return the limits of the face's X and Y."""
     most, slide = config.ini.get("AXIS_X", "MAX_LIMIT"), f"JOINT_{joints(config).index('X')}"
-    quick = leading_number(config.ini.get(slide, "MAX_ACCELERATION"))
+    acceleration = leading_number(config.ini.get(slide, "MAX_ACCELERATION"))
     return {
         "MIN_LIMIT": f"{-leading_number(most):.10g}",
         "MAX_LIMIT": f"{leading_number(most):.10g}",
         "MAX_VELOCITY": f"{leading_number(config.ini.get('AXIS_X', 'MAX_VELOCITY')):.10g}",
-        "MAX_ACCELERATION": f"{SHARE * quick:.10g}",
+        "MAX_ACCELERATION": f"{SHARE * acceleration:.10g}",
     }
 
 
-def added(config: Config, wanted: Sequence[str], prefix: str) -> dict[str, list[str]]:
+def added(config: Config, requested: Sequence[str], prefix: str) -> dict[str, list[str]]:
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
-    try:
-        beside = settings_from_lines(config.ini.lines).polar_tool_offset
-    except Refusal:
-        beside = 0.0
-    files = [OWN_HAL, *([OFFSET_HAL] if beside else [])]
+    files = [GUARD_HAL, *([OFFSET_HAL] if config.ini.tool_beside else [])]
     face = [] if config.ini.get("G12", "POLAR_KINEMATICS") else ["POLAR_KINEMATICS = 1"]
     axis = [f"{key} = {value}" for key, value in limits(config).items()]
     return {
-        "RS274NGC": [f"ON_ABORT_COMMAND = {code_off(config, wanted)} P"],
+        "RS274NGC": [f"ON_ABORT_COMMAND = {code_off(config, requested)} P"],
         "HAL": [f"HALFILE = {prefix}/{file}" for file in files],
         "G12": face,
         "AXIS_Y": [NOW + NEXT.join(axis), *axis],

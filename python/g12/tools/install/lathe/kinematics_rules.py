@@ -20,13 +20,13 @@ from g12.settings import settings_from_lines
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
-PAGE = "configs/kinematics/README.md"
-OWN_HAL = Path("configs/kinematics/polar_kinematics.hal")
+KINEMATICS_PAGE = "configs/kinematics/README.md"
+GUARD_HAL = Path("configs/kinematics/polar_kinematics.hal")
 OFFSET_HAL = Path("configs/kinematics/polar_tool_offset.hal")
 OFFSET = "polar-xzc.tool-offset"
 SETS_OFFSET = re.compile(rf"(?:setp\s+)?{re.escape(OFFSET)}\s*(?:=|\s)\s*(\S+)")
 REQUEST = "polar-xzc.request"  # a pin that only a HAL file with the guard's lines names
-PINS = (
+GUARD_PINS = (
     "motion.analog-out-02",
     "motion.analog-out-03",
     "motion.digital-in-03",
@@ -37,10 +37,10 @@ PINS = (
     "motion.feed-upm",
 )
 NEWEST_PIN = b".most-override"  # of the module
-NEEDED = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
+LEAST_PINS = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
-SLACK = 1.001
-ACCELERATIONS = ("ini.x.max_acceleration", "ini.y.max_acceleration")
+LIMIT_SLACK = 1.001
+ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")
 SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp
@@ -67,12 +67,12 @@ def is_outdated(module: Path) -> bool:
     return NEWEST_PIN not in module.read_bytes()
 
 
-def wanted(config: Config) -> bool:
+def selects_kinematics(config: Config) -> bool:
     """Return whether a config selects the face's kinematics."""
-    return uses_them(config) or bool(face_joints(config.ini.get))
+    return uses_face_kinematics(config) or bool(face_joints(config.ini.get))
 
 
-def uses_them(config: Config) -> bool:
+def uses_face_kinematics(config: Config) -> bool:
     """Return whether G12.1 moves X and Y; another rule reports a wrong setting."""
     try:
         return settings_from_lines(config.ini.lines).polar_kinematics == "1"
@@ -82,7 +82,7 @@ def uses_them(config: Config) -> bool:
 
 def not_used(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that has them but does not use them."""
-    if not uses_them(config):
+    if not uses_face_kinematics(config):
         yield warning(
             "kinematics-unused",
             f"[KINS] KINEMATICS = {FACE_KINEMATICS}, but G12.1 makes segments",
@@ -97,23 +97,23 @@ def module_missing(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "no-kinematics",
             f"LinuxCNC has no module {FACE_KINEMATICS}",
-            f"build it: make kinematics ({PAGE})",
+            f"build it: make kinematics ({KINEMATICS_PAGE})",
         )
     elif is_outdated(module):
         yield problem(
             "no-kinematics",
             f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: G12.1 is refused",
-            f"build it again: make kinematics ({PAGE})",
+            f"build it again: make kinematics ({KINEMATICS_PAGE})",
         )
 
 
 def joints_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a [KINS] that is not the module's."""
-    letters, asked = face_joints(config.ini.get), config.ini.get("KINS", "KINEMATICS")
+    letters, found = face_joints(config.ini.get), config.ini.get("KINS", "KINEMATICS")
     if not letters:
         yield problem(
             "kins",
-            f"[KINS] KINEMATICS = {asked}: POLAR_KINEMATICS = 1 needs {FACE_KINEMATICS}",
+            f"[KINS] KINEMATICS = {found}: POLAR_KINEMATICS = 1 needs {FACE_KINEMATICS}",
             f"KINEMATICS = {FACE_KINEMATICS} coordinates=XZC (the letters of your joints)",
         )
         return
@@ -123,7 +123,7 @@ def joints_wrong(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "kins",
             f"[KINS] KINEMATICS: coordinates={letters}: X and C have to be there, Y may not, "
-            "every letter stands once",
+            "every letter once",
             "give each joint its letter: coordinates=XZC",
         )
     elif joints != str(len(letters)):
@@ -153,7 +153,7 @@ def axes_wrong(config: Config) -> Iterator[ConfigFinding]:
                 "face-axis",
                 f"[AXIS_{axis}] has no MAX_LIMIT: it is an axis of the face",
                 f"[AXIS_{axis}] with MIN_LIMIT, MAX_LIMIT, MAX_VELOCITY and MAX_ACCELERATION "
-                f"({PAGE})",
+                f"({KINEMATICS_PAGE})",
             )
 
 
@@ -175,14 +175,14 @@ def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
                 f"MIN_LIMIT = {-slide.high:g} and MAX_LIMIT = {slide.high:g}: the slide keeps its "
                 "own limits",
             )
-        if axis.velocity > slide.velocity * SLACK:
+        if axis.velocity > slide.velocity * LIMIT_SLACK:
             yield problem(
                 "face-speed",
                 f"[AXIS_{letter}] MAX_VELOCITY {axis.velocity:g} is more than the slide's "
                 f"{slide.velocity:g}",
                 f"MAX_VELOCITY = {slide.velocity:g}",
             )
-    if hypot(x.acceleration, y.acceleration) > slide.acceleration * SLACK:
+    if hypot(x.acceleration, y.acceleration) > slide.acceleration * LIMIT_SLACK:
         least = 0.7 * slide.acceleration
         yield warning(
             "face-acceleration",
@@ -200,14 +200,14 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "kinematics-hal",
             f"no HALFILE of [HAL] connects {FACE_KINEMATICS}: it would never leave X, Z and C",
-            f"add HALFILE = …/{OWN_HAL} after the file that loads motion",
+            f"add HALFILE = …/{GUARD_HAL} after the file that loads motion",
         )
         return
     loading = [number for number, lines in enumerate(files) if names(lines, "motmod", "EMCMOT")]
     if loading and guards[0] < loading[0]:
         yield problem(
             "kinematics-hal",
-            f"the HALFILE with {FACE_KINEMATICS} stands in front of the one that loads motion",
+            f"the HALFILE with {FACE_KINEMATICS} comes before the one that loads motion",
             "move its HALFILE line after that one",
         )
     yield from accelerations_taken(all_hal(config))
@@ -228,7 +228,7 @@ def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
     """Find signals connected to the pins that G12.1 sets; LinuxCNC allows one writer."""
     nets = [line for line in lines if line.text.split()[:1] in (["net"], ["linksp"], ["linkps"])]
     cure = "take that pin out of the line: G12.1 sets it for each section and restores it"
-    yield from pins_taken(nets, ACCELERATIONS, "is set by G12.1, which is refused then", cure)
+    yield from pins_taken(nets, ACCELERATION_PINS, "is set by G12.1, which is refused then", cure)
 
 
 def periods_differ(config: Config) -> Iterator[ConfigFinding]:
@@ -256,7 +256,7 @@ def period(config: Config, text: str) -> float:
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
     """Find lines of other HAL files that conflict with the guard's."""
     cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
-    yield from pins_taken(lines, PINS, "is the kinematics'", cure)
+    yield from pins_taken(lines, GUARD_PINS, "is the kinematics'", cure)
     for text, location in lines:
         module = LOADS_KINEMATICS.match(text)
         if module and module[1] != FACE_KINEMATICS:
@@ -265,7 +265,7 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
                 f"{location}: {text}: loads {module[1]}, whatever [KINS] says",
                 "loadrt [KINS]KINEMATICS",
             )
-        for key, least in NEEDED.items():
+        for key, least in LEAST_PINS.items():
             limit = re.search(rf"\b{key}=(\d+)", text)
             if limit and int(limit[1]) < least:
                 yield problem(
@@ -299,27 +299,26 @@ def names(lines: list[HalLine], *words: str) -> bool:
 def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find kinematics with another distance of the tool from the X line than G12.1's."""
     try:
-        wanted_offset = settings_from_lines(config.ini.lines).polar_tool_offset
+        offset = settings_from_lines(config.ini.lines).polar_tool_offset
     except Refusal:
         return
-    values = [set_offset(line.text, wanted_offset) for line in all_hal(config)]
+    values = [set_offset(line.text, offset) for line in all_hal(config)]
     found = next((value for value in reversed(values) if value is not None), 0.0)
-    if found != wanted_offset:
+    if found != offset:
         yield problem(
             "tool-offset",
-            f"[G12] POLAR_TOOL_OFFSET = {wanted_offset:g}, but {OFFSET} is {found:g}: "
-            "G12.1 is refused",
+            f"[G12] POLAR_TOOL_OFFSET = {offset:g}, but {OFFSET} is {found:g}: G12.1 is refused",
             f"HALFILE = …/{OFFSET_HAL} after the file that loads motion, and nothing else for it",
         )
 
 
-def set_offset(text: str, wanted_offset: float) -> float | None:
+def set_offset(text: str, from_ini: float) -> float | None:
     """Return the value that a HAL line sets for the offset's pin, None for another line."""
     match = SETS_OFFSET.fullmatch(text)
     if not match:
         return None
     if match[1] in ("[G12]POLAR_TOOL_OFFSET", "[G12](POLAR_TOOL_OFFSET)"):
-        return wanted_offset
+        return from_ini
     return leading_number(match[1]) or 0.0
 
 
@@ -335,20 +334,24 @@ def all_hal(config: Config) -> list[HalLine]:
     return [*(line for lines in hal_files(config) for line in lines), *later_hal(config)]
 
 
+def codes_off(config: Config) -> list[str]:
+    """Return the codes of the REMAP lines that end a polar section."""
+    return [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
+
+
 def abort_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that an abort leaves on the face."""
-    off = [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
-    found = config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
+    off, found = codes_off(config), config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
     if off and (found or "").upper().split() != [off[0], "P"]:
-        there = f" = {found}" if found else " is missing"
+        state = f" = {found}" if found else " is missing"
         yield problem(
             "abort",
-            f"[RS274NGC] ON_ABORT_COMMAND{there}: an abort would leave the machine on the face",
-            f"ON_ABORT_COMMAND = {off[0]} P; what you have there now: {PAGE}",
+            f"[RS274NGC] ON_ABORT_COMMAND{state}: an abort would leave the machine on the face",
+            f"ON_ABORT_COMMAND = {off[0]} P; what you have there now: {KINEMATICS_PAGE}",
         )
 
 
-RULES = (
+KINEMATICS_RULES = (
     module_missing,
     not_used,
     joints_wrong,
@@ -363,5 +366,5 @@ RULES = (
 
 def kinematics_findings(config: Config) -> Iterator[ConfigFinding]:
     """Yield the findings about the face's kinematics, where a config selects them."""
-    for rule in RULES if wanted(config) else ():
+    for rule in KINEMATICS_RULES if selects_kinematics(config) else ():
         yield from rule(config)

@@ -12,13 +12,13 @@ from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note
 from g12.tools.install.config.loaded import Config
-from g12.tools.install.lathe.kinematics_rules import PAGE, wanted
+from g12.tools.install.lathe.kinematics_rules import KINEMATICS_PAGE, selects_kinematics
 from g12.tools.machine.ini import IniError
 from g12.tools.path.section_times import Leg, TurningMachine, section_times, turning_machine
 
 FLAT, CUTTER = 13.5, 6.0  # mm, radii
 SIXTH = pi / 3
-FEEDS = (1000.0, 2000.0)  # mm/min
+EXAMPLE_FEEDS = (1000.0, 2000.0)  # mm/min
 
 
 def hexagon() -> list[Curve]:
@@ -40,16 +40,19 @@ CONTOURS: dict[str, list[Curve]] = {
 
 def takes(path: list[Curve], machine: TurningMachine) -> str:
     """Return a text for the times of a contour."""
-    times = (section_times([Leg(curve, feed / 60.0) for curve in path], machine) for feed in FEEDS)
-    segments, face, least = (" and ".join(f"{t:.1f}" for t in ways) for ways in zip(*times))
+    times = (
+        section_times([Leg(curve, feed / 60.0) for curve in path], machine)
+        for feed in EXAMPLE_FEEDS
+    )
+    segments, face, least = (" and ".join(f"{t:.1f}" for t in kind) for kind in zip(*times))
     return f"{segments} s, with kinematics {face} s, at the limits of X and C {least} s"
 
 
 def gained_by_kinematics(config: Config) -> Iterator[ConfigFinding]:
     """Report the times of polar sections on a lathe, from the limits of X and C in its INI."""
     ini = config.ini
-    is_polar = not config.features.keys().isdisjoint(features.POLAR)
-    if not is_polar or wanted(config) or not {"X", "C"} <= set(ini.axes):
+    is_polar = not config.features.keys().isdisjoint(features.POLAR_FEATURES)
+    if not is_polar or selects_kinematics(config) or not {"X", "C"} <= set(ini.axes):
         return
     known = all(ini.all(f"AXIS_{letter}", "MAX_ACCELERATION") for letter in "XC")
     try:
@@ -62,5 +65,5 @@ def gained_by_kinematics(config: Config) -> Iterator[ConfigFinding]:
             "segments",
             "polar sections are made in segments; the contour alone, without lead-in and lead-out, "
             f"takes at 1000 and 2000 mm/min about: {times}",
-            f"nothing, or make kinematics if that is worth it ({PAGE})",
+            f"nothing, or make kinematics if that is worth it ({KINEMATICS_PAGE})",
         )

@@ -24,9 +24,9 @@ from g12.tools.install.lathe.kinematics_rules import (
     pins_taken,
 )
 
-PAGE = "configs/spindle_c.md"
-OWN_HAL = "configs/include/spindle_c.hal"
-LIMITS = "configs/include/spindle_c_limits.sh"
+SPINDLE_C_PAGE = "configs/spindle_c.md"
+SPINDLE_C_HAL = "configs/include/spindle_c.hal"
+LIMITS_SCRIPT = "configs/include/spindle_c_limits.sh"
 CONNECTS = "sc-orient.enable"  # a pin that only a HAL file with these lines names
 PROLOG = "spindle_c_on"
 SIGNALS = {  # key of [SPINDLE_C]: its pin, and the signal's name if the pin has none
@@ -46,7 +46,7 @@ SIGNALS = {  # key of [SPINDLE_C]: its pin, and the signal's name if the pin has
     "BRAKE": ("spindle.0.brake", "sc-brake-asked"),
 }
 ENCODER = ("TURNS", "RPS", "INDEX")
-TAKEN = (
+OWN_PINS = (
     "motion.digital-out-02",
     "motion.digital-in-02",
     "spindle.0.is-oriented",
@@ -69,18 +69,18 @@ DRIVE = {  # names in the pins' file, and the signals that their pins get
     "clamp_open": "spindle-c-on",
     "brake": "spindle-c-brake",
 }
-NEEDED = ("velocity", "position", "holds")
+REQUIRED_PINS = ("velocity", "position", "holds")
 MODULES = re.compile(r"loadrt\s+(\S+)")
 OWN_MODULES = (
     *("lut5", "edge", "flipflop", "tristate_bit", "wcomp", "timedelay"),
     *("orient", "sum2", "mux4", "limit3", "message"),
 )
-OWN_LINE = re.compile(
-    rf"HALFILE = \S+/{re.escape(OWN_HAL)}"
-    rf"|HALCMD = (unlinkp \S+|net spindle-c-\S+ => \S+|loadusr sh \S+/{re.escape(LIMITS)})"
+SPINDLE_C_LINE = re.compile(
+    rf"HALFILE = \S+/{re.escape(SPINDLE_C_HAL)}"
+    rf"|HALCMD = (unlinkp \S+|net spindle-c-\S+ => \S+|loadusr sh \S+/{re.escape(LIMITS_SCRIPT)})"
     rf"|({'|'.join(('JOINT', *SIGNALS, *NUMBERS))}) = \S+|\[SPINDLE_C\]"
 )
-ASKED = """\
+PINS_EXAMPLE = """\
 velocity = "…"     input of the drive for M3 and M4, revolutions per second times velocity_scale
 position = "…"     input of the drive for C, revolutions times position_scale (360: degrees)
 holds = "…"        input of the drive that makes it obey its position
@@ -108,7 +108,7 @@ def read_pins(path: Path) -> Pins:
         if not isinstance(value, known[key]) or isinstance(value, bool):
             kind = "the name of a pin" if key in DRIVE else "a number"
             raise UsageError(f"{path}: {key} is {kind}, not {value!r}")
-    missing = [key for key in NEEDED if key not in entries]
+    missing = [key for key in REQUIRED_PINS if key not in entries]
     if missing:
         raise UsageError(f"{path}: {', '.join(missing)}: missing")
     numbers = {key: entries.get(key.lower(), default) for key, default in NUMBERS.items()}
@@ -130,16 +130,17 @@ def signals(lines: Iterable[HalLine]) -> dict[str, str]:
 
 
 def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
-    """Yield the obstacles to an installation; the trial finds those that are mistakes, too."""
+    """Yield the obstacles to an installation."""
     if pins is None:
         yield problem(
             "pins",
             "install cannot know the inputs of your spindle's drive",
-            f"write them into a file and name it, --pins spindle.toml ({PAGE}):\n{ASKED}",
+            "write them into a file and name it, --pins spindle.toml "
+            f"({SPINDLE_C_PAGE}):\n{PINS_EXAMPLE}",
         )
     if joints(config).count("C") != 1:
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
-                      f"coordinates=XZC, or by hand: {PAGE}")  # fmt: skip
+                      f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
     lines = all_hal(config)
     found = signals(lines)
     for pin, _ in (SIGNALS[key] for key in ENCODER):
@@ -147,7 +148,7 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
             yield problem(
                 "spindle-c",
                 f"no HAL file connects {pin}",
-                f"connect the spindle's encoder first: G33 has to work ({PAGE})",
+                f"connect the spindle's encoder first: G33 has to work ({SPINDLE_C_PAGE})",
             )
     if not config.ini.get("SPINDLE_C", "JOINT"):  # a file of the user's may have our file's name
         yield from in_the_way(lines)
@@ -164,9 +165,9 @@ def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[
     ]
     return {
         "HAL": [
-            f"HALFILE = {prefix}/{OWN_HAL}",
+            f"HALFILE = {prefix}/{SPINDLE_C_HAL}",
             *drive,
-            f"HALCMD = loadusr sh {prefix}/{LIMITS}",
+            f"HALCMD = loadusr sh {prefix}/{LIMITS_SCRIPT}",
         ],
         "SPINDLE_C": [
             f"JOINT = {joint}",
@@ -182,7 +183,7 @@ def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[
 def spindle_c_findings(config: Config) -> Iterator[ConfigFinding]:
     """Yield the findings about a spindle that becomes C, where a REMAP line selects it."""
     if any(PROLOG in remap.handlers for _, remap in config.remaps):
-        for rule in RULES:
+        for rule in SPINDLE_C_RULES:
             yield from rule(config)
 
 
@@ -192,7 +193,7 @@ def keys_missing(config: Config) -> Iterator[ConfigFinding]:
     missing = [key for key in needed if not config.ini.get("SPINDLE_C", key)]
     if missing:
         yield problem("spindle-c", f"[SPINDLE_C] lacks {', '.join(missing)}: LinuxCNC does not "
-                      "start", f"each key is in {PAGE}")  # fmt: skip
+                      "start", f"each key is in {SPINDLE_C_PAGE}")  # fmt: skip
         return
     joint, found = config.ini.get("SPINDLE_C", "JOINT"), signals(other_lines(config))
     for key, (pin, _) in SIGNALS.items():
@@ -211,19 +212,19 @@ def not_connected(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "spindle-c-hal",
             "no HALFILE of [HAL] lets the spindle become C: its code would wait in vain",
-            f"add HALFILE = …/{OWN_HAL} after the files that wire the spindle",
+            f"add HALFILE = …/{SPINDLE_C_HAL} after the files that wire the spindle",
         )
     lines = all_hal(config)
     text = "\n".join(line.text for line in other_lines(config))
-    for signal in (DRIVE[name] for name in NEEDED):
+    for signal in (DRIVE[name] for name in REQUIRED_PINS):
         if signal not in text:
             yield problem("spindle-c-drive", f"nothing reads {signal}", f"net {signal} => the "
-                          f"drive's input ({PAGE})")  # fmt: skip
-    if not any(Path(LIMITS).name in line.text for line in lines):
+                          f"drive's input ({SPINDLE_C_PAGE})")  # fmt: skip
+    if not any(Path(LIMITS_SCRIPT).name in line.text for line in lines):
         yield problem(
             "spindle-c-limits",
             "C's travel is not connected: a C word while the spindle is no C would move nothing",
-            f"add HALCMD = loadusr sh …/{LIMITS} to [HAL]",
+            f"add HALCMD = loadusr sh …/{LIMITS_SCRIPT} to [HAL]",
         )
 
 
@@ -236,7 +237,7 @@ def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
             yield problem(
                 "spindle-c-feedback",
                 f"{location}: {text}: joint {joint} would not follow while the spindle turns",
-                f"take the line out: {OWN_HAL} has joint C's feedback",
+                f"take the line out: {SPINDLE_C_HAL} has joint C's feedback",
             )
 
 
@@ -294,7 +295,7 @@ def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
 
 def components_of(module: str) -> str:
     """Return the names of spindle_c.hal's components of a module."""
-    text = (ROOT / OWN_HAL).read_text(encoding="utf-8")
+    text = (ROOT / SPINDLE_C_HAL).read_text(encoding="utf-8")
     return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
 
 
@@ -306,7 +307,9 @@ def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
 def in_the_way(lines: Sequence[HalLine]) -> Iterator[ConfigFinding]:
     """Find modules and pins of spindle_c.hal in HAL lines."""
     yield from modules_twice(lines)
-    yield from pins_taken(lines, TAKEN, "is what the spindle becomes C by", "use another pin here")
+    yield from pins_taken(
+        lines, OWN_PINS, "is what the spindle becomes C by", "use another pin here"
+    )
 
 
 def other_lines(config: Config) -> list[HalLine]:
@@ -323,7 +326,7 @@ def after_own(config: Config) -> list[HalLine]:
     return lines[last + 1 :]
 
 
-RULES = (
+SPINDLE_C_RULES = (
     keys_missing,
     not_connected,
     feedback_wrong,
