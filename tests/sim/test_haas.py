@@ -3,10 +3,8 @@
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString, MultiLineString, Point
+from shapely.geometry import LineString, Point
 
-from g12.tools.preview.tracer import Tracer
-from support import cut_geometry
 from support.operated_machine import Machine, kept_machine
 from support.refusals import at_line
 from support.sim_machines import BRISK, SIM, machine_scope
@@ -20,12 +18,6 @@ DEVIATION = 0.002  # mm, of the real motion in exact path mode at this feed
 machine = kept_machine("mill_mm", tools=TOOLS, overrides=BRISK)
 
 
-@pytest.fixture(scope="module")
-def tracer():
-    with Tracer(SIM / "mill_mm.ini", tools=TOOLS) as running:
-        yield running
-
-
 @pytest.fixture(autouse=True)
 def at_start(machine):
     machine.mdi("G21 G90 G94 G61 G0 Z2")
@@ -33,78 +25,63 @@ def at_start(machine):
     machine.errors(), machine.messages()
 
 
+PROGRAM = [FIRST, "T1 M6", "G0 X0 Y0 Z2", POCKET, "G0 Z2", "M2"]
+
+
 @pytest.fixture(scope=machine_scope)
 def auto(machine):
-    """Return the run of a program with the pocket."""
-    return machine.run_text([FIRST, POCKET, "G0 Z2", "M2"])
+    """Return the motion of a program with the pocket, in which verify finds nothing wrong."""
+    proof = machine.proof_of_run(PROGRAM)
+    assert proof.findings == []
+    assert proof.pockets[0].values["off_circles"] < DEVIATION
+    return cut(proof.subject.samples)
 
 
-def programmed_path(tracer, *blocks):
-    """Return the programmed path in XY (shapely) and its moves."""
-    traced = tracer.trace_text([FIRST, "G0 X0 Y0 Z2", *blocks])
-    assert traced.error is None, traced.error
-    return MultiLineString(
-        [cut_geometry.polyline(move) for move in cut_geometry.moving(traced.moves)]
-    ), traced
+def cut(samples):
+    """Return where the tool was at feed: X and Y."""
+    feeding = np.isin(samples.kind, (2, 3))
+    return np.column_stack([samples.axes["X"], samples.axes["Y"]])[feeding]
 
 
-def check_motion(samples, path):
-    """Check that the real motion is on the programmed path, and everywhere there."""
-    points = np.column_stack([samples.axes["X"], samples.axes["Y"]])[samples.moving()]
-    assert max(path.distance(Point(point)) for point in points[::3]) < DEVIATION
-    assert path.difference(LineString(points).buffer(0.1)).length < 1e-9
+def check_same(samples, auto):
+    """Check that the motion is on the program's path, and everywhere there."""
+    ours, path = cut(samples), LineString(auto)
+    assert max(path.distance(Point(point)) for point in ours[::3]) < DEVIATION
+    assert path.difference(LineString(ours).buffer(0.1)).length < 1e-9
 
 
-def test_auto_cuts_the_traced_path(auto, tracer):
-    path, traced = programmed_path(tracer, POCKET)
-    assert auto.error is None
-    assert auto.messages == []
-    check_motion(auto.samples, path)
-    assert auto.samples.axes["Z"].min() == pytest.approx(-1, abs=1e-6)
-    length = cut_geometry.path_length(cut_geometry.cutting(traced.moves))
-    feeding = np.isin(auto.samples.kind, (2, 3))
-    travelled = auto.samples.velocity[feeding].sum() * 0.001
-    assert travelled == pytest.approx(length, rel=0.02)
-
-
-def test_mdi_cuts_the_same_path(machine, tracer):
-    path, _ = programmed_path(tracer, POCKET)
+def test_mdi_cuts_the_same_path(machine, auto):
     machine.mdi(FIRST)
     machine.sample()
     machine.mdi(POCKET)
     samples = machine.samples()
     assert machine.errors() == []
-    check_motion(samples, path)
+    check_same(samples, auto)
 
 
-def test_single_steps_reach_the_end(machine, tracer):
-    path, _ = programmed_path(tracer, "G13 X10 Y5 I5 K8 Q3 Z-1 D1")
-    machine.open_text([FIRST, "G13 X10 Y5 I5 K8 Q3 Z-1 D1", "G0 Z2", "M2"])
+def test_single_steps_reach_the_end(machine, auto):
+    machine.open_text(PROGRAM)
     machine.sample()
     steps = 0
     machine.step()
-    while True:
-        status = machine.wait_for(lambda status: status.idle or status.paused)
-        if status.idle:
-            break
+    while not machine.wait_for(lambda status: status.idle or status.paused).idle:
         machine.step()
         steps += 1
         assert steps < 200
     assert steps > 5
     assert machine.errors() == []
-    check_motion(machine.samples(), path)
+    check_same(machine.samples(), auto)
 
 
 def started(machine):
     """Run the program until it is in the rings."""
-    machine.open_text([FIRST, "G0 X0 Y0 Z2", POCKET, "G0 Z2", "M2"])
+    machine.open_text(PROGRAM)
     machine.sample()
     machine.start()
     machine.wait_for(lambda status: status.position[2] < 0 and status.position[0] > 14)
 
 
-def test_abort_then_mdi_then_the_program_again_with_a_pause(machine, tracer):
-    path, _ = programmed_path(tracer, POCKET)
+def test_abort_then_mdi_then_the_program_again_with_a_pause(machine, auto):
     started(machine)
     machine.abort()
     machine.samples(), machine.errors()
@@ -117,24 +94,7 @@ def test_abort_then_mdi_then_the_program_again_with_a_pause(machine, tracer):
     machine.resume()
     machine.wait_idle()
     assert machine.errors() == []
-    check_motion(machine.samples(), path)
-
-
-@pytest.mark.parametrize("way", ["auto", "mdi"])
-def test_without_z_the_real_motion_stays_at_its_height(machine, way):
-    machine.mdi("F8000 G1 Z-1.5")
-    machine.sample()
-    block = "G13 I5 K12 Q3 L2 D1"
-    if way == "mdi":
-        machine.mdi(block)
-    else:
-        machine.open_text([block, "M2"])
-        machine.start()
-        machine.wait_idle()
-    axes = machine.samples().axes
-    assert machine.errors() == []
-    assert axes["Z"] == pytest.approx(-1.5, abs=1e-6)
-    assert axes["X"].max() == pytest.approx(9, abs=DEVIATION)
+    check_same(machine.samples(), auto)
 
 
 @pytest.mark.parametrize("way", ["auto", "mdi"])

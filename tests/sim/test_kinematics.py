@@ -65,33 +65,6 @@ def lathe(running):
     return running
 
 
-def switch_on(machine):
-    for block in ON:
-        machine.mdi(block)
-
-
-def test_the_face_begins_where_the_tool_stands(lathe):
-    switch_on(lathe)
-    assert on_the_face(lathe)
-    assert place(lathe) == (20, 0, 30)
-
-
-def test_x_and_y_move_the_slide_and_c(lathe):
-    switch_on(lathe)
-    lathe.mdi("G1 X-20 Y20 F3000")
-    joints = [lathe.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)]
-    assert joints == pytest.approx([20 * 2**0.5, 30 + 135], abs=1e-4)
-    for block in OFF:
-        lathe.mdi(block)
-    assert place(lathe) == (20 * 2**0.5, 0, 165)
-
-
-def test_c_off_the_zero_line_is_refused_on_the_face(lathe):
-    switch_on(lathe)
-    lathe.mdi("G0 C0")
-    lathe.wait_for_error("C does not move by itself on the face")
-
-
 def test_y_is_refused_off_the_face(lathe):
     lathe.mdi("G0 Y1")
     lathe.wait_for_error("Y moves only on the face")

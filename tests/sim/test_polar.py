@@ -240,14 +240,6 @@ def test_nothing_of_a_refused_section_moves(lathe):
     assert lathe.run_text(part()).error is None
 
 
-def test_a_refused_section_leaves_the_modes_alone(lathe):
-    run = lathe.run_text(section("G91 G95 F.1 S100", "G1 X-1", "G28", feed="F1500"))
-    assert run.error.text.startswith("G12.1 line 8: G28 is refused")
-    lathe.mdi("G1 X18.5")
-    assert lathe.stat().position[0] == pytest.approx(18.5)
-    assert lathe.errors() == []
-
-
 def test_mdi_is_refused(lathe):
     lathe.run_text(part())
     lathe.mdi("G12.1")

@@ -1,21 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Independent geometry: what was cut, derived from emitted moves alone.
-
-Nothing here knows the planners; areas are those of the tools. Lengths are mm, as in a trace.
-"""
+"""What was cut, derived from emitted moves alone; lengths are mm, as in a trace."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import Point
-
-from g12.tools.path import part
 
 SAME_POINT = 1e-6  # mm
 NEAR = 1e-6  # of a move: the points whose difference is its direction
-CHORD_ERROR = 1e-4  # mm, of the polylines that stand for arcs
-MILL = part.Part(turning=False)
 
 
 class Circle(NamedTuple):
@@ -77,43 +69,7 @@ def path_length(moves):
     return sum(move.length for move in moves)
 
 
-def polyline(move):
-    """Return points along a move, close enough for `CHORD_ERROR`."""
-    return MILL.polyline(move, CHORD_ERROR)[:, :2]
-
-
-def swept(moves, cutter_radius):
-    """Return the area in XY that a cutter of that radius sweeps (shapely)."""
-    return part.swept(map(polyline, moves), cutter_radius)
-
-
-def disc(x, y, radius):
-    """Return the full disc (shapely)."""
-    return Point(x, y).buffer(radius, 512)
-
-
 def levels(moves):
     """Return the distinct Z of sideways motion, from the top down."""
     depths = {round(move.end[2], 6) + 0.0 for move in in_plane(cutting(moves))}
     return sorted(depths, reverse=True)
-
-
-def dense_points(moves, step=0.2):
-    """Return points (n, 3) along the moves, at most ``step`` apart, ends included."""
-    points = []
-    for move in moves:
-        count = max(2, math.ceil(move.length / step) + 1)
-        points += [move.point(fraction)[:3] for fraction in np.linspace(0, 1, count)]
-    return np.array(points)
-
-
-def farthest_off(points, path):
-    """Return the largest distance of points (n, 3) from a polyline (m, 3)."""
-    start, along = path[:-1], np.diff(path, axis=0)
-    length = np.maximum((along**2).sum(axis=1), 1e-30)
-    found = 0.0
-    for point in points:
-        share = np.clip(((point - start) * along).sum(axis=1) / length, 0, 1)
-        off = point - start - share[:, None] * along
-        found = max(found, float((off**2).sum(axis=1).min()))
-    return math.sqrt(found)

@@ -13,6 +13,7 @@ from g12.tools.headless.machine import Run, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import start_block, write_program
+from g12.tools.verify.proof import Proof, prove
 from support.sim_machines import ROOT, SIM, machine_scope
 
 
@@ -155,6 +156,12 @@ class Machine(machine.Machine):
     def run_text(self, text, timeout=600.0) -> Run:
         """Run a program given as text or as lines; see ``run``."""
         return self.run(write_program(text, self.folder / "program.ngc"), timeout)
+
+    def proof_of_run(self, text) -> Proof:
+        """Run a program, which must end without an error; return the proof of its real motion."""
+        run = self.run_text(text)
+        assert run.error is None, run.error
+        return prove(self.folder / "program.ngc", self.ini, samples=run.samples)
 
     def reset(self) -> None:
         """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
