@@ -12,14 +12,15 @@ from bench.polar import (
     MANUAL_TOOLS,
     SAMPLES,
     at_feed,
+    contour_of,
+    distance_of,
     equal_angles,
     seconds_in,
 )
 from g12.tools.path.least_time import least_seconds
-from support.contour_geometry import Round, deviation, outward
+from support.contour_geometry import Round
 from support.operated_machine import Machine
-from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
-from support.polar_programs import Cut
+from support.polar_programs import INCHES
 from support.sim_machines import SIM
 
 FEEDS = ((1000, 1.02), (2000, 1.03), (3000, 1.03))  # and the most of the ideal time
@@ -67,12 +68,11 @@ def figures():
 def hexagon(face, segments, feed, most):
     """Compare the hexagon on the face with its length over the feed."""
     program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
-    path = MILLIMETRES["hexagon"].path
-    ideal = sum(segment.length for block in HEXAGON_BLOCKS for segment in path[block]) / feed * 60
+    around = contour_of("hexagon", face.ini, HEXAGON_BLOCKS)
+    ideal = sum(segment.length for segment in around) / feed * 60
     ours, others = (
         seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / ideal for lathe in (face, segments)
     )
-    around = [segment for group in outward(HEXAGON, 6) for segment in group]
     return Figure(
         f"polar with kinematics: hexagon against the ideal at F{feed}",
         ours,
@@ -114,7 +114,7 @@ def slow_spindle(lathe):
         ours = seconds_in(lathe.run_text(circle_at(feed)), (4,))
         ratio = ours / least(CIRCLE, feed, *axes)
         yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most, "", "")
-    around = [segment for group in outward(HEXAGON, 6) for segment in group]
+    around = contour_of("hexagon", lathe.ini, HEXAGON_BLOCKS)
     for feed, most in HEXAGON_SLOW.items():
         program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
         ours = seconds_in(lathe.run_text(program), HEXAGON_BLOCKS)
@@ -204,21 +204,20 @@ def posted(lathe, segments, feed):
     run = lathe.run_text([*head, *blocks, "M2"])
     seconds = seconds_in(run, range(4, 4 + len(blocks)))
     ideal = sum(segment.length for segment in segments) / feed * 60
-    off = deviation(segments, Cut(run).points, 0.1)[0]
+    off = distance_of(run, segments)
     return f"a post's {len(blocks)} blocks {seconds / ideal:.3f} ({off:.3f} mm off)"
 
 
 def deviation_on_face(face):
-    """Compare the motion of the hexagon at F3000, G64 P0.002, with its drawing."""
+    """Compare the motion of the hexagon at F3000, G64 P0.002, with what its words command."""
     program = at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
     program[1] += " P0.002"  # of G64
-    cut = Cut(face.run_text(program))
     return Figure(
         "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
-        deviation(MILLIMETRES["hexagon"].segments, cut.points, 0.1)[0],
+        face.proof_of_run(program).sections[0].deviation,
         0.002,
         " mm",
-        f"{len(cut.points)} samples",
+        "of the tool's centre, sampled at 1 kHz",
     )
 
 

@@ -8,16 +8,15 @@ import numpy as np
 from bench import Figure
 from bench.haas import against_plain
 from g12.tools.preview.tracer import Tracer
-from support.contour_geometry import deviation, outward, spaced
+from support.contour_geometry import FROM_COLUMNS, distance, spaced
 from support.operated_machine import Machine
-from support.polar_drawings import HEXAGON, INCHES, MILLIMETRES
-from support.polar_programs import Cut, feed_moves
+from support.polar_programs import INCHES, MILLIMETRES, Cut, feed_moves, toolpath_of
 from support.sim_machines import PROGRAMS, SIM
 
 MM_PER_INCH = 25.4
 SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
-TOLERANCE = {"mm": 0.005, "inch": 0.0002 * MM_PER_INCH}
+TOLERANCE = 0.005  # mm
 LINES = 10000
 LONGEST = 600  # s that a trace may take on a busy computer
 HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
@@ -28,37 +27,32 @@ def figures():
     yield interpreting()
     with Machine(SIM / "lathe_mm.ini") as lathe:
         for name in MILLIMETRES:
-            yield real_deviation(lathe, name, "mm", MILLIMETRES[name])
-        yield against_ideal(lathe, "hexagon", 1.0, "F250", HEXAGON_BLOCKS, MILLIMETRES)
+            yield real_deviation(lathe, name, TOLERANCE)
+        yield against_ideal(lathe, "hexagon", "F250", HEXAGON_BLOCKS)
         yield against_equal_angles(lathe)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
         for name in INCHES:
-            yield real_deviation(lathe, name, "inch", INCHES[name])
-        feed = f"F{250 / MM_PER_INCH:.6f}"
-        yield against_ideal(lathe, "manual_b", MM_PER_INCH, feed, FLAT_BLOCKS, INCHES)
+            yield real_deviation(lathe, name, 0.0002 * MM_PER_INCH)
+        yield against_ideal(lathe, "manual_b", f"F{250 / MM_PER_INCH:.6f}", FLAT_BLOCKS)
 
 
-def real_deviation(lathe, name, units, drawing):
-    """Compare the motion of a sample program, sampled at 1 kHz, with its drawing."""
-    scale = 1 if units == "mm" else MM_PER_INCH
-    cut = Cut(lathe.run(SAMPLES / f"{name}.ngc"))
-    worst = scale * max(deviation(drawing.segments, cut.points, 0.1 / scale))
+def real_deviation(lathe, name, tolerance):
+    """Compare the motion of a sample program, sampled at 1 kHz, with what its words command."""
+    proof = lathe.proof_of_run((SAMPLES / f"{name}.ngc").read_text())
     return Figure(
         f"polar: real motion against the programmed contour, {name}",
-        worst,
-        TOLERANCE[units] + 0.001,
+        max(section.deviation for section in proof.sections),
+        tolerance + 0.001,
         " mm",
-        f"{len(cut.points)} samples, and the contour against them",
+        "of the tool's centre, sampled at 1 kHz",
     )
 
 
-def against_ideal(lathe, name, scale, feed, blocks, drawings):
+def against_ideal(lathe, name, feed, blocks):
     """Compare the time of a contour at F250 with its length over the feed."""
     program = at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
     seconds = seconds_in(lathe.run_text(program), blocks)
-    length = scale * sum(
-        segment.length for block in blocks for segment in drawings[name].path[block]
-    )
+    length = sum(segment.length for segment in contour_of(name, lathe.ini, blocks))
     return Figure(
         f"polar: section time against the ideal at F250, {name}",
         seconds / (length / 250 * 60),
@@ -72,7 +66,7 @@ def against_equal_angles(lathe):
     """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
     text = (SAMPLES / "hexagon.ngc").read_text()
     ours = seconds_in(lathe.run_text(at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
-    segments = [segment for group in outward(HEXAGON, 6) for segment in group]
+    segments = contour_of("hexagon", lathe.ini, HEXAGON_BLOCKS)
     points = np.concatenate([equal_angles(segment) for segment in segments])
     lathe.mdi("G21 G90 G94 G8 G0 Z5")
     theirs = lathe.run_text(blocks_of(points, 1000))
@@ -83,11 +77,22 @@ def against_equal_angles(lathe):
         1.0,
         "",
         f"{ours:.2f} s against {seconds:.2f} s for {len(points)} equal angles "
-        f"(which leave the contour by {deviation(segments, Cut(theirs).points, 0.1)[0]:.4f} mm)",
+        f"(which leave the contour by {distance_of(theirs, segments):.4f} mm)",
     )
 
 
-def equal_angles(segment, tolerance=TOLERANCE["mm"]):
+def contour_of(name, ini, blocks):
+    """Return the toolpath of some lines of a sample program."""
+    path = toolpath_of(name, ini)
+    return [segment for block in blocks for segment in path[block]]
+
+
+def distance_of(run, segments):
+    """Return how far a run leaves a contour."""
+    return distance(Cut(run).points @ FROM_COLUMNS, segments).max()
+
+
+def equal_angles(segment, tolerance=TOLERANCE):
     """Return the fewest points on a segment, at equal C angles, whose X-C moves stay near it."""
     fine = spaced(segment, 0.002)
     radii, angles = abs(fine), np.unwrap(np.angle(fine))

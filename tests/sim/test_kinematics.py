@@ -11,20 +11,17 @@ import pytest
 
 from g12.tools.commands.main import main
 from g12.tools.preview.tracer import Tracer
-from support.contour_geometry import (
-    Round,
-    deviation,
-)
+from support.contour_geometry import Round
 from support.kinematics import needs_kinematics, on_the_face, place
 from support.operated_machine import Machine, kept_machine
-from support.polar_drawings import MILLIMETRES
 from support.polar_programs import (
     C_ACCELERATION,
     FEED,
+    MILLIMETRES,
     ROUND,
-    Cut,
     accelerations,
     exceeds_limits_itself,
+    toolpath_of,
 )
 from support.sim_machines import PROGRAMS, SIM
 
@@ -77,15 +74,15 @@ def test_y_is_refused_off_the_face(lathe):
 @pytest.mark.parametrize("name", MILLIMETRES)
 def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
     text = (PROGRAMS / "polar" / f"{name}.ngc").read_text()
-    run = lathe.run_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{3 * float(word[1]):g}", text))
-    assert run.error is None
-    there, back = deviation(MILLIMETRES[name].segments, Cut(run).points, step=0.1)
-    assert max(there, back) <= 0.006
-    keeps_its_limits(run.samples)
+    fast = re.sub(r"\bF([\d.]+)", lambda word: f"F{3 * float(word[1]):g}", text)
+    proof = lathe.proof_of_run(fast)
+    samples = proof.subject.samples
+    assert proof.findings == [] and proof.sections[0].deviation <= 0.006
+    keeps_its_limits(samples)
     assert not on_the_face(lathe)
     if not exceeds_limits_itself(lathe):
-        cutting = np.isin(run.samples.kind, (FEED, ROUND))
-        assert accelerations(run.samples.axes["C"])[cutting[2:]].max() <= C_ACCELERATION * 1.01
+        cutting = np.isin(samples.kind, (FEED, ROUND))
+        assert accelerations(samples.axes["C"])[cutting[2:]].max() <= C_ACCELERATION * 1.01
 
 
 def test_a_long_move_beside_the_pole_is_segments_only_near_it(lathe):
@@ -107,7 +104,8 @@ def test_g12_1_keeps_the_feed(lathe):
     lines = (PROGRAMS / "polar" / "hexagon.ngc").read_text().splitlines()
     lines[9] += f" F{feed}"
     run = lathe.run_text([line.replace("F1000.", "") for line in lines])
-    segments = [segment for block in blocks for segment in MILLIMETRES["hexagon"].path[block]]
+    path = toolpath_of("hexagon", lathe.ini)
+    segments = [segment for block in blocks for segment in path[block]]
     seconds = np.isin(run.samples.line, blocks).sum() * 0.001
     feeds = [in_arcs if isinstance(segment, Round) else feed for segment in segments]
     ideal = sum(segment.length / feed * 60 for segment, feed in zip(segments, feeds))

@@ -7,36 +7,16 @@ import pytest
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.polar_programs import FIRST
-from support.shape_geometry import FacePath, area_off, disc, polygon, slot
 from support.sim_machines import SIM, machine_scope
 
-CUTTER = 3.0
-TOLERANCE = 0.008  # POLAR_TOLERANCE, sampling, and the polygons of the drawing
+TOLERANCE = 0.006  # POLAR_TOLERANCE, sampling
 START = [FIRST, "T3 M6", "G0 X40 Z5 C0", "F100"]
-BAR = disc(0, 0, 24)
-CALLS = {  # the call, the depths of its passes, and what stands or is cut there
-    "polygon": (
-        "o<polar_polygon> call [5] [16] [1] [24] [1.5] [-9999] [.3] [4000] [2000] [20]",
-        (-1,),
-        polygon(5, 16, 1.5, 20) & BAR,
-    ),
-    "flats": (
-        "o<polar_polygon> call [2] [14] [1] [24] [-9999] [-9999] [-9999] [4000] [2000] [0]",
-        (-1,),
-        polygon(2, 14) & BAR,
-    ),
-    "slot": (
-        "o<polar_slot> call [9] [22] [.5] [-9999] [.2] [4000] [2000] [-30]",
-        (-0.5,),
-        slot(9, 22, -30),
-    ),
-    "pocket": (
-        "o<polar_pocket> call [4] [-2] [14] [.5] [-9999] [-9999] [4000] [2000]",
-        (-0.5,),
-        disc(4, -2, 14),
-    ),
+CALLS = {
+    "polygon": "o<polar_polygon> call [5] [16] [1] [24] [1.5] [-9999] [.3] [4000] [2000] [20]",
+    "flats": "o<polar_polygon> call [2] [14] [1] [24] [-9999] [-9999] [-9999] [4000] [2000] [0]",
+    "slot": "o<polar_slot> call [9] [22] [.5] [-9999] [.2] [4000] [2000] [-30]",
+    "pocket": "o<polar_pocket> call [4] [-2] [14] [.5] [-9999] [-9999] [4000] [2000]",
 }
-
 LONG = "o<polar_polygon> call [6] [27] [5] [40] [1] [.5] [-9999] [4000] [2000] [0]"
 
 
@@ -49,40 +29,35 @@ def lathe(request):
         yield running
 
 
-def real_path(samples):
-    """Return the sampled path of the tool in the part's plane."""
-    points = samples.axes["X"] * np.exp(1j * np.radians(samples.axes["C"]))
-    some = slice(None, None, 4)
-    return FacePath(points[some], samples.axes["Z"][some])
-
-
-def check_cut(name, path):
-    """Check what a path cuts against the drawing of a shape."""
-    _, depths, drawn = CALLS[name]
-    for depth in depths:
-        # Z is on its way for some samples: what is cut there is within the tolerance too
-        cut = path.area(depth + 0.001, CUTTER)
-        shape = BAR.difference(cut) if name in ("polygon", "flats") else cut
-        assert area_off(shape, drawn, TOLERANCE) < 0.01
-    assert path.z.min() == pytest.approx(depths[-1], abs=1e-6)
+def cut(lathe, name):
+    """Return the motion of a call, in which verify finds nothing wrong."""
+    lathe.reset()
+    proof = lathe.proof_of_run([*START, CALLS[name], "M2"])
+    assert proof.findings == [] and len(proof.cuts.shapes) == 1
+    assert proof.cuts.shapes[0].deviation < TOLERANCE
+    return proof.subject.samples
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_real_motion_cuts_the_drawing(lathe, name):
-    lathe.reset()
-    run = lathe.run_text([*START, CALLS[name][0], "M2"])
-    assert run.error is None
-    check_cut(name, real_path(run.samples))
+def test_verify_finds_nothing_wrong_in_the_real_motion(lathe, name):
+    cut(lathe, name)
+
+
+def reached(samples):
+    """Return the least and the greatest place of each axis in the part."""
+    low = samples.axes["Z"] < -0.01
+    return [end(samples.axes[axis][low]) for axis in "XZC" for end in (np.min, np.max)]
 
 
 def test_in_mdi(lathe):
+    wanted = reached(cut(lathe, "flats"))
     lathe.reset()
     for block in START:
         lathe.mdi(block)
     before = lathe.stat().modes.gcodes
     lathe.sample()
-    lathe.mdi(CALLS["flats"][0])
-    check_cut("flats", real_path(lathe.samples()))
+    lathe.mdi(CALLS["flats"])
+    assert reached(lathe.samples()) == pytest.approx(wanted, abs=TOLERANCE)
     assert not lathe.errors()
     assert lathe.stat().modes.gcodes == before
     lathe.mdi("o<polar_slot> call [5] [30] [1] [-9999] [-9999] [400] [-9999] [0]")
@@ -101,9 +76,9 @@ def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
     lathe.errors()
     lathe.mdi("G0 X50")
     assert "G7" in lathe.stat().modes.gcodes and lathe.stat().position[0] == pytest.approx(25)
-    run = lathe.run_text(["G0 Z5", *START, CALLS["flats"][0], "M2"])
-    assert run.error is None
-    check_cut("flats", real_path(run.samples))
+    lathe.mdi("G0 Z5")
+    proof = lathe.proof_of_run([*START, CALLS["flats"], "M2"])
+    assert proof.findings == [] and len(proof.cuts.shapes) == 1
 
 
 def test_a_coarse_g64_does_not_shorten_a_ramp():

@@ -4,28 +4,21 @@
 import numpy as np
 import pytest
 
-from support.contour_geometry import Round, Straight, distance, distance_from_path
+from support.contour_geometry import Straight, distance
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
-from support.polar_drawings import MILLIMETRES
 from support.sim_machines import PROGRAMS, copy_of_machines
 
 HEXAGON = PROGRAMS / "polar" / "hexagon.ngc"
-AROUND = range(10, 16)  # its lines between the ramps
-WAYS = [
-    pytest.param("lathe_mm", 8.0),
-    pytest.param("lathe_mm_kinematics", -3.0, marks=needs_kinematics),
-]
 ARCS = (
     "G20 G7 G18 G90 G94 G64 P0.0002 F60", "G0 X3 Z0 C0", "G12.1", "G1 X2.4 C0", "G3 X0 C1.2 R1.2",
     "G1 X-2 C0.5", "G2 X-2 C0.5 I-0.4", "G1 X2.4 C0.6", "G13.1", "M2",
 )  # fmt: skip
-DRAWN = [  # what it is to cut, inches
-    Straight(1.5 - 0.3j, 1.2 + 0j),
-    Round(1.2 + 0j, 0j, np.pi / 2),
-    Straight(1.2j, -1 + 0.5j),
-    Round(-1 + 0.5j, -1.4 + 0.5j, -2 * np.pi),
-    Straight(-1 + 0.5j, 1.2 + 0.6j),
+WAYS = [
+    ("lathe_mm", 8.0, HEXAGON.read_text()),
+    pytest.param("lathe_mm_kinematics", -3.0, HEXAGON.read_text(), marks=needs_kinematics),
+    ("lathe_inch", -0.3, ARCS),
+    pytest.param("lathe_inch_kinematics", -0.3, ARCS, marks=needs_kinematics),
 ]
 
 
@@ -49,29 +42,13 @@ def on_the_part(samples, offset):
     return (samples.axes["X"] + 1j * offset) * np.exp(1j * np.radians(samples.axes["C"]))
 
 
-@pytest.mark.parametrize(("name", "offset"), WAYS)
-def test_the_hexagon_is_the_same_on_the_part(tmp_path, name, offset):
+@pytest.mark.parametrize(("name", "offset", "program"), WAYS)
+def test_the_part_is_the_same(tmp_path, name, offset, program):
     with Machine(machine_with(tmp_path, name, offset)) as lathe:
-        run = lathe.run(HEXAGON)
-    assert run.error is None
-    points = on_the_part(run.samples, offset)[np.isin(run.samples.line, AROUND)]
-    drawn = [segment for line in AROUND for segment in MILLIMETRES["hexagon"].path[line]]
-    assert distance(points, drawn).max() <= 0.006
-    corners = np.array([segment.start for segment in drawn])
-    assert distance_from_path(corners, points).max() <= 0.006
-
-
-@pytest.mark.parametrize(
-    "name", ["lathe_inch", pytest.param("lathe_inch_kinematics", marks=needs_kinematics)]
-)
-def test_lines_and_arcs_in_inches(tmp_path, name):
-    with Machine(machine_with(tmp_path, name, -0.3)) as lathe:
-        run = lathe.run_text(ARCS)
-    assert run.error is None
-    points = on_the_part(run.samples, -0.3)[run.samples.line > 3]
-    assert distance(points, DRAWN).max() <= 0.00024
-    ends = np.array([segment.end for segment in DRAWN])
-    assert distance_from_path(ends, points).max() <= 0.00024
+        proof = lathe.proof_of_run(program)
+    assert proof.findings == []
+    assert proof.sections[0].deviation <= 0.0061
+    assert proof.subject.samples.axes["X"].min() >= 0.0
 
 
 @needs_kinematics

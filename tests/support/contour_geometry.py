@@ -11,7 +11,6 @@ from typing import NamedTuple
 import numpy as np
 
 SAME_HEADING = math.radians(0.01)
-TRACK = 200  # points looked at together
 FROM_COLUMNS = np.array([1, 1j])
 
 
@@ -144,29 +143,3 @@ def outward(shapes, by):
         if abs(turn) > SAME_HEADING and by:
             group.append(Round(shape.end + by * 1j * cmath.rect(1, before), shape.end, turn))
     return moved
-
-
-def deviation(shapes, samples, step):
-    """Return how far the samples leave the shapes, and how far the shapes leave the samples."""
-    points = samples @ FROM_COLUMNS
-    there = distance(points, shapes).max()
-    tracks = [points[at : at + TRACK + 1] for at in range(0, len(points) - 1, TRACK)]
-    low = np.array([_corner(track, np.min) for track in tracks]) - 10 * step
-    high = np.array([_corner(track, np.max) for track in tracks]) + 10 * step
-    back = 0.0
-    for target in np.concatenate([spaced(shape, step) for shape in shapes]):
-        column = (target.real, target.imag)
-        near = np.flatnonzero(((low < column) & (column < high)).all(axis=1))
-        back = max(back, min(_to_track(tracks[at], target) for at in near))
-    return there, back
-
-
-def _corner(track, extreme):
-    return extreme(track.real), extreme(track.imag)
-
-
-def _to_track(track, target):
-    start, along = track[:-1], np.diff(track)
-    squared = np.maximum(abs(along) ** 2, 1e-18)
-    part = np.clip(((target - start) * np.conj(along)).real / squared, 0.0, 1.0)
-    return abs(start + part * along - target).min()

@@ -2,18 +2,24 @@
 """Polar sections for tests: programs around them, and their moves seen in the plane again."""
 
 import math
+from collections import defaultdict
 from itertools import groupby
 
 import numpy as np
 
+from g12.geometry.curve import Arc
 from g12.tools.preview.tracer import Tracer
-from support.sim_machines import SIM
+from g12.tools.verify.proof import prove
+from support.contour_geometry import Round, Straight
+from support.sim_machines import PROGRAMS, SIM
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
 X, Z, C = 0, 2, 5
 C_ACCELERATION = 3600  # of the lathes, degrees/s²
 FEED, ROUND = 2, 3  # kinds of a sampled move: straight and circular
+MILLIMETRES = ("hexagon", "square", "slot", "circles", "cam")  # programs of tests/programs/polar
+INCHES = ("manual_a", "manual_b", "manual_sample")
 
 
 def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
@@ -24,6 +30,17 @@ def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
 def tracer(**overrides):
     """Return a Tracer of the millimetre lathe; ``overrides`` are settings of [G12]."""
     return Tracer(SIM / "lathe_mm.ini", overrides={"G12": overrides} if overrides else None)
+
+
+def toolpath_of(name, ini):
+    """Return the lines and arcs of the part's plane that each line of a sample commands, in mm."""
+    path = defaultdict(list)
+    for section in prove(PROGRAMS / "polar" / f"{name}.ngc", ini).sections:
+        for each in section.path:
+            if each.curve.length:
+                shape = Round if isinstance(each.curve, Arc) else Straight
+                path[each.line].append(shape(*each.curve))
+    return path
 
 
 def in_plane(position, zero=0.0):

@@ -5,6 +5,8 @@ import os
 import shutil
 from pathlib import Path
 
+import pytest
+
 from g12.tools.headless.namespaces import has_namespaces
 from g12.tools.preview.tracer import Tracer
 
@@ -22,6 +24,17 @@ def trace_text(text, ini, **machine):
     """Trace a program given as text or as lines, in an interpreter of its own."""
     with Tracer(ini, **machine) as tracer:
         return tracer.trace_text(text)
+
+
+def kept_tracer(name, **machine):
+    """Return a fixture: an interpreter of a simulated machine, for the tests of a module."""
+
+    @pytest.fixture(scope="module")
+    def opened():
+        with Tracer(SIM / f"{name}.ini", **machine) as tracer:
+            yield tracer
+
+    return opened
 
 
 def machine_scope(**_asked):
