@@ -13,7 +13,6 @@ import pytest
 from g12.tools.commands import check, install, uninstall
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE
-from g12.tools.preview.tracer import Tracer
 from g12.tools.system import COMMAND
 from support.kinematics import marked
 from support.sim_machines import ROOT, SIM, trace_text
@@ -25,7 +24,6 @@ GOOD = with_lines(MILL, "RS274NGC", REFERRED) + PYTHON
 POCKET = ["G21 G17 G90 G94 G61 F600", "G13 I5 K9 Q3 Z-1 D1", "M2"]
 SECTION = ["G21 G8 G90 F600", "G0 X20 Z5", "G12.1", "G1 X15 C0", "G1 X20 C0", "G13.1", "M2"]
 OWN = "[PYTHON]\nPATH_PREPEND = mine\nTOPLEVEL = mine/toplevel.py\n"
-TEN_FOLDERS = [f"f{number}" for number in range(10)]
 
 
 def kinds(ini, capsys):
@@ -61,13 +59,8 @@ def test_every_machine_that_comes_with_the_package_is_good(ini, capsys):
 @pytest.mark.parametrize(
     ("table", "expected"),
     [
-        ("P1 T1 D6\n", []),
         ("T1 P1\nt2 p2 d+.25 ;x\n", []),
-        ("D6.2.3 T1 P1\n", []),
         ("T1 P1\nT2 P2 Z1\n", ["no-diameters"]),
-        ("T1 P1 D--\n", ["no-diameters"]),
-        ("T1 P1 ;D6\n", ["no-diameters"]),
-        ("T1P1D6\n", ["no-diameters"]),
         ("", ["no-diameters"]),
     ],
 )
@@ -84,18 +77,12 @@ def remap(text):
     [
         ((f"PATH_PREPEND = {ROOT}/python\n", ""), {}, ["python-fails"]),
         (("TOPLEVEL = ", "TOPLEVEL = /nowhere"), {}, ["no-python"]),
-        ((PYTHON, ""), {}, ["no-python"]),
-        ((f"SUBROUTINE_PATH = {ROOT}/ngc\n", ""), {}, ["no-sub"]),
-        (("prolog=g12_haas", "prolog=g12_hass"), {}, ["wrong-line"]),
         (("REMAP = G13", "REMAP = G33.1"), {}, ["owned"]),
-        ((HAAS, HAAS + "REMAP = G13 modalgroup=1 python=mine\n"), {}, ["taken"]),
         ((HAAS, HAAS + "REMAP = M400 modalgroup=10 python=mine\n"), {}, ["does-not-load"]),
         ((PYTHON, OWN), remap("from nowhere import x\n"), ["python-fails"]),
         ((PYTHON, OWN), remap("def f(:\n"), ["python-fails"]),
         ((PYTHON, OWN), remap("x = 1\n"), ["no-import"]),
         ((PYTHON, OWN), {"mine__toplevel_py": "import os\n"}, ["no-remap-module"]),
-        ((PYTHON, PYTHON + "[G12]\nPOLAR_Z = perhaps\n"), {}, ["setting"]),
-        (("X Y Z", "X Z"), {}, ["no-axis"]),
     ],
 )
 def test_what_is_wrong_is_found_and_linuxcnc_agrees(tmp_path, capsys, change, files, expected):
@@ -134,22 +121,6 @@ def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
         folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), ngc__g12_haas_ngc="", ngc__g12_helix_ngc=""
     )
     assert kinds(ini, capsys) == ["blank-in-path"]
-
-
-# The start-up error.
-
-
-def test_a_wrong_setting_is_said_at_the_start_and_by_every_code():
-    overrides = {"G12": {"CLEARNIG": "rings"}}
-    with Tracer(SIM / "mill_mm.ini", overrides=overrides) as tracer:
-        assert tracer.printed.startswith("g12: [G12] CLEARNIG is not a setting. Known: CLEARING, ")
-        refused = tracer.trace_text(POCKET)
-        assert refused.error.text.startswith("[G12] CLEARNIG is not a setting")
-        assert refused.moves == []
-        assert tracer.trace_text(["F100", "G1 X5"]).error is None
-    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as tracer:
-        refused = tracer.trace_text(SECTION)
-        assert refused.error.text.startswith("[G12] CLEARNIG is not a setting")
 
 
 # Installing.
@@ -285,27 +256,11 @@ def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
             "haas",
             "G13 is remapped here already",
         ),
-        (MILL, {"g12_haas_ngc": "o<g12_haas> sub\n"}, "haas", "found before the package's"),
-        (MILL, {}, "polar", "polar needs axis C"),
         (LATHE, {}, "haas", "haas needs axis Y"),
         (MILL + OWN, remap("import nowhere\n"), "haas", "No module named 'nowhere'"),
-        (MILL + OWN, {}, "haas", "mine/toplevel.py"),
         (MILL + OWN, remap("def g12_haas(self): pass\n"), "haas", "has a function g12_haas"),
         (MILL + OWN, {"mine__toplevel_py": "class remap: f = len\n"}, "haas", "is no module"),
-        (MILL + "[G12]\nCLEARING = maybe\n", {}, "haas", "must be rings or spiral"),
-        (
-            with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {':'.join(TEN_FOLDERS)}\n"),
-            {f"{folder}__x_ngc": "" for folder in TEN_FOLDERS},
-            "haas",
-            "g12_haas.ngc and g12_helix.ngc are in none of the folders",
-        ),
         (with_lines(MILL, "RS274NGC", "REMAP = M400 python=x\n"), {}, "haas", "does not load"),
-        (
-            with_lines(MILL, "RS274NGC", f"SUBROUTINE_PATH = {'a' * 230}\n"),
-            {},
-            "haas",
-            "characters; LinuxCNC reads 254",
-        ),
     ],
 )  # fmt: skip
 def test_what_check_calls_a_problem_is_refused_and_nothing_is_touched(
@@ -337,31 +292,6 @@ def test_a_code_of_linuxcncs_own_is_refused(tmp_path, capsys, monkeypatch):
     error = capsys.readouterr().err
     assert "G33.1 is LinuxCNC's own code" in error
     assert "polar-g12.3" in error
-
-
-def test_a_dialect_in_place_of_another_is_refused(tmp_path, capsys):
-    ini = write_config(tmp_path)
-    assert installed(ini, "haas") == 0
-    before = content_of(tmp_path)
-    capsys.readouterr()
-    assert installed(ini, "mitsubishi") == 1
-    assert "haas and mitsubishi exclude each other; cure: uninstall first" in (
-        capsys.readouterr().err
-    )
-    assert content_of(tmp_path) == before
-
-
-def test_a_dry_run_shows_everything_and_writes_nothing(tmp_path, capsys):
-    ini = write_config(tmp_path, MILL + OWN, **remap("x = 1\n"))
-    before = content_of(tmp_path)
-    assert installed(ini, "haas", "--dry-run") == 0
-    said = capsys.readouterr().out
-    assert "+REMAP = G13 " in said
-    assert "from g12.remap import *" in said
-    *_, size, end = said.splitlines()
-    assert re.fullmatch(rf"{tmp_path}/g12: would get the package, \d{{3}} files, \d\.\d MB", size)
-    assert end == "dry run: nothing was written"
-    assert content_of(tmp_path) == before
 
 
 def test_a_shared_include_is_tried_with_every_machine_that_has_it(tmp_path, capsys):

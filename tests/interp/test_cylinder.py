@@ -11,7 +11,7 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support.polar_programs import feed_moves, lines
-from support.sim_machines import PROGRAMS, SIM
+from support.sim_machines import PROGRAMS, SIM, kept_tracer
 
 R = 20.0
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
@@ -27,10 +27,7 @@ def opened(**overrides):
     return Tracer(SIM / "lathe_mm.ini", overrides={"G12": overrides} if overrides else None)
 
 
-@pytest.fixture(scope="module")
-def lathe():
-    with opened() as tracer:
-        yield tracer
+lathe = kept_tracer("lathe_mm")
 
 
 def ends(traced):
@@ -140,18 +137,13 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
      "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"),
     ("G12.1", "G12.1 is refused: only G1, G2 and G3 move inside the section"),
     ("G7.1 C30", "the section is already on: G7.1 C0 ends it"),
-    ("G7.1", "the section is already on: G7.1 C0 ends it"),
     ("G7.1 C0 Z5", "G7.1 C0 stands alone in its block"),
-    ("G7.1 H0", "G7.1 C0 stands alone in its block"),
     ("G1 A5", "A is refused: the section's words are Z, C, X, W, H and U"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
-    ("G1 U1 C3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
     ("G2 Z5 K2 R3", "G2: either R or J and K, not both"),
-    ("G2 Z5", "G2 needs R, or the centre in J and K"),
     ("G2 R5", "G2 R5: a full circle needs J and K, not R"),
     ("G41", "G41 needs a G1 with C or Z in its own block"),
     ("G1 Z501", "the Z axis would go to 501 mm, beyond its limit 500 mm"),
-    ("G2 Z5 K2000000", "K2000000 is no length: at most 1000000"),
     ("M2", "G7.1 C0 is missing: M2 comes before it"),
     ("T1 M6", "M6 is refused: the tool cannot change inside the section"),
 ]  # fmt: skip
@@ -196,19 +188,8 @@ def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
     ("given", "why"),
     [
         ({"on": "G7.1"}, "needs C, the cylinder's radius; C0 ends a section"),
-        ({"on": "G7.1 C-5"}, "C-5, the cylinder's radius, must be above 0 and at most 1000000"),
-        (
-            {"on": "G7.1 C5000000"},
-            "C5000000, the cylinder's radius, must be above 0 and at most 1000000",
-        ),
         ({"on": "G7.1 C20 Z5"}, "stands alone in its block"),
-        ({"on": "G7.1 C20 M3"}, "stands alone in its block"),
-        ({"on": "G7.1 H20"}, "stands alone in its block"),
         ({"first": FIRST.replace("G94", "G93")}, "needs G94 or G95, not G93"),
-        (
-            {"first": FIRST.replace("G97", "G96 S100 D500")},
-            "needs G97: with G96 the speed would change with X",
-        ),
         (
             {"first": "G52 X-1 " + FIRST},
             "X0 must be the spindle's axis: G52 or G92 shifts X by -1;"

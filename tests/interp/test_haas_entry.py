@@ -9,7 +9,7 @@ import re
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.sim_machines import SIM
+from support.sim_machines import SIM, kept_tracer
 
 FIRST = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
 
@@ -19,10 +19,7 @@ def tracer(**changed):
     return Tracer(SIM / "mill_inch.ini", tools={1: 0.5}, overrides={"G12": overrides})
 
 
-@pytest.fixture(scope="module")
-def mill():
-    with tracer() as opened:
-        yield opened
+mill = kept_tracer("mill_inch", tools={1: 0.5}, overrides={"G12": {"ENTRY": "helix"}})
 
 
 def program(block, first=FIRST):

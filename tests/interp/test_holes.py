@@ -13,7 +13,7 @@ from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from g12.tools.verify.reading.codes import HOLES, SHAPES
-from support.sim_machines import SIM
+from support.sim_machines import SIM, kept_tracer
 
 X, Z, C = 0, 2, 5
 LEFT = -9999
@@ -26,10 +26,7 @@ AT = dict(x=20, c=5, depth=8, retract=2, feed=120, peck=0, dwell=0, kind=0)
 CALLS = {"face_holes": FACE, "side_holes": SIDE, "face_hole_at": AT}
 
 
-@pytest.fixture(scope="module")
-def lathe():
-    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0}) as opened:
-        yield opened
+lathe = kept_tracer("lathe_mm", tools={1: 6.0})
 
 
 def call(name, **changed):
@@ -203,10 +200,7 @@ def test_the_side_is_drawn_unrolled(tmp_path):
     assert "The part's face" in picture.read_text()
 
 
-@pytest.fixture(scope="module")
-def spindle_lathe():
-    with Tracer(SIM / "lathe_spindle_c_mm.ini", tools={1: 6.0}) as opened:
-        yield opened
+spindle_lathe = kept_tracer("lathe_spindle_c_mm", tools={1: 6.0})
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,8 @@
 import pytest
 from hypothesis import given, settings
 
-from g12.tools.preview.tracer import Tracer
 from support import mode_matrix
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, kept_tracer
 
 TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
 FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
@@ -14,17 +13,9 @@ REMAPS = {"RS274NGC": {"REMAP": mode_matrix.remaps(ROOT / "configs/include/g12_m
 AXES = {"G17": (0, 1), "G18": (2, 0), "G19": (1, 2)}  # first and second axis of the plane
 
 
-@pytest.fixture(scope="module")
-def metric():
-    with Tracer(SIM / "mill_mitsubishi_mm.ini", tools=TOOLS) as tracer:
-        yield tracer
-
-
-@pytest.fixture(scope="module")
-def inch():
-    tools = {number: diameter / mode_matrix.INCH for number, diameter in TOOLS.items()}
-    with Tracer(SIM / "mill_inch.ini", overrides=REMAPS, tools=tools) as tracer:
-        yield tracer
+IN_INCHES = {tool: diameter / mode_matrix.INCH for tool, diameter in TOOLS.items()}
+metric = kept_tracer("mill_mitsubishi_mm", tools=TOOLS)
+inch = kept_tracer("mill_inch", tools=IN_INCHES, overrides=REMAPS)
 
 
 # ---------------------------------------------------------------- modes, units, work offsets

@@ -6,14 +6,10 @@ from itertools import chain
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import FIRST, START, ends, feed_moves, lines, section, texts, tracer
-from support.sim_machines import SIM
+from support.polar_programs import FIRST, START, ends, feed_moves, lines, section, texts
+from support.sim_machines import SIM, kept_tracer
 
-
-@pytest.fixture(scope="module")
-def lathe():
-    with tracer() as opened:
-        yield opened
+lathe = kept_tracer("lathe_mm")
 
 
 @pytest.fixture(scope="module")

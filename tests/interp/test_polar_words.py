@@ -8,13 +8,9 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support.mode_matrix import remaps
 from support.polar_programs import FIRST, ends, feed_moves, section, tracer
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, SIM, kept_tracer
 
-
-@pytest.fixture(scope="module")
-def lathe():
-    with tracer() as opened:
-        yield opened
+lathe = kept_tracer("lathe_mm")
 
 
 def cut(lathe, *body, **around):

@@ -6,8 +6,8 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.plot.refused import with_refused_contour
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import in_plane, tracer
-from support.sim_machines import PROGRAMS, SIM
+from support.polar_programs import in_plane
+from support.sim_machines import PROGRAMS, SIM, kept_tracer
 
 HEXAGON = (PROGRAMS / "polar" / "hexagon.ngc").read_text()
 WRONG_SIDE = HEXAGON.replace("G41 ", "G42 ")
@@ -15,10 +15,7 @@ LATHE = SIM / "lathe_mm_headless.ini"
 TIGHT = "cannot follow both lines 10 and 15: beside one of them it cuts into the other"
 
 
-@pytest.fixture(scope="module")
-def lathe():
-    with tracer() as opened:
-        yield opened
+lathe = kept_tracer("lathe_mm")
 
 
 def test_a_closed_contour_on_the_wrong_side_is_asked_about(lathe):

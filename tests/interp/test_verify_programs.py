@@ -65,11 +65,12 @@ def test_every_pocket_is_found_and_comes_out_as_printed(manual):
 # ---------------------------------------------------------------- other dialects
 
 
-@pytest.mark.parametrize("distance", ["G90", "G91"])
-@pytest.mark.parametrize("repeats", ["", "L3"])
-def test_a_pocket_without_z_is_measured_where_the_tool_stands(distance, repeats, tmp_path):
+@pytest.mark.parametrize("clearing", ["rings", "spiral"])
+@pytest.mark.parametrize(("distance", "repeats"), [("G90", ""), ("G91", "L3")])
+def test_a_pocket_without_z_is_cut_where_the_tool_stands(distance, repeats, clearing, tmp_path):
     rough, finish = "G13 I7 K20 Q6 Z-3 D4", f"{distance} G13 I20.5 {repeats} D4"
-    proof = proof_of_text(tmp_path, [*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1"])
+    lines = [*MM, "G0 X3 Y4 Z1", rough, finish, "G90 G0 Z1"]
+    proof = proof_of_text(tmp_path, lines, changed={"G12": {"CLEARING": clearing}})
     assert proof.findings == []
     depths = [facts.commanded.wall.height(facts.commanded.deepest) for facts in proof.pockets]
     assert depths == pytest.approx([-3, -3])
@@ -317,21 +318,6 @@ def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):
 
 
 # ---------------------------------------------------------------- polar sections
-
-
-@pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
-@pytest.mark.parametrize("program", ["hexagon", "square", "slot", "circles", "cam"])
-def test_polar_programs_follow_their_contours(program, machine):
-    (facts,) = (proof := proof_of(f"polar/{program}.ngc", machine)).sections
-    assert proof.findings == []
-    assert 0 < facts.deviation < proof.tolerances.polar
-    assert 0 < facts.values["c_speed"] <= facts.values["c_limit"] * 1.001
-
-
-def test_the_size_of_the_hexagon():
-    (facts,) = proof_of("polar/hexagon.ngc", "lathe_mm").sections
-    assert facts.values["radii"][0] == pytest.approx(13.5) and facts.values["cutter"] == 12
-    assert facts.values["reached"][0] == pytest.approx(13.5, abs=0.005)
 
 
 @pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
