@@ -8,8 +8,8 @@ Data flow of one block, one way only::
 
 and of one section, whose lines the host reads by itself::
 
-    start -> setup -> lines ->  contour ->    path of the tool -> moves of X and C
-    (host)   (polar)  (section) (compensation) (compensation)     (polar; handed over by host)
+    start -> setup -> lines ->  contour ->     toolpath ->     moves of X and C
+    (host)   (polar)  (section) (compensation) (compensation)  (polar; executed by host)
 
 The planners (`cycles`, `section`, `compensation`, `polar`) are pure: numbers in, values out, no
 LinuxCNC.

@@ -7,13 +7,13 @@ import sys
 from importlib.util import find_spec
 from pathlib import Path
 
-SYSTEM_PYTHON = "/usr/bin/python3"  # the one whose modules LinuxCNC and Debian's python3-* are
-ITS_MODULES = ("linuxcnc", "numpy")
+SYSTEM_PYTHON = "/usr/bin/python3"  # LinuxCNC's modules and Debian's python3-* belong to it
+NEEDED_MODULES = ("linuxcnc", "numpy")
 
 if __package__ in (None, ""):
     sys.path[0] = str(Path(__file__).resolve().parents[1])
     other = os.path.realpath(sys.executable) != os.path.realpath(SYSTEM_PYTHON)
-    if other and not all(map(find_spec, ITS_MODULES)):
+    if other and not all(map(find_spec, NEEDED_MODULES)):
         os.execv(SYSTEM_PYTHON, [SYSTEM_PYTHON, *sys.argv])
 
 from g12.tools.commands.main import main  # noqa: E402 - the path has to be set first

@@ -154,7 +154,7 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
         if key not in TABLE:
             raise Refusal(f"[{INI_SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
         if key.lower() in values:
-            raise Refusal(f"[{INI_SECTION}] {key} stands there twice")
+            raise Refusal(f"[{INI_SECTION}] {key} occurs twice")
         try:
             values[key.lower()] = TABLE[key].read(text)
         except ValueError:
@@ -183,4 +183,4 @@ def check_section(lines: Sequence[str]) -> None:
     if any(name != INI_SECTION for name in found):
         raise Refusal(f"[{min(set(found) - {INI_SECTION})}] must be written [{INI_SECTION}]")
     if len(found) > 1:
-        raise Refusal(f"[{INI_SECTION}] stands there twice: LinuxCNC reads the first one only")
+        raise Refusal(f"[{INI_SECTION}] occurs twice: LinuxCNC reads the first one only")

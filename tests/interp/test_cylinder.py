@@ -137,7 +137,7 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
      "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"),
     ("G12.1", "G12.1 is refused: only G1, G2 and G3 move inside the section"),
     ("G7.1 C30", "the section is already on: G7.1 C0 ends it"),
-    ("G7.1 C0 Z5", "G7.1 C0 stands alone in its block"),
+    ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
     ("G1 A5", "A is refused: the section's words are Z, C, X, W, H and U"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
     ("G2 Z5 K2 R3", "G2: either R or J and K, not both"),
@@ -188,7 +188,7 @@ def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
     ("given", "why"),
     [
         ({"on": "G7.1"}, "needs C, the cylinder's radius; C0 ends a section"),
-        ({"on": "G7.1 C20 Z5"}, "stands alone in its block"),
+        ({"on": "G7.1 C20 Z5"}, "must be alone in its block"),
         ({"first": FIRST.replace("G94", "G93")}, "needs G94 or G95, not G93"),
         (
             {"first": "G52 X-1 " + FIRST},
@@ -204,7 +204,7 @@ def test_refused_to_begin(lathe, given, why):
 @pytest.mark.parametrize("words", ["X7", "Z-5", "K3", "D5", "R2", "I1"])
 def test_words_beside_the_code_that_ends_no_section(lathe, words):
     traced = lathe.trace_text([FIRST, f"G7.1 C0 {words}", "M2"])
-    assert traced.error.text == "G7.1 line 2: C0 stands alone in its block"
+    assert traced.error.text == "G7.1 line 2: C0 must be alone in its block"
 
 
 def test_x_beyond_its_limit_is_a_radius_where_words_are_diameters(lathe):

@@ -64,7 +64,7 @@ def test_in_a_sub_it_is_the_line_behind_the_call(tmp_path):
 
 
 SECTIONS = [
-    (["G12.1 X5"], "G12.1 line 10: stands alone in its block"),
+    (["G12.1 X5"], "G12.1 line 10: must be alone in its block"),
     (["G12.1", "G1 X15", "G1 X10 A3"], "G12.1 line 12: A is refused"),
     (["G12.1", "G1 X15", "G1 X10 X11"], "G12.1 line 12: Multiple x words on one line"),
     (["G12.1", "G1 X15", "G2 X10 C1 R.1", "G13.1"], "G12.1 line 12: G2 R0.1 does not close"),

@@ -116,15 +116,15 @@ REFUSED = [  # what a block says by itself is in unit/test_haas.py
     ("G93 G12 I.5 Z-1 D1 F1", "G12: needs feed per minute or revolution (G94, G95), but G93"),
     ("G18 G12 I.5 Z-1 D1", "G12: needs the XY plane G17, but G18 is active"),
     ("G95 S0 F.1 G12 I.5 Z-1 D1", "G12: needs a spindle speed for feed per revolution (G95)"),
-    ("G43.1 Z1 G12 I.5 D1", "G12: G43.1 cannot stand in the same block"),
-    ("G64 P.1 G12 I.5 Z-1 D1", "G12: G64 cannot stand in the same block"),
-    ("G43 G12 I.5 Z-1 D1 H2", "G12: G43 cannot stand in the same block"),
-    ("G12 I.5 Z-1 T2 M6", "G12: M6 cannot stand in the same block"),
-    ("M61 Q2 G12 I.5 K1 Z-1 D1", "G12: M61 cannot stand in the same block"),
-    ("M68 E1 Q.1 G12 I.5 K1 Z-1 D1", "G12: M68 cannot stand in the same block"),
-    ("M19 R1 G12 I.5 Z-1 D1", "G12: M19 cannot stand in the same block"),
-    ("M62 P5 G12 I.5 Z-1 D1", "G12: M62 cannot stand in the same block"),
-    ("G96 S100 G12 I.5 Z-1 D1", "G12: G96 cannot stand in the same block"),
+    ("G43.1 Z1 G12 I.5 D1", "G12: G43.1 cannot be in the same block"),
+    ("G64 P.1 G12 I.5 Z-1 D1", "G12: G64 cannot be in the same block"),
+    ("G43 G12 I.5 Z-1 D1 H2", "G12: G43 cannot be in the same block"),
+    ("G12 I.5 Z-1 T2 M6", "G12: M6 cannot be in the same block"),
+    ("M61 Q2 G12 I.5 K1 Z-1 D1", "G12: M61 cannot be in the same block"),
+    ("M68 E1 Q.1 G12 I.5 K1 Z-1 D1", "G12: M68 cannot be in the same block"),
+    ("M19 R1 G12 I.5 Z-1 D1", "G12: M19 cannot be in the same block"),
+    ("M62 P5 G12 I.5 Z-1 D1", "G12: M62 cannot be in the same block"),
+    ("G96 S100 G12 I.5 Z-1 D1", "G12: G96 cannot be in the same block"),
     ("G41 D1 G12 I.5 Z-1", "G12: brings its own cutter compensation: program G40 first"),
     *(
         (f"G12 I.5 Z-1 D1 {word}", f"G12: {word} is not a word of this cycle, which knows X Y Z")
@@ -151,7 +151,7 @@ def test_a_negative_diameter_in_the_spindle_is_refused(inch):
 
 def test_right_after_g40_the_plunge_must_not_slant(inch):
     offset = [FIRST, "T2 M6", "G41", "G1 X1", "Y1"]
-    message = "G12: the tool still stands offset: after G40 move in X or Y first"
+    message = "G12: the tool is still offset: after G40 move in X or Y first"
     mode_matrix.check_refused(inch, [*offset, "G40"], "G12 I.26 Z-1", message)
     moved = inch.trace_text([*offset, "G40", "G12 X1 Y1 I.26 Z-1"])
     (plunge,) = [

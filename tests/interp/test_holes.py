@@ -168,7 +168,7 @@ def test_300_random_bad_calls_move_nothing(lathe):
         (["G93"], "needs G94 or G95, not G93"),
         (["G92 X61"], "X0 must be the spindle's axis"),
         (["G19"], "needs G18 or G17, not G19"),
-        (["G0 Z-1"], "Z-1: the tool must stand above the face at Z0"),
+        (["G0 Z-1"], "Z-1: the tool must be above the face at Z0"),
         (["T0 M6"], "no tool is loaded"),
     ],
 )
@@ -183,7 +183,7 @@ def test_inside_a_section_the_refusal_says_what_to_write(lathe, name, on, off):
     inside = [on, f"N7 o<{name.upper()}> call [1] (here)", off]
     traced = lathe.trace_text(program("C0", *inside))
     assert traced.error.text == (
-        f"{on.split()[0]} line 8: o<{name}> is made outside of a section: "
+        f"{on.split()[0]} line 8: o<{name}> must be called outside of a section: "
         f"{off} in the line before it, {on.split()[0]} again after it"
     )
     assert traced.error.line == 8 and len(traced.moves) == 2

@@ -39,7 +39,7 @@ INSIDE = [  # unit/test_section_block_rules.py has every code
     ("M2", "G13.1 is missing: M2 comes before it"),
     ("G1 @5 ^3", "@ is refused: the section's words are X, C (or Y), Z, U and H"),
     ("G1 X12 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
-    ("G13.1 X5", "G13.1 stands alone in its block"),
+    ("G13.1 X5", "G13.1 must be alone in its block"),
     ("M33 M8", "M33 is remapped: inside a section it needs a block of its own"),
     ("M72", "M72: no modes were saved in this section"),
     ("M19 R90 Q0", "M19 needs Q above zero, the longest wait in seconds"),
@@ -120,7 +120,7 @@ ENTRY = [
     ("G52 X1.5", "G12.1", SHIFTED.format(1.5)),
     ("G92 X17", "G12.1", SHIFTED.format(3)),
     *[
-        ("", f"G12.1 {word}", "stands alone in its block")
+        ("", f"G12.1 {word}", "must be alone in its block")
         for word in ("X5", "G90", "M8", "F50", "T1")
     ],
 ]
@@ -169,7 +169,7 @@ def test_bare_words_of_a_code_that_is_no_contour(lathe, cycle):
 @pytest.mark.parametrize("words", ["X7", "C90", "K3", "D5", "R2", "I1"])
 def test_words_beside_the_code_that_ends_no_section(lathe, words):
     traced = lathe.trace_text([FIRST, f"G13.1 {words}", "M2"])
-    assert traced.error.text == "G13.1 line 2: stands alone in its block"
+    assert traced.error.text == "G13.1 line 2: must be alone in its block"
 
 
 @pytest.mark.parametrize(

@@ -226,7 +226,7 @@ def test_an_entry_is_refused_by_its_name(lathe, shape, entries, rule):
     [
         (dict(tool=0), "no tool is loaded: its diameter sets the path"),
         (dict(start="G0 X40 Z0 C0"),
-         "Z0: a shape begins where the tool stands, which must be above the face at Z0"),
+         "Z0: a shape begins at the tool's position, which must be above the face at Z0"),
         (dict(feed="G93"), "needs G94 or G95, not G93"),
         (dict(feed="G19"), "needs G18 or G17, not G19"),
         (dict(feed="G95 F.1"), "feed per revolution (G95) needs the spindle speed S"),
@@ -271,7 +271,7 @@ def test_the_codes_stand_in_the_subs_alone(lathe, code):
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])
 def test_the_codes_stand_alone_in_their_blocks(lathe, code):
     edited = ["o<polar_slot> sub", f"{code} X5", "o<polar_slot> endsub", "o<polar_slot> call"]
-    assert refused(lathe, program(*edited)) == f"{code} line 6: stands alone in its block"
+    assert refused(lathe, program(*edited)) == f"{code} line 6: must be alone in its block"
 
 
 @pytest.mark.parametrize(

@@ -63,8 +63,8 @@ def test_words_are_those_of_the_part():
 @pytest.mark.parametrize(
     ("body", "line", "says"),
     [
-        (("G3 X-20 C0 R20",), 6, "needs a G1 with X or C before it: the tool stands 2 beside"),
-        (("G1 X15 C0", "X-15"), 7, "come to 0 from the spindle's centre: it stands 2 beside X's"),
+        (("G3 X-20 C0 R20",), 6, "needs a G1 with X or C before it: the tool is 2 beside"),
+        (("G1 X15 C0", "X-15"), 7, "come to 0 from the spindle's centre: it is 2 beside X's"),
         (("G1 X15 C0", "X1 C1", "X15"), 7, "(POLAR_TOOL_OFFSET) and comes no nearer than 2.005"),
     ],
 )

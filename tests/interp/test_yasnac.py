@@ -95,7 +95,7 @@ def test_a_bad_block_moves_nothing_and_changes_nothing(metric, block, message):
 
 
 def test_right_after_g40_nothing_moves(metric):
-    message = "G12: the tool still stands offset: after G40 move in X or Y first"
+    message = "G12: the tool is still offset: after G40 move in X or Y first"
     before = [FIRST, "T1 M6", "G41", "G1 X30", "Y30", "G40"]
     mode_matrix.check_refused(metric, before, "G12 I30 R20 D10", message)
 

@@ -145,7 +145,7 @@ def test_a_section_is_refused_there(lathe):
             ["G10 L2 P1 Y1", "G12.1"],
             "G12.1: needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis",
         ),
-        (["G12.1 X3"], "G12.1: stands alone in its block"),
+        (["G12.1 X3"], "G12.1: must be alone in its block"),
     ],
 )
 def test_refused(lathe, blocks, refusal):

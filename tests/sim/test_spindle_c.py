@@ -189,7 +189,7 @@ def test_a_spindle_that_cannot_become_c():
     with SpindleLathe(overrides={"SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1}}) as machine:
         machine.mdi("M254")
         assert machine.errors()[0].text == (
-            "M254: the spindle did not become C within 1 s: it has to stand, to find its index and "
+            "M254: the spindle did not become C within 1 s: it has to stop, to find its index and "
             "to reach the angle of C (spindle_c.md)"
         )
         assert not machine.get("spindle-c-holds")

@@ -227,7 +227,7 @@ def test_the_reading_of_x_that_closes_the_arc_is_named(blocks, start, diameter, 
 
 
 # What LinuxCNC forgives any arc: a thousandth of its radius, or what rounded words need.
-ROUNDED = dict(closing=0.0127)
+ROUNDED = dict(radius_tolerance=0.0127)
 
 
 @pytest.mark.parametrize(
@@ -290,7 +290,7 @@ def test_an_arc_cannot_be_the_first(beside, plunged):
     with pytest.raises(Refusal) as refused:
         contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
     assert refused.value.message == (
-        "G12.1 line 7: G3 needs a G1 with X or C before it: the tool stands 3 beside X's line "
+        "G12.1 line 7: G3 needs a G1 with X or C before it: the tool is 3 beside X's line "
         "(POLAR_TOOL_OFFSET)"
     )
 

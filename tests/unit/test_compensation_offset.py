@@ -399,6 +399,6 @@ def test_a_ramp_alone_cannot_be_cut(side):
     contour = Contour(10.0, 0.0)
     contour.compensation(side, 2.0, line=1)
     contour.line(10.0, 5.0, line=1, feed=100.0)
-    needs = "needs a block of the contour behind its G1"
+    needs = "needs a block of the contour after its G1"
     with pytest.raises(Refusal, match=rf"^G12\.1 line 1: G{side} {needs}$"):
         plan(contour, LATHE, c=0.0)

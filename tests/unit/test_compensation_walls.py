@@ -7,7 +7,7 @@ import pytest
 
 from g12.compensation.compensated import (
     CompensatedContour,
-    Cut,
+    PathOfMove,
     compensated_contours,
     greatest_levels,
     in_plane,
@@ -21,7 +21,7 @@ TOLERANCE, RADIUS = 0.005, 3.0
 
 def walls_of(*moves, tolerance=TOLERANCE):
     """Return a contour of moves that are all under compensation."""
-    cuts = [Cut(move, (), True) for move in moves]
+    cuts = [PathOfMove(move, (), True) for move in moves]
     return CompensatedContour(Contour(50.0, 0.0), cuts, [], tolerance)
 
 
@@ -37,7 +37,7 @@ def walls_of(*moves, tolerance=TOLERANCE):
 )
 def test_a_contour_is_what_lies_between_two_ramps(under_compensation, expected):
     made = [line(k, 0.0, k + 1.0, 0.0, number=k, offset=RADIUS) for k in range(7)]
-    cuts = [Cut(move, (move,), sign == "+") for move, sign in zip(made, under_compensation)]
+    cuts = [PathOfMove(move, (move,), sign == "+") for move, sign in zip(made, under_compensation)]
     found = [
         (tuple(move.line for move in each.moves), {ramp.move.line for ramp in each.ramps})
         for each in compensated_contours(Contour(50.0, 0.0), cuts, TOLERANCE)
@@ -90,7 +90,7 @@ def test_beyond_the_ends_of_an_open_contour_nobody_knows():
     """Before, after and beside an angle, and on its own lines."""
     angle = walls_of(line(0, 10, 0, 0, offset=RADIUS), line(0, 0, 20, 0, offset=RADIUS))
     beyond = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
-    assert [angle.height(point)[1] for point in beyond] == [True] * 6
+    assert [angle.clearance(point)[1] for point in beyond] == [True] * 6
     heights = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}
-    for point, height in heights.items():
-        assert angle.height(point) == (pytest.approx(height), False)
+    for point, clearance in heights.items():
+        assert angle.clearance(point) == (pytest.approx(clearance), False)

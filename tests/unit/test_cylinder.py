@@ -189,7 +189,7 @@ def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
 @pytest.mark.parametrize(
     ("found", "rule"),
     [
-        ({"alone": False}, "stands alone in its block"),
+        ({"alone": False}, "must be alone in its block"),
         ({"compensated": True}, "needs G40: compensation is switched on inside"),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
         ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),

@@ -71,7 +71,7 @@ LAST = dict(last_radius=0.2)
             dict(per_revolution=True),
             "needs a spindle speed for feed per revolution (G95), but S is 0",
         ),
-        (dict(offset_pending=True), "the tool still stands offset: after G40 move in X or Y first"),
+        (dict(offset_pending=True), "the tool is still offset: after G40 move in X or Y first"),
         (
             dict(spindle_tool=TABLE[3]),
             "T3 in the spindle has the negative diameter -0.25 in the tool table",

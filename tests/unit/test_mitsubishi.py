@@ -49,7 +49,7 @@ def test_a_bad_block_is_refused_by_name(words, rule):
     ("modes", "rule"),
     [
         *BAD_MODES,
-        (dict(offset_pending=True), "the tool still stands offset: after G40 move in X or Y first"),
+        (dict(offset_pending=True), "the tool is still offset: after G40 move in X or Y first"),
         (dict(plane="G17.1"), "needs plane G17, G18 or G19, but G17.1 is active"),
     ],
 )

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.moves.feed import Split, keeps_slide, segments_with_feed
+from g12.moves.feed import Split, has_short_slide_move, segments_with_feed
 from support import planned_moves
 
 START = (10.0, 0.0, 0.0)
@@ -69,4 +69,4 @@ def test_all_segments_together_last_as_long_as_the_path(steps, rise, entry):
     ("angles", "keeps"), [([0.5, 0.5], False), ([0.1, -0.1], True), ([0.5, 0.6], True)]
 )
 def test_a_segment_keeps_its_slide_where_c_turns(angles, keeps):
-    assert keeps_slide(Split([10.0, 10.0 + 1e-7], angles, [0.0, 1.0]), 1e-6) is keeps
+    assert has_short_slide_move(Split([10.0, 10.0 + 1e-7], angles, [0.0, 1.0]), 1e-6) is keeps

@@ -101,7 +101,7 @@ def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
     with pytest.raises(Refusal) as refused:
         plan(contour, LATHE._replace(beside=-3.0), c=0.0)
     assert refused.value.message == (
-        "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it stands 3 "
+        "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it is 3 "
         "beside X's line (POLAR_TOOL_OFFSET) and comes no nearer than 3.005"
     )
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceSwitch, flows_into, in_face, passed
+from g12.polar.face import FaceSwitch, flows_into, in_face, positions_along
 from g12.polar.plan import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
@@ -53,7 +53,7 @@ def test_passed_tells_the_end_and_the_farthest(move, off):
     if abs(points).min() < 0.5:
         return
     begin = cmath.phase(move.start) + off
-    places = passed(move, begin)
+    places = positions_along(move, begin)
     angles = np.unwrap(np.angle(points))
     assert places[-1][0] == pytest.approx(abs(move.end))
     assert places[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
@@ -62,7 +62,7 @@ def test_passed_tells_the_end_and_the_farthest(move, off):
 
 def contour(*points, feed=2000.0):
     """Return a contour of lines from X30 on."""
-    drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, closing=0.0127)
+    drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
     x, c = 30.0, 0.0
     for number, (to_x, to_c) in enumerate(points, 7):
         drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))

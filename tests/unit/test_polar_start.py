@@ -28,7 +28,7 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
 @pytest.mark.parametrize(
     ("found", "rule"),
     [
-        ({"alone": False}, "stands alone in its block"),
+        ({"alone": False}, "must be alone in its block"),
         ({"compensated": True}, "needs G40: compensation is switched on inside"),
         ({"inverse_time": True}, "needs G94 or G95, not G93"),
         ({"yz_plane": True}, "needs G18 or G17, not G19"),

@@ -143,7 +143,7 @@ def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, 
     path = PathControl(interp, 0.0025, 0.0254)
     path.on_face()
     assert interp.done == ([blended] if blended else [])
-    path.give_back()
+    path.restore()
     assert interp.active_settings[3:] == [tolerance, merging]
 
 

@@ -73,8 +73,8 @@ def test_an_illegal_value_names_key_and_legal_values(key, value, message):
     [
         ("[g12]\nCLEARING = spiral\n", "[g12] must be written [G12]"),
         ("[G12 ]\nCLEARING = spiral\n", "[G12 ] must be written [G12]"),
-        ("[G12]\n[EMC]\n[G12]\n", "[G12] stands there twice: LinuxCNC reads the first one only"),
-        ("[G12]\nCLEARING = rings\nCLEARING = spiral\n", "[G12] CLEARING stands there twice"),
+        ("[G12]\n[EMC]\n[G12]\n", "[G12] occurs twice: LinuxCNC reads the first one only"),
+        ("[G12]\nCLEARING = rings\nCLEARING = spiral\n", "[G12] CLEARING occurs twice"),
     ],
 )
 def test_a_section_that_linuxcnc_would_not_read_or_a_key_twice_is_refused(tmp_path, text, message):

@@ -124,7 +124,7 @@ class TestEveryShape:
         assert planned(shape, found=inches).heights == (5.0, pytest.approx(1 / 25.4))
 
     def test_it_never_begins_at_the_face_or_below(self, shape):
-        rule = "a shape begins where the tool stands, which must be above the face at Z0"
+        rule = "a shape begins at the tool's position, which must be above the face at Z0"
         for z in (0.0, -1.0):
             assert refusal(shape, LATHE, FOUND._replace(z=z)) == f"{shape}: Z{z:g}: {rule}"
         assert planned(shape, found=FOUND._replace(z=1e-3)).heights.near_z == 1e-3

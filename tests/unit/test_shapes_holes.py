@@ -109,7 +109,7 @@ REFUSED = [
     ("face_holes", {"count": 2.5}, "count 2.5 must be a whole number"),
     ("face_holes", {"circle_diameter": -1}, "circle_diameter -1 must be greater than 0"),
     ("face_holes", {"step_angle": 361}, "step_angle 361 must lie between -360 and 360"),
-    ("face_holes", {"found": STANDING._replace(z=0.0)}, "Z0: the tool must stand above the face"),
+    ("face_holes", {"found": STANDING._replace(z=0.0)}, "Z0: the tool must be above the face"),
     ("face_holes", {"retract": LEFT_OUT}, "retract is missing: the height at which"),
     ("face_holes", {"kind": -1}, "kind -1 must be at least 0"),
     ("face_holes", {"kind": 4}, "kind 4 must be at most 3"),
@@ -124,7 +124,7 @@ REFUSED = [
     ("face_holes", {"dwell": -1}, "dwell -1 must not be below 0"),
     ("face_hole_at", {"machine": MACHINE._replace(beside=-12.0)}, "the hole is 11.18034 from"),
     ("side_holes", {"z": LEFT_OUT}, "z is missing: where the holes are along the part"),
-    ("side_holes", {"surface_diameter": 60}, "X30 (radius): the tool must stand outside"),
+    ("side_holes", {"surface_diameter": 60}, "X30 (radius): the tool must be outside"),
     ("side_holes", {"machine": MACHINE._replace(beside=1.0)}, "needs a tool on the X line"),
 ]
 

@@ -112,7 +112,7 @@ def test_a_bad_block_is_refused_by_name(words, rule):
     [
         *BAD_MODES,
         (dict(plane="G18"), "needs the XY plane G17, but G18 is active"),
-        (dict(offset_pending=True), "the tool still stands offset: after G40 move in X or Y first"),
+        (dict(offset_pending=True), "the tool is still offset: after G40 move in X or Y first"),
     ],
 )
 def test_a_mode_that_cannot_work_is_refused(modes, rule):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From a contour to the path of the tool's centre: rounding in the program's points is left out."""
+"""From a contour to the tool centre's path, without the rounding in the program's points."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is roun
 
 
 def centre_path(contour: Contour, tolerance: float) -> tuple[list[PathElement], float]:
-    """Return the path of the tool's centre, and by how much the contour was moved for it.
+    """Return the tool centre's path, and the greatest shift of the contour for it.
 
-    Points as close together as their last decimal make corners that no tool reaches. Where a
+    Points as close together as their last decimal make corners that no tool can follow. Where a
     contour would be refused, it is tried again without them.
     """
     limit = SHORT_SHARE * tolerance
-    elements, moved = without_short_moves(contour.elements, limit)
+    elements, shift = without_short_moves(contour.elements, limit)
     try:
-        return tool_path(contour, elements, tolerance - moved), moved
+        return tool_path(contour, elements, tolerance - shift), shift
     except Refusal as refusal:
-        fewer, left_out = without_rounding_points(elements, limit - moved)
+        fewer, further_shift = without_rounding_points(elements, limit - shift)
         if len(fewer) == len(elements):
             raise
+        shift += further_shift
         try:
-            return tool_path(contour, fewer, tolerance - moved - left_out), moved + left_out
+            return tool_path(contour, fewer, tolerance - shift), shift
         except Refusal:
             raise refusal from None

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A contour from its G41 or G42 to its G40: its walls, and the passes of the tool along it.
 
-A wall is the finished surface that a move leaves on the side away from the tool. Leads leave no
-wall, nor do moves in the air between two plunges. Program units.
+A wall is the finished surface of a move, on the side away from the tool. Leads have no wall, nor
+have moves in the air between two plunges. Program units.
 """
 
 from __future__ import annotations
@@ -20,29 +20,29 @@ from g12.geometry.boxes import BoxTree
 from g12.geometry.curve import Arc
 
 MEETING = 4.0  # tolerances: ends within this distance close a contour
-RAMP = -1  # stands for a move's index
+RAMP = -1  # the move index of a ramp's passes
 
 
-class Cut(NamedTuple):
+class PathOfMove(NamedTuple):
     """A move of the contour and the tool centre's ``path`` for it.
 
-    ``cut``: compensation is on at both its ends, so it is no ramp.
+    ``compensated``: compensation is on at both its ends, so it is no ramp.
     """
 
     move: PlaneMove
     path: tuple[PathElement, ...]
-    cut: bool
+    compensated: bool
 
 
 class Pass(NamedTuple):
-    """A move of the tool's centre for the contour's move ``move_index``, and all its Z levels."""
+    """A move of the tool's centre along move ``move_index`` of the contour, with all its levels."""
 
     move_index: int
     move: PlaneMove
     levels: frozenset[int]
 
-    def touched(self, share: float, offset: float) -> complex:
-        """Return the point of the contour that the tool touches at a share of the pass."""
+    def contact(self, share: float, offset: float) -> complex:
+        """Return the contact point of tool and contour at a share of the pass."""
         return self.move.curve.point(share) - 1j * offset * self.move.curve.direction(share)
 
 
@@ -63,13 +63,17 @@ class CompensatedContour:
     """
 
     def __init__(
-        self, contour: Contour, cuts: Sequence[Cut], ramps: Sequence[Cut], tolerance: float
+        self,
+        contour: Contour,
+        cuts: Sequence[PathOfMove],
+        ramps: Sequence[PathOfMove],
+        tolerance: float,
     ) -> None:
         self.moves, self.tolerance = [cut.move for cut in cuts], tolerance
         self.offset = self.moves[0].offset
         self.radius = abs(self.offset)
         curves = [move.curve for move in self.moves]
-        near = max(MEETING * tolerance, 2 * contour.closing)
+        near = max(MEETING * tolerance, 2 * contour.radius_tolerance)
         self.closing = closing_of(curves, self.radius, near)
         self.ends = [0.0, *accumulate(curve.length for curve in curves)]
         self.walls: dict[int, PlaneMove] = {}
@@ -90,7 +94,10 @@ class CompensatedContour:
 
     @property
     def spacing(self) -> float:
-        """The length between two points of a wall: half the chord at a depth of the tolerance."""
+        """The length between two points of a wall: half the chord at a depth of the tolerance.
+
+        A chord of height h in a circle of radius r is nearly 2 sqrt(2 r h) long.
+        """
         return sqrt(2.0 * self.radius * self.tolerance)
 
     @cached_property
@@ -146,8 +153,8 @@ class CompensatedContour:
         move = self.moves[index]
         return move.curve.point(min((along - self.ends[index]) / move.length, 1.0))
 
-    def height(self, point: complex) -> tuple[float, bool]:
-        """Return the distance of a point from the walls, negative in the material, and ``at_end``.
+    def clearance(self, point: complex) -> tuple[float, bool]:
+        """Return a point's distance from the walls, below zero in the material, and ``at_end``.
 
         ``at_end``: the point is beyond an end of an open contour, where the material is not known.
         """
@@ -176,13 +183,13 @@ class CompensatedContour:
 
 
 def compensated_contours(
-    contour: Contour, cuts: Sequence[Cut], tolerance: float
+    contour: Contour, cuts: Sequence[PathOfMove], tolerance: float
 ) -> Iterator[CompensatedContour]:
     """Yield each contour between two ramps."""
     at = 0
-    for cut, group in groupby(cuts, key=lambda cut: cut.cut):
+    for compensated, group in groupby(cuts, key=lambda cut: cut.compensated):
         own = list(group)
-        if cut:
+        if compensated:
             ramps = [*cuts[max(at - 1, 0) : at], *cuts[at + len(own) :][:1]]
             yield CompensatedContour(contour, own, ramps, tolerance)
         at += len(own)

@@ -20,7 +20,7 @@ from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, recentred, sweep_bet
 from g12.lengths import LARGEST
 
 SAME_POINT = 1e-6  # program units: points within it coincide, a shorter move is rounding
-CLOSING_RATIO = 0.001  # of the radius: the mismatch LinuxCNC allows any arc
+RADIUS_TOLERANCE_RATIO = 0.001  # of the radius: the mismatch that LinuxCNC allows any arc
 
 
 class PlaneMove(NamedTuple):
@@ -117,7 +117,7 @@ class Contour:
     ``x``, ``c`` and ``z`` are the programmed position in the plane, readable at any time.
     ``code`` and ``names`` are for messages. ``diameter``: the program's words for x are diameters,
     None where they cannot be. The values passed in are radii; messages use it to name the reading.
-    ``closing`` is the radius mismatch that an arc may have, in program units. ``beside`` is the
+    ``radius_tolerance`` is how far an arc's radii at start and end may differ. ``beside`` is the
     tool's distance from the programmed start along the second axis; the first G1 removes it.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``start`` is the machine's position: by
@@ -134,12 +134,17 @@ class Contour:
         code: str = "G12.1",
         names: PlaneNames = FACE_NAMES,
         diameter: bool | None = False,
-        closing: float = 0.0,
+        radius_tolerance: float = 0.0,
         start: Start | None = None,
         beside: float = 0.0,
     ) -> None:
         self.x, self.c, self.z = x, c, z
-        self.code, self.names, self.diameter, self.closing = code, names, diameter, closing
+        self.code, self.names, self.diameter, self.radius_tolerance = (
+            code,
+            names,
+            diameter,
+            radius_tolerance,
+        )
         self.elements: list[PathElement] = []
         self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
         self.side = 40
@@ -316,7 +321,7 @@ class Contour:
         if beside > SAME_POINT:
             self.refuse(
                 line,
-                f"{name} needs a G1 with X or C before it: the tool stands {number(beside)} "
+                f"{name} needs a G1 with X or C before it: the tool is {number(beside)} "
                 "beside X's line (POLAR_TOOL_OFFSET)",
             )
         if self._switch is not None:
@@ -355,16 +360,17 @@ class Contour:
                 f"{name} does not close: the ends are {number(apart)} apart, R must be at least "
                 f"{number(half)}{self._hint(partial(self._radius_closes, radius), end)}",
             )
-        height = sqrt(max(0.0, radius * radius - half * half)) / apart
-        height = copysign(height, turn * radius)
+        height = copysign(sqrt(max(0.0, radius * radius - half * half)) / apart, turn * radius)
         centre = (start + end) / 2 + 1j * height * (end - start)
         return Arc(start, centre, sweep_between(start, end, centre, turn))
 
     def _closes(self, from_start: float, from_end: float) -> bool:
-        return abs(from_start - from_end) <= max(self.closing, CLOSING_RATIO * from_start)
+        return abs(from_start - from_end) <= max(
+            self.radius_tolerance, RADIUS_TOLERANCE_RATIO * from_start
+        )
 
     def _spans(self, half: float, radius: float) -> bool:
-        return half - abs(radius) <= max(0.5 * self.closing, CLOSING_RATIO * half)
+        return half - abs(radius) <= max(0.5 * self.radius_tolerance, RADIUS_TOLERANCE_RATIO * half)
 
     def _centre_closes(self, arm: complex, start: complex, end: complex) -> bool:
         return self._closes(abs(arm), abs(end - start - arm))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Gouges: points of a contour's walls that the tool cuts on its way along that same contour.
+"""Gouges: points of a contour's walls that the tool cuts while it machines that same contour.
 
 A point is cut where the tool's centre comes nearer than the radius, less the tolerance, at its Z
 level or below. That is valid
@@ -25,7 +25,7 @@ from g12.compensation.compensated import (
     MEETING,
     RAMP,
     CompensatedContour,
-    Cut,
+    PathOfMove,
     WallPoint,
     compensated_contours,
     in_plane,
@@ -39,27 +39,23 @@ from g12.geometry.crossing import common_points
 
 SAME_WAY = 0.9  # cosine: passes in the same direction differ by less than this angle
 CROSSED = 0.02  # of the tool's radius: a contour that goes farther to both sides crosses itself
-BESIDE_CROSSING = (
-    0.125,
-    0.25,
-    0.5,
-    1.0,
-)  # of the tool's radius: distances from the crossing at which that is checked
-# How a pass cuts a point of a wall. FACING: the pass machines a wall on the tool's side of the
-# point. BEHIND: it machines one deeper in the material. PASSED: that one, too, in the same
-# direction.
-FACING, BEHIND, PASSED = "facing", "behind", "passed"
+# of the tool's radius: distances from the crossing at which that is checked
+BESIDE_CROSSING = (0.125, 0.25, 0.5, 1.0)
+# How a pass cuts a point of a wall. FACING: the wall that the pass machines is on the tool's side
+# of the point. DEEPER: it is deeper in the material. REPEATED: deeper, and machined in the same
+# direction, as by a later pass.
+FACING, DEEPER, REPEATED = "facing", "deeper", "repeated"
 
 
 class LeadRefusal(Refusal):
     """The tool gouges a closed contour on its lead-in or lead-out."""
 
 
-class _Hit(NamedTuple):
-    """A pass, for the move of ``line``, that cuts into the contour.
+class _Gouge(NamedTuple):
+    """A cut into the contour by the pass for the move of ``line``.
 
-    ``lead``: that move, or the one it cuts, may be a lead-in or lead-out. ``ramp``: that move is
-    the one with G40, G41 or G42.
+    ``lead``: that move, or the one that is cut, may be a lead-in or lead-out. ``ramp``: that move
+    is the one with G40, G41 or G42.
     """
 
     line: int
@@ -67,7 +63,7 @@ class _Hit(NamedTuple):
     ramp: bool = False
 
 
-def check_gouges(contour: Contour, cuts: Sequence[Cut], tolerance: float) -> None:
+def check_gouges(contour: Contour, cuts: Sequence[PathOfMove], tolerance: float) -> None:
     """Refuse contours that the tool gouges by more than the tolerance.
 
     Reports that are no refusal go to the contour's ``notes``. Program units.
@@ -88,10 +84,10 @@ class _Sweep:
         self._passes = [*own.passes, *(own.ramps if own.closing.closed else ())]
         self._tree = BoxTree([each.move.curve for each in self._passes])
         self._of_move: dict[int, list[int]] = {}
-        for by, each in enumerate(self._passes):
-            self._of_move.setdefault(each.move_index, []).append(by)
-        self._ahead = 0  # moves from the last point to the pass that ran behind it
-        self._is_repeated = False  # a pass runs behind a wall, or may be a lead
+        for k, each in enumerate(self._passes):
+            self._of_move.setdefault(each.move_index, []).append(k)
+        self._ahead = 0  # moves from the last point to the later pass that cut it
+        self._is_repeated = False  # a later pass cuts a wall, or a pass may be a lead
 
     def check(self) -> None:
         """Refuse the gouges, or report them."""
@@ -104,8 +100,8 @@ class _Sweep:
                 "cross: taken for the leads of a contour that closes there",
             )
         for index, points in groupby(own.points(), key=lambda point: point.move_index):
-            hits = [hit for point in points for hit in self._hits(point)]
-            worst = min(hits, key=lambda hit: (hit.lead, hit.ramp), default=None)
+            gouges = [hit for point in points for hit in self._gouges(point)]
+            worst = min(gouges, key=lambda hit: (hit.lead, hit.ramp), default=None)
             line = own.moves[index].line
             if worst and not worst.lead:
                 self._refuse(line, worst.line)
@@ -131,59 +127,59 @@ class _Sweep:
         if text not in self._contour.notes:
             self._contour.notes.append(text)
 
-    def _hits(self, point: WallPoint) -> list[_Hit]:
-        """Return the hits of a wall's point, none where a pass is PASSED there."""
+    def _gouges(self, point: WallPoint) -> list[_Gouge]:
+        """Return the gouges at a wall's point, none where a later pass cuts it (REPEATED)."""
         own, distance, at = self._own, self._own.gouge_distance, point.point
         low = partial(self._is_low, own.walls[point.move_index].z0)
         guess = self._of_move.get(point.move_index + self._ahead, ()) if self._is_repeated else ()
-        if any(low(by) and self._kind(point, by) == PASSED for by in guess):
+        if any(low(k) and self._kind(point, k) == REPEATED for k in guess):
             return []
         _, nearest = self._tree.nearest(at, distance, low)
         if nearest is None:
             return []
-        hits = []
-        for by in filter(low, (nearest, *self._tree.near((at.real, at.imag) * 2, distance))):
-            kind = self._kind(point, by)
-            if kind == PASSED:
-                self._ahead = self._passes[by].move_index - point.move_index
+        gouges = []
+        for k in filter(low, (nearest, *self._tree.near((at.real, at.imag) * 2, distance))):
+            kind = self._kind(point, k)
+            if kind == REPEATED:
+                self._ahead = self._passes[k].move_index - point.move_index
                 self._is_repeated = True
                 return []
             if kind:
-                hits.append(self._hit(point, by, kind))
-        return hits
+                gouges.append(self._gouge(point, k, kind))
+        return gouges
 
-    def _is_low(self, level: float, by: int) -> bool:
-        return is_low(self._passes[by].move, level)
+    def _is_low(self, level: float, k: int) -> bool:
+        return is_low(self._passes[k].move, level)
 
-    def _kind(self, point: WallPoint, by: int) -> str | None:
-        """Return how a pass cuts a point: FACING, BEHIND or PASSED; None where it does not."""
-        own, (index, move, _) = self._own, self._passes[by]
+    def _kind(self, point: WallPoint, k: int) -> str | None:
+        """Return how a pass cuts a point: FACING, DEEPER or REPEATED; None where it does not."""
+        own, (index, move, _) = self._own, self._passes[k]
         share = move.curve.share_of(point.point)
         if abs(move.curve.point(share) - point.point) >= own.gouge_distance:
             return None
         if index == RAMP:
             return FACING
-        beside = self._passes[by].touched(share, own.offset) - point.point
+        beside = self._passes[k].contact(share, own.offset) - point.point
         turned = point.direction.conjugate()
-        height = (turned * beside).imag * (1.0 if own.offset > 0.0 else -1.0)
-        if height >= -own.tolerance:
+        clearance = (turned * beside).imag * (1.0 if own.offset > 0.0 else -1.0)
+        if clearance >= -own.tolerance:
             return FACING
         same_way = (turned * move.curve.direction(share)).real > SAME_WAY
-        return PASSED if same_way else BEHIND
+        return REPEATED if same_way else DEEPER
 
-    def _hit(self, point: WallPoint, by: int, kind: str) -> _Hit:
-        """Return the hit of a point by a pass."""
+    def _gouge(self, point: WallPoint, k: int, kind: str) -> _Gouge:
+        """Return the gouge of a pass at a point."""
         own, closing, index = self._own, self._own.closing, point.move_index
-        cutting, move, _ = self._passes[by]
+        cutting, move, _ = self._passes[k]
         if closing.crossing:
             lead = all(k <= closing.first or k >= closing.last for k in (index, cutting))
         else:
             last = len(own.moves) - 1
-            lead = not closing.closed and kind == BEHIND and index in (0, last)
+            lead = not closing.closed and kind == DEEPER and index in (0, last)
         self._is_repeated |= lead
         corner_before = cutting == index > 0  # the corner before a move belongs to both
         line = own.moves[index - 1].line if corner_before else move.line
-        return _Hit(line, lead, cutting == RAMP)
+        return _Gouge(line, lead, cutting == RAMP)
 
     def _check_crossings(self) -> None:
         """Refuse a contour that goes from one side of itself to the other."""
@@ -197,7 +193,7 @@ class _Sweep:
                         self._refuse(own.moves[index].line, own.moves[other].line)
 
     def _goes_through(self, index: int, other: int, point: complex) -> bool:
-        """Return whether two moves that meet at a point cross each other there."""
+        """Return whether two moves with a common point cross each other there."""
         own = self._own
         here, there = (own.length_to(k, point) for k in (index, other))
         deep = max(MEETING * own.tolerance, CROSSED * own.radius)

@@ -38,8 +38,8 @@ def check_neighbours(contour: Contour, contours: Sequence[CompensatedContour]) -
         others = [other for other in walled if wall.closing.closed and _may_cut(other, wall)]
         found = _Neighbourhood(wall, others, section).deepest() if others else None
         if found:
-            point, by = found
-            lines = sorted((wall.moves[point.move_index].line, by.move.line))
+            point, cutting = found
+            lines = sorted((wall.moves[point.move_index].line, cutting.move.line))
             contour.refuse(
                 lines[1],
                 f"the tool of radius {number(wall.radius)} cannot follow both lines "
@@ -101,22 +101,22 @@ class _Neighbourhood:
         every = 1 + int(depth / self._wall.spacing)
         around = depth + every * self._wall.spacing
         sampled = (self._tree.nearest(p.point, around, self._is_other) for p in points[::every])
-        if all(by is None for _, by in sampled):
+        if all(k is None for _, k in sampled):
             return None
         for point in reversed(points):
-            away, by = self._tree.nearest(point.point, depth, partial(self._cuts, point))
-            if by is not None:
-                depth, found = away, (point, self._passes[by][1])
+            away, k = self._tree.nearest(point.point, depth, partial(self._cuts, point))
+            if k is not None:
+                depth, found = away, (point, self._passes[k][1])
         return found
 
-    def _is_other(self, by: int) -> bool:
-        return id(self._passes[by][0]) in self._ids
+    def _is_other(self, k: int) -> bool:
+        return id(self._passes[k][0]) in self._ids
 
-    def _cuts(self, point: WallPoint, by: int) -> bool:
+    def _cuts(self, point: WallPoint, k: int) -> bool:
         """Return whether a pass in range cuts a point and is not intended to."""
-        other, (index, move, levels) = self._passes[by]
+        other, (index, move, levels) = self._passes[k]
         if (
-            not self._is_other(by)
+            not self._is_other(k)
             or self._intended.get(id(other))
             or self._wall.levels.isdisjoint(levels)
         ):
@@ -147,7 +147,9 @@ class _Neighbourhood:
         level = self._level(point)
         passes = other.passes
         found = other.tree.nearest(
-            point.point, other.gouge_distance, lambda by: is_low(passes[by].move, level)
+            point.point,
+            other.gouge_distance,
+            lambda k: is_low(passes[k].move, level),
         )
         return found[1] is not None
 
@@ -180,8 +182,8 @@ def enters(
         for share in (k / count for k in range(count + 1)):
             if wall.wall_tree.nearest(curve.point(share), other.gouge_distance, low)[1] is None:
                 continue
-            height, at_end = wall.height(each.touched(share, other.offset))
-            if at_end or height < -ENTERED * wall.tolerance:
+            clearance, at_end = wall.clearance(each.contact(share, other.offset))
+            if at_end or clearance < -ENTERED * wall.tolerance:
                 return True
     return False
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Cutter compensation: the path of the tool's centre along a contour.
+"""Cutter compensation: the tool centre's path along a contour.
 
 Each element under compensation is shifted to its parallel on the tool's side, then joined to its
 neighbours:
@@ -18,35 +18,42 @@ from copy import copy
 from math import copysign
 from typing import NamedTuple, NoReturn
 
+from g12.compensation.compensated import PathOfMove
 from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove, Plunge
-from g12.compensation.gouge import Cut, LeadRefusal, check_gouges
+from g12.compensation.gouge import LeadRefusal, check_gouges
 from g12.errors import Refusal, number
 from g12.geometry.crossing import PARALLEL_SINE, crossings
 from g12.geometry.curve import Arc, Curve, Line, sweep_between
 
-JOINED = 0.04  # tolerances: parallels whose ends move by less are joined without an arc
+JOINED = 0.04  # tolerances: parallels with an arc of less sagitta are joined without it
 ONE_CORNER = 2.0  # tolerances: ends within this distance are one corner
 
 
 class _Step(NamedTuple):
-    """A move of the contour, its parallel, and whether it is ``cut`` along or ``ramp`` to one."""
+    """A move of the contour, and its parallel.
+
+    ``compensated``: compensation is on at both its ends. ``ramp``: it is switched on by this move.
+    """
 
     move: PlaneMove
     parallel: Curve
-    cut: bool
+    compensated: bool
     ramp: bool
 
 
 class _Joint(NamedTuple):
-    """Where the tool's centre leaves one move and meets the next, turning about a corner."""
+    """The end of one move's path and the start of the next one's, with an arc about ``corner``.
 
-    leave: complex
-    meet: complex
+    Without a corner the two points are the same.
+    """
+
+    end_before: complex
+    start_after: complex
     corner: complex | None = None
 
 
 def tool_path(contour: Contour, elements: list[PathElement], tolerance: float) -> list[PathElement]:
-    """Return the path of the tool's centre for a contour's elements, in the same order.
+    """Return the tool centre's path for a contour's elements, in the same order.
 
     ``tolerance`` in program units: the path deviates by a small share of it.
     """
@@ -87,14 +94,14 @@ def _centred(
     joints.append(_Joint(_path_end(contour, steps), 0j))
     cuts = []
     for k, step in enumerate(steps):
-        joint, end = joints[k], joints[k + 1].leave
-        if not step.cut:
-            path = _uncut(step.move, joint.meet, end)
+        joint, end = joints[k], joints[k + 1].end_before
+        if not step.compensated:
+            path = _uncompensated(step.move, joint.start_after, end)
         else:
-            path = _trimmed(contour, steps, k, joint.meet, end)
+            path = _trimmed(contour, steps, k, joint.start_after, end)
             if joint.corner is not None:
                 path = (_corner_arc(step.move, joint, joint.corner), *path)
-        cuts.append(Cut(step.move, path, step.cut))
+        cuts.append(PathOfMove(step.move, path, step.compensated))
     check_gouges(contour, cuts, tolerance)
     return [cut.path for cut in cuts]
 
@@ -104,8 +111,9 @@ def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
     offset = 0.0
     for move in moves:
         ramp = bool(move.offset) and not offset
-        cut = bool(move.offset) and bool(offset)
-        steps.append(_Step(move, _parallel(contour, move) if cut else move.curve, cut, ramp))
+        compensated = bool(move.offset) and bool(offset)
+        curve = _parallel(contour, move) if compensated else move.curve
+        steps.append(_Step(move, curve, compensated, ramp))
         offset = move.offset
     return steps
 
@@ -115,22 +123,22 @@ def _path_end(contour: Contour, steps: list[_Step]) -> complex:
     step = steps[-1]
     if step.ramp:
         contour.refuse(
-            step.move.line, f"{_code(step.move)} needs a block of the contour behind its G1"
+            step.move.line, f"{_code(step.move)} needs a block of the contour after its G1"
         )
     return step.parallel.end
 
 
 def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two moves that follow each other in the plane."""
-    if a is not None and a.ramp and not b.cut:
+    if a is not None and a.ramp and not b.compensated:
         contour.refuse(
             b.move.line,
             f"G40 follows {_code(a.move)} of line {a.move.line} with nothing between them to cut",
         )
-    if a is None or not a.cut:
+    if a is None or not a.compensated:
         point = b.parallel.start
         return _Joint(point, point)
-    if not b.cut:
+    if not b.compensated:
         point = a.parallel.end
         return _Joint(point, point)
     return _corner(contour, a, b, tolerance)
@@ -140,12 +148,12 @@ def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two elements under compensation."""
     turned = a.move.curve.direction(1.0).conjugate() * b.move.curve.direction(0.0)
     sine, cosine = turned.imag, turned.real
-    leave, meet, offset = a.parallel.end, b.parallel.start, b.move.offset
-    if cosine > 0.0 and _is_joined(a, b, abs(meet - leave), abs(sine), tolerance):
-        point = (leave + meet) / 2
+    end_before, start_after, offset = a.parallel.end, b.parallel.start, b.move.offset
+    if cosine > 0.0 and _is_joined(a, b, abs(start_after - end_before), abs(sine), tolerance):
+        point = (end_before + start_after) / 2
         return _Joint(point, point)
     if sine * offset <= PARALLEL_SINE * abs(offset):
-        return _Joint(leave, meet, b.move.start)
+        return _Joint(end_before, start_after, b.move.start)
     crossing = _crossing(a.parallel, b.parallel)
     if crossing is None:
         _refuse_tight(contour, a, b)
@@ -156,21 +164,21 @@ def _crossing(one: Curve, other: Curve) -> complex | None:
     """Return the crossing of two parallels nearest to the corner, None without one."""
     length, best, nearest = one.length, None, 0.0
     for point in crossings(one, other):
-        leave, meet = one.length_to(point, late=True), other.length_to(point)
+        on_one, on_other = one.length_to(point, late=True), other.length_to(point)
         on_both = (
-            -SAME_POINT <= leave <= length + SAME_POINT
-            and -SAME_POINT <= meet <= other.length + SAME_POINT
+            -SAME_POINT <= on_one <= length + SAME_POINT
+            and -SAME_POINT <= on_other <= other.length + SAME_POINT
         )
-        if on_both and (best is None or length - leave + meet < nearest):
-            best, nearest = point, length - leave + meet
+        if on_both and (best is None or length - on_one + on_other < nearest):
+            best, nearest = point, length - on_one + on_other
     return best
 
 
 def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
     """Return whether two parallels need no arc between them: it would be very short."""
     straight = isinstance(a.parallel, Line) and isinstance(b.parallel, Line)
-    moved = gap * sine / 8.0
-    return moved <= JOINED * tolerance and (straight or gap <= ONE_CORNER * tolerance)
+    sagitta = gap * sine / 8.0  # of an arc with the gap as its chord
+    return sagitta <= JOINED * tolerance and (straight or gap <= ONE_CORNER * tolerance)
 
 
 def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
@@ -188,8 +196,8 @@ def _code(move: PlaneMove) -> str:
 def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:
     """Return the arc about an outside corner before ``move``."""
     turn = -1 if move.offset > 0.0 else 1
-    sweep = sweep_between(joint.leave, joint.meet, corner, turn)
-    return move._replace(curve=Arc(joint.leave, corner, sweep), z1=move.z0)
+    sweep = sweep_between(joint.end_before, joint.start_after, corner, turn)
+    return move._replace(curve=Arc(joint.end_before, corner, sweep), z1=move.z0)
 
 
 def _parallel(contour: Contour, move: PlaneMove) -> Curve:
@@ -233,7 +241,7 @@ def _trimmed(
     return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
 
 
-def _uncut(move: PlaneMove, start: complex, end: complex) -> tuple[PathElement, ...]:
+def _uncompensated(move: PlaneMove, start: complex, end: complex) -> tuple[PathElement, ...]:
     """Return a ramp, or a move without compensation, between the joints at its ends.
 
     A ramp that is square to the contour and as long as the tool's radius shrinks to a point.

@@ -3,7 +3,7 @@
 
 A CAM system's last decimal makes a chamfer of a corner, or sends the contour back by a step. The
 tool's centre would turn by any angle about such a move. A move shorter than a small share of the
-tolerance is left out, its neighbours are joined, and its Z is kept.
+tolerance is removed and its neighbours are joined; its Z remains.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def without_short_moves(
     Also returns the greatest shift of the contour by that, at most ``limit``. Program units.
     """
     kept: list[PathElement] = []
-    last, moved = None, 0.0  # the index of the move kept last
+    last, shift = None, 0.0  # ``last``: the index of the last move in ``kept``
     for element in elements:
         if not isinstance(element, PlaneMove):
             kept.append(element)
@@ -33,20 +33,20 @@ def without_short_moves(
         before = None if last is None else kept[last]
         away = 0.0 if before is None else abs(element.end - before.end)
         if before and _is_short(before, element, limit) and away <= limit:
-            moved = max(moved, away)
+            shift = max(shift, away)
             if element.z0 != element.z1:
                 kept.append(Plunge(element.line, element.feed, element.z0, element.z1))
             continue
         if before and abs(element.start - before.end) > SAME_POINT:
-            kept[last], *between, element = _meeting(before, element)
+            kept[last], *between, element = _connected(before, element)
             kept.extend(between)
         last = len(kept)
         kept.append(element)
-    return kept, moved
+    return kept, shift
 
 
-def _meeting(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
-    """Return two moves made to meet, with a line between them where both are arcs."""
+def _connected(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
+    """Return two moves, the first ending where the second begins, by a line between two arcs."""
     if isinstance(move.curve, Line):
         return [before, move._replace(curve=Line(before.end, move.end))]
     if isinstance(before.curve, Line):
@@ -64,20 +64,20 @@ def without_rounding_points(
     by that. Program units.
     """
     kept: list[PathElement] = []
-    moved = offset = 0.0
+    shift = offset = 0.0
     at = 0
     while at < len(elements):
         element = elements[at]
-        beside = offset != 0.0  # a ramp keeps its end: the contour begins there
-        last, away = _line_through(elements, at, limit) if beside else (at, 0.0)
+        # A ramp is left as it is: the contour begins at its end.
+        last, away = _line_through(elements, at, limit) if offset else (at, 0.0)
         offset = element.offset if isinstance(element, PlaneMove) else offset
         end = elements[last]
         if last > at and isinstance(element, PlaneMove) and isinstance(end, PlaneMove):
-            moved = max(moved, away)
+            shift = max(shift, away)
             element = element._replace(curve=Line(element.start, end.end))
         kept.append(element)
         at = last + 1
-    return kept, moved
+    return kept, shift
 
 
 def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> tuple[int, float]:

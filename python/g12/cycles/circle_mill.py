@@ -3,7 +3,7 @@
 
 Source: Dynapath programming manual, section 33 "Circle Mill Event". Two front ends, one plan:
 the codes (G12.2 perimeter, G13.2 pocket) and ``o<circle_mill> call`` with the control's own
-fifteen entries. The comments here use the control's letters; `Spelling` has those of the codes.
+fifteen entries. The comments here use the control's letters; `CODE_LETTERS` has those of the codes.
 
 The motions of `ngc/g12_circle_mill.ngc`:
 
@@ -13,7 +13,7 @@ The motions of `ngc/g12_circle_mill.ngc`:
 3. perimeter: one circle at F. Pocket: feed in -Y by the roughing width, circle at F, and so on
    outward
 4. for each further level: a pocket retracts 0.1 in, not above W, and rapids back to the centre
-   first; a perimeter plunges on the spot
+   first; a perimeter plunges at its present position
 5. L with bottom finish: one more level, at Z
 6. L: half circle of diameter L onto the finished side, circle, half circle off it, at V
 7. rapid to O, rapid in XY to where the event started
@@ -67,7 +67,7 @@ TOOL_SIDES = {  # by rough direction, then C: the tool centre, left, right of th
 
 
 class EntryLetters(NamedTuple):
-    """The letters of the entries that differ between the two front ends."""
+    """The letters of the entries for which the two front ends have different ones."""
 
     first_plane: str
     second_plane: str
@@ -88,7 +88,7 @@ class EventEntries(NamedTuple):
     """
 
     words: Words
-    spelling: EntryLetters
+    letters: EntryLetters
     context: Context
     plane: float | None
     pocket: bool
@@ -289,7 +289,7 @@ def plan_event(entries: EventEntries) -> MillEvent:
 
 def circle_of(entries: EventEntries) -> EventCircle:
     """Return centre, radius, side and directions: X, Y, R, D and C."""
-    words, letter = entries.words, entries.spelling.side
+    words, letter = entries.words, entries.letters.side
     x = words.require("X", "the circle's centre")
     y = words.require("Y", "the circle's centre")
     radius = words.require_positive("R", "the circle's radius")
@@ -310,7 +310,7 @@ def circle_of(entries: EventEntries) -> EventCircle:
         )
     if side == ON_CIRCLE and entries.finish:
         raise entries.refuse(
-            f"{entries.spelling.finish}{number(entries.finish)}: there is no finish pass"
+            f"{entries.letters.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
         )
     context = entries.context
@@ -320,21 +320,21 @@ def circle_of(entries: EventEntries) -> EventCircle:
 
 def planes_of(entries: EventEntries) -> tuple[float, float]:
     """Return the reference planes W, modal, and O, which is W unless the block has it."""
-    words, spelling = entries.words, entries.spelling
-    first, second = words.take(spelling.first_plane), words.take(spelling.second_plane)
+    words, letters = entries.words, entries.letters
+    first, second = words.take(letters.first_plane), words.take(letters.second_plane)
     if first is None:
         first = entries.plane
     if first is None:
         raise entries.refuse(
-            f"{spelling.first_plane} is missing: the first reference plane,"
+            f"{letters.first_plane} is missing: the first reference plane,"
             " which no earlier event has commanded"
         )
     if second is None:
         second = first
     if second < first - entries.context.length(ROUNDING_MM):
         raise entries.refuse(
-            f"{spelling.second_plane}{number(second)} must not be below the first reference"
-            f" plane {spelling.first_plane}{number(first)}"
+            f"{letters.second_plane}{number(second)} must not be below the first reference"
+            f" plane {letters.first_plane}{number(first)}"
         )
     return first, second
 
@@ -360,7 +360,7 @@ def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: f
         return
     if circle.side == ON_CIRCLE:
         raise entries.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
-    finish = f" + {entries.spelling.finish}{number(entries.finish)}" if entries.finish else ""
+    finish = f" + {entries.letters.finish}{number(entries.finish)}" if entries.finish else ""
     raise entries.refuse(
         f"R{number(circle.radius)} must be greater than the tool radius"
         f" {entries.tool_size(tool.radius)} (T{tool.number}){finish}"
@@ -389,19 +389,19 @@ def depths_of(
     context = entries.context
     final = first_plane + depth if context.incremental else depth
     rough = final + entries.finish if entries.bottom else final
-    way = first_plane - rough
-    if way <= context.length(ROUNDING_MM):
+    distance = first_plane - rough
+    if distance <= context.length(ROUNDING_MM):
         finish = (
-            f" by more than {entries.spelling.finish}{number(entries.finish)}"
+            f" by more than {entries.letters.finish}{number(entries.finish)}"
             if entries.bottom
             else ""
         )
         raise entries.refuse(
             f"Z{number(depth)} must be below the first reference plane"
-            f" {entries.spelling.first_plane}{number(first_plane)}{finish}"
+            f" {entries.letters.first_plane}{number(first_plane)}{finish}"
         )
-    peck = peck or way
-    pecks = max(0, steps_between(0.0, way, peck, context.length(ROUNDING_MM)) - 1)
+    peck = peck or distance
+    pecks = max(0, steps_between(0.0, distance, peck, context.length(ROUNDING_MM)) - 1)
     first = first_plane - peck if pecks else rough
     levels = pecks + 1 + entries.bottom
     return Depths(levels, pecks, peck, first, rough, final, context.length(RETRACT_MM))
@@ -415,7 +415,7 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> Si
     smallest = entries.context.length(SMALLEST_RING_MM)
     if 0 < entries.finish < smallest:
         raise entries.refuse(
-            f"{entries.spelling.finish}{number(entries.finish)} must be at least {number(smallest)}"
+            f"{entries.letters.finish}{number(entries.finish)} must be at least {number(smallest)}"
         )
     other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
     return SideFinish(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The plunge of a cycle: straight down, or along a helix about its centre.
 
-The helix is made of half turns with the same fall each. The slope of the last few decreases, so
-that the tool path has no corner where it reaches the level. One full circle at that level follows.
+The helix consists of half turns with the same fall each. The slope of the last few decreases, so
+that the toolpath has no corner where it reaches the level. One full circle at that level follows.
 The helix ends at the angle where it began. Lengths are in program units.
 """
 

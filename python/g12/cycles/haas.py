@@ -7,8 +7,8 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
 2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
-   helix (`ngc/g12_helix.ngc`): a half circle onto it, down along it (`entry`), one full circle, and
-   a half turn onto the first ring, if that is larger; 3 and 4 are done then
+   helix (`ngc/g12_helix.ngc`), in place of 2 to 4: a half circle onto it, down along it (`entry`),
+   one full circle, and a half turn onto the first ring, if that is larger
 3. half circle from the centre to (+b, 0), in the direction of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
@@ -232,8 +232,7 @@ def uncut_material(
             f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
             f" {context.tool_size(2 * cutter.radius)}: material is left between the rings"
         )
-    # the entry cuts up to the tool radius plus the helix; the first ring's inner edge is at I - 2
-    # tool radii
+    # The entry cuts up to the tool radius plus the helix, the first ring from I - 2 tool radii on.
     most = 3 + helix
     if first > most * cutter.radius + rounding:
         remains = "a ring is left about the centre" if helix else "a core is left in the centre"

@@ -25,7 +25,7 @@ from g12.moves.steps import (
     StepMaker,
 )
 
-LEAST_DENSITY = 2.0  # least segments per radian of an arc: fewer do not resemble it
+LEAST_DENSITY = 2.0  # segments per radian of an arc: fewer do not resemble it
 
 
 class CylinderSettings(NamedTuple):
@@ -91,12 +91,12 @@ class _Surface(StepMaker):
         self._run(move.line, "X", [(move.z1, *self.position[1:], move.feed)], stop)
 
     def finish(self, path: Sequence[PathElement]) -> None:
-        """Add what the last segments left over of Z and X."""
+        """Add the remainder of the last segments in Z and X."""
         x, z = self.position.x, self.position.z
         for element in path:
             x = x if isinstance(element, Mark) else element.z1
             z = element.end.imag if isinstance(element, PlaneMove) else z
-        self._make_up(path, x, z, self._settings.least_z)
+        self._add_remainder(path, x, z, self._settings.least_z)
 
 
 def split_on_cylinder(move: PlaneMove, radius: float, deviation: float) -> Split:

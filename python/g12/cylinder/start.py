@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From what a section finds and the machine's settings to the values it is read and planned by."""
+"""From the state at a section's start and the machine's settings to the values of its plan."""
 
 from collections.abc import Collection
 from math import radians
@@ -10,8 +10,8 @@ from g12.errors import number
 from g12.lengths import LARGEST
 from g12.machine_ini import Axis
 from g12.moves.setup import (
-    CLOSING_MM,
     LEAST_MM,
+    RADIUS_TOLERANCE_MM,
     SectionSetup,
     check_entry,
     rapid_feed_of,
@@ -39,7 +39,7 @@ def check_cylinder_start(start: SectionStart, axes: Collection[str]) -> None:
 def cylinder_setup(
     start: SectionStart, settings: Settings, axes: dict[str, Axis]
 ) -> SectionSetup[CylinderSettings]:
-    """Return what a section goes by; ``settings`` and ``axes`` are in machine units."""
+    """Return the setup of a section; ``settings`` and ``axes`` are in machine units."""
     radius = start.words[RADIUS] * (0.5 if settings.cylinder_word == "diameter" else 1.0)
     tolerance = tolerance_of(start, settings)
     return SectionSetup(
@@ -50,7 +50,7 @@ def cylinder_setup(
             c_scale=radians(radius),
             third_with_others=settings.cylinder_x == "allow",
             rapid_feed=rapid_feed_of(start, settings),
-            closing=CLOSING_MM * start.millimetre,
+            radius_tolerance=RADIUS_TOLERANCE_MM * start.millimetre,
         ),
         CylinderSettings(
             radius=radius,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a section on a cylinder: Z a length, C an angle, X at right angles to the surface.
 
-The unrolled surface is seen from outside: C to the right and Z upwards, so G2 is clockwise there
+The unrolled surface is viewed from outside: C to the right and Z upwards, so G2 is clockwise there
 and G41 has the tool on the left, whatever plane is active. An arc's centre is J (or I) along C and
 K along Z, both lengths on the surface from the arc's start.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The call frame of a remap handler that goes on reading the program itself.
+"""The call frame of a remap handler that reads the following lines of the program itself.
 
 To the interpreter such a handler is a sub: the caller's local parameters and loop labels are
 hidden from the lines it reads, the line number starts at 0, and both are lost when it returns.
@@ -19,8 +19,8 @@ NO_O_WORD = 0  # o_type
 NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
 
 
-def kept(interp: Interp, text: str) -> str:
-    """Return a text that is never freed: the interpreter keeps no copies of names."""
+def interned(interp: Interp, text: str) -> str:
+    """Return a text that is never freed: the interpreter makes no copies of names."""
     texts = getattr(interp, "g12_texts", None)
     if texts is None:
         texts = interp.g12_texts = {}
@@ -29,64 +29,64 @@ def kept(interp: Interp, text: str) -> str:
 
 def locals_at(interp: Interp, level: int) -> dict[str, float]:
     """Return the local parameters of a call level; level 0 has the global ones too."""
-    found, interp.call_level = interp.call_level, level
+    present, interp.call_level = interp.call_level, level
     params = interp.params
     values = {name: params[name] for name in params.locals() if name[0] != "_"}
-    interp.call_level = found
+    interp.call_level = present
     return values
 
 
 def set_locals_at(interp: Interp, level: int, values: dict[str, float]) -> None:
     """Set local parameters of a call level."""
-    found, interp.call_level = interp.call_level, level
+    present, interp.call_level = interp.call_level, level
     params = interp.params
     for name, value in values.items():
         params[name] = value
-    interp.call_level = found
+    interp.call_level = present
 
 
 class CallFrame:
-    """The frame of the handler at work, and of its caller, which is in the file ``home``."""
+    """The frame of the running handler, and of its caller, which is in the file ``home``."""
 
     def __init__(self, interp: Interp, home: str) -> None:
         self.interp, self.home = interp, home
         self.level, self.remap_level = interp.call_level, interp.remap_level
         block = interp.blocks[self.remap_level]
         self._remap, self._phase = block.executing_remap, block.phase
-        self._interrupted = False  # a sub that MDI called, by a wait
+        self._interrupted = False  # by a wait: a sub that MDI called
         caller = interp.sub_context[self.level - 1]
-        self.caller = kept(interp, caller.subname or "")
-        caller.filename = kept(interp, home)  # or it is that of an earlier call
+        self.caller = interned(interp, caller.subname or "")
+        caller.filename = interned(interp, home)  # it may still be that of an earlier call
 
     @property
     def is_current(self) -> bool:
-        """Return whether the line taken last is of the handler's own level, not of a sub's."""
+        """Return whether the last line belongs to the handler's own call level, not to a sub."""
         return self.interp.call_level == self.level
 
     def enter(self) -> None:
-        """Show the caller's local parameters and labels to the lines that follow."""
+        """Copy the caller's local parameters and labels to the handler's call level."""
         self.interp.sub_context[self.level].subname = self.caller
-        self._found = locals_at(self.interp, self.level - 1)
-        set_locals_at(self.interp, self.level, self._found)
+        self._entered_with = locals_at(self.interp, self.level - 1)
+        set_locals_at(self.interp, self.level, self._entered_with)
 
     def leave(self, line: int) -> None:
-        """Give local parameters back to the caller, and the number of the line read last."""
-        changed = locals_at(self.interp, self.level).items() - self._found.items()
+        """Copy changed local parameters and the number of the last line back to the caller."""
+        changed = locals_at(self.interp, self.level).items() - self._entered_with.items()
         set_locals_at(self.interp, self.level - 1, dict(changed))
         self._renumber(line)
         self.interp.sub_context[self.level - 1].sequence_number = line
         self.interp.sequence_number = line
         self.interp.mdi_interrupt = self._interrupted
 
-    def give_up(self, line: int, *, called: bool, goes_on: int | None) -> None:
+    def unwind(self, line: int, *, called: bool, continue_at: int | None) -> None:
         """Set the line that LinuxCNC reports, and the byte at which the program continues.
 
-        `Interp::unwind_call` (rs274ngc_pre.cc) takes both from the frames. What counts is the main
-        program's line. In a file that the section calls (``called``), or for a section in another
-        file, it is the calling line.
+        `Interp::unwind_call` (rs274ngc_pre.cc) takes both from the frames. The line is that of the
+        main program: for a file that the section calls (``called``), or a section in another file,
+        it is the calling line.
         """
         interp, frames = self.interp, self.interp.sub_context
-        position = frames[self.level].position if goes_on is None else goes_on
+        position = frames[self.level].position if continue_at is None else continue_at
         frames[self.level - 1].position = position
         if called:
             line = frames[self.level].sequence_number
@@ -101,14 +101,14 @@ class CallFrame:
     def execute_and_wait(self, text: str) -> Iterator[int]:
         """Execute a block, and yield until the machine has done what it waits for.
 
-        The block may stand in a sub of the section. No line may be read between it and the yield:
+        The block may be in a sub of the section. No line may be read between it and the yield:
         the interpreter would take the input at once (`read_inputs`).
 
-        What goes on after the wait is block 0: `Interp::_read` (rs274ngc_pre.cc) reads no new line,
-        and `Interp::execute_call` (interp_o_word.cc) resumes the handler, only if it is the call of
-        a remap, at the level where the handler was called. Else milltask crashes. After the wait
-        the mark has to be removed, or the next line would not be read either. (Without it:
-        `test_waiting_for_an_input` in tests/sim/test_polar.py.)
+        LinuxCNC continues after the wait with block 0. Only if that is the call of a remap, at the
+        level where the handler was called, `Interp::_read` (rs274ngc_pre.cc) reads no new line and
+        `Interp::execute_call` (interp_o_word.cc) resumes the handler. Else milltask crashes. After
+        the wait the block's mark has to be removed, or the next line would not be read either.
+        (Without it: `test_waiting_for_an_input` in tests/sim/test_polar.py.)
 
         In a sub that MDI has called, `Interp::_execute` marks the wait with ``mdi_interrupt``, to
         read on in the sub after it. It would do so after each block executed here, so the mark is

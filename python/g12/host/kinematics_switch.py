@@ -4,10 +4,9 @@
 The machine has to stop for it, and the interpreter to wait. polar_kinematics.hal connects the
 request and the answer.
 
-The acceleration of X and Y on the face is that of the section. LinuxCNC takes it from HAL pins each
-time before it goes on with the interpreter (`check_ini_hal_items` in emctaskmain.cc), and canon
-asks for it at each move. polar_xzc gets the highest feed override and enforces it by adaptive feed,
-M52 P1.
+The acceleration of X and Y on the face is that of the section. LinuxCNC reads it from HAL pins each
+time before it resumes the interpreter (`check_ini_hal_items` in emctaskmain.cc), and canon reads it
+at each move. polar_xzc gets the highest feed override and enforces it by adaptive feed, M52 P1.
 """
 
 from __future__ import annotations
@@ -148,11 +147,11 @@ def has_switched(interp: Interp) -> bool:
 
 
 def not_switched() -> str:
-    """Return the rule for a switch that was not answered in time."""
+    """Return the rule for a switch that the module did not confirm in time."""
     return (
         "the machine did not change its kinematics within "
         f"{number(MACHINE.settings.polar_switch_time)} s ([G12] POLAR_SWITCH_TIME): "
-        "is polar_kinematics.hal loaded, and do all axes stand?"
+        "is polar_kinematics.hal loaded, and are all axes at rest?"
     )
 
 

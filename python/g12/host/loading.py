@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Loads the two halves of the package separately: a broken one does not affect the other."""
+"""Loads the modules of handlers separately: a broken one does not affect the others."""
 
 from __future__ import annotations
 
@@ -15,21 +15,17 @@ def loaded_handlers(module: str, names: Iterable[str]) -> dict[str, Callable]:
     """Return the handlers of a module by name.
 
     If it does not load, the operator gets the reason when LinuxCNC starts, and each handler refuses
-    with it.
-    (An exception here would stop LinuxCNC with an empty message on the screen.)
+    with it. (An exception here would stop LinuxCNC with an empty message on the screen.)
     """
     try:
         loaded = importlib.import_module(module)
-        getattr(loaded, "check_at_start", nothing_to_check)()
+        if hasattr(loaded, "check_at_start"):
+            loaded.check_at_start()
         return {name: getattr(loaded, name) for name in names}
     except Exception as error:
         text = _why(error)
-        messages.say_at_start(text.removeprefix("g12: "))
+        messages.report_at_start(text.removeprefix("g12: "))
         return {name: _refusing(name, text) for name in names}
-
-
-def nothing_to_check() -> None:
-    """Stand in for ``check_at_start`` in a module that has none."""
 
 
 def _why(error: Exception) -> str:

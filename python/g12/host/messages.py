@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Messages to the operator: refusals of a block, faults, notes, errors at the start.
 
-Facts about the interpreter that the code relies on stand beside the line that does.
+A comment at a line names the fact about the interpreter that the line relies on.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from g12.host.program_lines import line_of_block, line_of_call
 NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
 
 
-@functools.cache  # both halves may report the same
-def say_at_start(text: str) -> None:
+@functools.cache  # several modules may report the same
+def report_at_start(text: str) -> None:
     """Report to the operator, when LinuxCNC starts, an error of the configuration."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
@@ -31,8 +31,8 @@ def say_at_start(text: str) -> None:
 def refuse_block(interp: Interp, error: Exception) -> int:
     """Report to the operator why the remapped block is not executed; return the error status.
 
-    A raised exception or a returned string would be shown as "pycall(...) failed". After a failed
-    execute, which is a SystemError, LinuxCNC's own text is set already.
+    LinuxCNC would show a raised exception or a returned string as "pycall(...) failed". After a
+    failed execute, which is a SystemError, LinuxCNC has set its own text already.
     """
     if isinstance(error, BlockRefusal):
         error = error.at(line_of_refusal(interp, error))

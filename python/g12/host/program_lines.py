@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The program after the remapped block: its lines, read here and parsed by the interpreter.
 
-Lines go to the interpreter's parser as strings, since it cannot read some of them as they are.
-O-words go there with their offset in the file, so that loops return to it. After a jump the
-interpreter continues in its file. It is moved past the lines read here before it has to read on
-itself: after a return from a sub, or after the section.
+Lines are passed to the interpreter's parser as strings, since it cannot read some of them as they
+are. O-words are passed with their offset in the file, so that loops return to it. After a jump the
+interpreter continues in its file. It is moved past the lines read here before it has to read its
+file itself: after a return from a sub, or after the section.
 """
 
 from __future__ import annotations
@@ -20,11 +20,8 @@ from g12.section.block_rules import NO_CODE
 
 INTERP_OK = 0
 NO_REPEATS = 0  # L of an M98
-JUMPING = (
-    "call",
-    "endsub",
-    "return",
-)  # O-words that always change the interpreter's position in its file
+# O-words that always change the interpreter's position in its file
+JUMPING = ("call", "endsub", "return")
 SHORT_LINE = 200  # characters: every LinuxCNC reads longer lines than that
 SKIPPED_OVER = "g12_skipped_over"  # ngc/g12_skipped_over.ngc
 
@@ -47,7 +44,7 @@ def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
     with open(filename, "rb") as file:
         source = file.read().removesuffix(b"\n")
     starts = list(accumulate((len(line) + 1 for line in source.split(b"\n")), initial=0))
-    text = source.decode("utf-8", "replace").replace("\ufffd", "?")  # as long as it was
+    text = source.decode("utf-8", "replace").replace("\ufffd", "?")  # of the same length
     return ProgramFile(filename, text.split("\n"), starts, version)
 
 
@@ -182,9 +179,9 @@ class ProgramLines:
         return status
 
     def catch_up(self) -> None:
-        """Make the interpreter read on after the line taken.
+        """Move the interpreter to the line after the one taken.
 
-        Only the return from a sub changes its position in a file: call an empty one, and change its
+        Only the return from a sub changes its position in a file: call an empty sub, and change its
         return position. `Interp::execute_call` (interp_o_word.cc) notes the position in the
         caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
         ``sub`` line is read (`Interp::control_back_to`), which here comes from a string. (Without
@@ -217,8 +214,8 @@ class ProgramLines:
 
 
 def without_line(active: Iterable[int]) -> list[int]:
-    """Return active codes without what they begin with: a line's number, which may look like one.
+    """Return active codes without their first entry: a line number, which may look like a code.
 
-    G90.1 stands there as 901, and M52 as 52.
+    G90.1 is 901 there, and M52 is 52.
     """
     return list(active)[1:]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The handlers for a spindle that becomes C (configs/include/spindle_c.hal).
 
-HAL has the state: an input of motion shows whether the spindle is C. Both changes end with a wait,
-so the interpreter is never ahead of that state.
+The state is in HAL: an input of motion shows whether the spindle is C. Both changes end with a
+wait, so the interpreter is never ahead of that state.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def spindle_c_is_on(self, **words):
     if self.task and not is_c():
         seconds = number(MACHINE.spindle_c_timeout)
         rule = (
-            f"the spindle did not become C within {seconds} s: it has to stand, to find "
+            f"the spindle did not become C within {seconds} s: it has to stop, to find "
             "its index and to reach the angle of C (spindle_c.md)"
         )
         raise BlockRefusal(messages.code_of_block(self), rule)

@@ -6,7 +6,7 @@
 3. ``feed``: their F words.
 4. ``soft_limits``: whether they stay within the travel of the axes.
 
-LinuxCNC's planner sets the terms. With a rotary axis in motion it looks ahead by one move only,
-so short segments cost speed. F applies to the linear axes. The P of G64 does not limit the
+LinuxCNC's planner is the reason for each. With a rotary axis in motion it looks ahead by one move
+only, so short segments cost speed. F applies to the linear axes. The P of G64 does not limit the
 blending.
 """

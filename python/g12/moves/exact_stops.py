@@ -4,9 +4,9 @@
 LinuxCNC blends two straight moves by starting the second while the first slows down, each with
 half the acceleration a. Where the path turns by the angle d at the speed v that takes t = 2 v / a,
 and the tool passes the corner at the distance |v2 - v1| t / 8 = sin(d / 2) v**2 / (2 a). The second
-move gathers speed as fast as its own axes can, so the distance is greater where these are quicker
+move accelerates as fast as its own axes can, so the distance is greater where these are quicker
 than those of the first, up to 2.2 times. With a C axis in motion the P of G64 limits it only where
-X turns back or stands, as LinuxCNC takes the angle of X, Y and Z alone: so it is not relied on.
+X reverses or is at rest, as LinuxCNC takes the angle of X, Y and Z alone: so it is not relied on.
 
                * corner
            . ' | ' .            The velocity turns from v1 to v2 in the time t at the even rate
@@ -24,7 +24,7 @@ from g12.compensation.contour import Mark, PathElement, PlaneMove, Plunge
 
 Direction = tuple[float, float, float]  # unit vector: along x and c of the plane, and z
 MotionElement = PlaneMove | Plunge
-TANGENT = 1e-4  # half the angle between two directions that are one
+TANGENT = 1e-4  # half the angle below which two directions are the same
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
 
@@ -62,15 +62,16 @@ def _corner(
 ) -> float:
     """Return the distance at which blending would pass the corner between two elements.
 
-    ``stopping``: at the end of ``b``, which counts with all the acceleration, as it has into a G61.
-    Where a G4 P0 makes the stop it has half: the rounding is that of other corners, less than this.
+    ``stopping``: the tool stops at the end of ``b``. Then ``b`` counts with all of its
+    acceleration, which it has into a G61. Into a G4 P0, as most stops are, it has half of it, so
+    the rounding there is less than this estimate.
     """
     point = _corner_point(a, b)
-    leave, meet = _direction(a, 1.0), _direction(b, 0.0)
-    from_a, from_b = acceleration(leave, point), acceleration(meet, point)
+    from_direction, to_direction = _direction(a, 1.0), _direction(b, 0.0)
+    from_a, from_b = acceleration(from_direction, point), acceleration(to_direction, point)
     if not from_a:
         return inf
-    half_sine = 0.5 * sqrt(sum((p - q) ** 2 for p, q in zip(leave, meet)))
+    half_sine = 0.5 * sqrt(sum((p - q) ** 2 for p, q in zip(from_direction, to_direction)))
     if half_sine < TANGENT:
         return 0.0
     speed = max(a.feed, b.feed) / 60.0

@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove
 
-Segment = tuple[
-    float, float, float, float
-]  # of a move: where X, C and Z (or Z, C and X) end, and F
-LEAST_TURN = 1e-9  # degrees: no turn at all
+# The end of a segment, X, C and Z (or Z, C and X), and its F.
+Segment = tuple[float, float, float, float]
+LEAST_TURN = 1e-9  # degrees: less is no turn of C
 
 
 class Split(NamedTuple):
@@ -33,8 +32,8 @@ class Split(NamedTuple):
     lengths: list[float]
 
 
-def keeps_slide(split: Split, least: float) -> bool:
-    """Return whether a segment of an element turns C and moves the slide by less than the least."""
+def has_short_slide_move(split: Split, least: float) -> bool:
+    """Return whether a segment turns C and moves the slide, but by less than ``least``."""
     slides, angles = split.slides, split.angles
     return any(
         abs(x1 - x0) < least and x1 != x0 and abs(a1 - a0) > LEAST_TURN

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What sections of every kind derive from the interpreter's state and the machine's settings."""
+"""The setup that sections of every kind derive from the interpreter's state and the settings."""
 
 from collections.abc import Collection, Iterable
 from typing import Generic, NamedTuple, TypeVar
@@ -11,8 +11,8 @@ from g12.moves.soft_limits import AxisScale, SoftLimits
 from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
-LEAST_MM = 0.001  # with a smaller move of a slide beside C, LinuxCNC 2.9.0~pre1 gets the feed wrong
-CLOSING_MM = 0.0127  # radius mismatch of an arc that LinuxCNC itself forgives
+LEAST_MM = 0.001  # LinuxCNC 2.9.0~pre1 runs a smaller move of a slide together with C too fast
+RADIUS_TOLERANCE_MM = 0.0127  # mismatch of an arc's radii that LinuxCNC itself accepts
 
 
 Planning = TypeVar("Planning")
@@ -49,7 +49,7 @@ def check_entry(
             set(needed) <= set(axes),
             f"needs a machine with an {', '.join(others)} and a {last} axis",
         ),
-        (start.alone, "stands alone in its block"),
+        (start.alone, "must be alone in its block"),
         (not start.missing_code, f"needs the spindle as C: {start.missing_code} first"),
         (not start.compensated, "needs G40: compensation is switched on inside"),
         (not start.inverse_time, "needs G94 or G95, not G93"),

@@ -27,7 +27,7 @@ from typing import NamedTuple
 BULGE = 1.5  # deviations: of a segment between two ends moved off the path
 WHOLE_BULGE = 0.75  # deviations: of a segment with both ends exactly on the path
 LOSS = 0.18  # segments: lost where an element ends exactly on the path
-WORTH_A_CUT = 0.5  # segments: an apsis nearer to an end of the element is left alone
+WORTH_DIVIDING = 0.5  # segments: at an apsis nearer to an end the element is not divided
 MOST_SEGMENTS_OF_MOVE = 100_000  # of an element: more would cost LinuxCNC too much time and memory
 
 Density = Callable[[float], tuple[float, float]]
@@ -50,14 +50,14 @@ class Stretch(NamedTuple):
 
 
 class _Portion(NamedTuple):
-    """The portion of an element between two cuts, in steps of one segment each.
+    """The portion of an element between two of its divisions, in steps of one segment each.
 
     ``positions`` begin at the end nearer to the pole and run past the other one. ``shares`` are the
     shares of the deviation between two of them. ``number`` segments suffice. ``losses`` are those
-    at the start and the end of the portion, ``cut`` is its start.
+    at the ends of the portion, ``start`` is its first position.
     """
 
-    cut: float
+    start: float
     positions: list[float]
     shares: list[float]
     number: float
@@ -80,7 +80,7 @@ def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]
         segments = ceil(portion.number + lost - 1e-9)
         length = portion.number / (segments - lost)
         if portion.losses[0] == 0.0:
-            ends.append((portion.cut, length**2 * density(portion.cut)[1]))
+            ends.append((portion.start, length**2 * density(portion.start)[1]))
         ends.extend(_inner_ends(portion, segments, length))
     positions, shares = zip(*ends, (stretch.end, 0.0))
     return list(positions), list(shares)
@@ -91,23 +91,23 @@ def _portions(stretch: Stretch, density: Density) -> list[_Portion]:
     apsides = [
         apsis
         for apsis in stretch.apsides
-        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_A_CUT
+        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_DIVIDING
     ]
-    cuts = [start, *apsides, end]
+    divisions = [start, *apsides, end]
     losses = [LOSS, *(0.0 for _ in apsides), LOSS]
     return [
-        _portion(cuts[k], cuts[k + 1], (losses[k], losses[k + 1]), stretch, density)
-        for k in range(len(cuts) - 1)
+        _portion(divisions[k], divisions[k + 1], (losses[k], losses[k + 1]), stretch, density)
+        for k in range(len(divisions) - 1)
     ]
 
 
 def _portion(
     a: float, b: float, losses: tuple[float, float], stretch: Stretch, density: Density
 ) -> _Portion:
-    """Return the portion between two cuts, stepped from its end nearer to the pole.
+    """Return the portion between two divisions, stepped from its end nearer to the pole.
 
-    The step before one predicts its middle. Near the pole the steps are shortest: from there they
-    grow, and none is predicted too long.
+    The middle of a step is predicted by the step before it. Near the pole the steps are shortest:
+    from there they grow, so that none is predicted too long.
     """
     backwards = stretch.nearness(b) < stretch.nearness(a)
     position, far = (b, a) if backwards else (a, b)

@@ -5,13 +5,14 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Start
-from g12.moves.feed import Segment, Split, keeps_slide
+from g12.moves.feed import Segment, Split, has_short_slide_move
 from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, TooManySegments
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
-STOP_SHARE = 0.7  # of the tolerance, before a stop: into a G61 a segment cuts a corner deeper
+STOP_SHARE = 0.7  # of the tolerance, before a stop: into a G61 a segment cuts its corner deeper,
+# and a stop may be one. Most are a G4 P0, which would allow CHORD_SHARE.
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
-LEFT_OVER = 1e-3  # of the least step of a slide: less than that is rounding
+REMAINDER_SHARE = 1e-3  # of the least step of a slide: a smaller remainder is rounding
 
 
 class MachinePosition(NamedTuple):
@@ -28,8 +29,8 @@ class BlockMoves(NamedTuple):
     ``axes`` are the words to write, as "XC", "XZC" or "Z". Each segment is ``(x, c, z, feed)``: X
     radius value, C in degrees, continuous over the section (it may leave 0..360), and F as G94
     takes it: for the X and Z portion of the move, or in degrees per minute where neither changes. F
-    may be small: write it with six significant digits. A segment that leaves a slide where it is
-    repeats the same number. With ``stop`` the last segment must end in an exact stop, because
+    may be small: write it with six significant digits. A segment that does not move a slide repeats
+    the same number. With ``stop`` the last segment must end in an exact stop, because
     LinuxCNC would round the corner by more than the tolerance.
     """
 
@@ -42,7 +43,7 @@ class BlockMoves(NamedTuple):
 class SectionPlan(NamedTuple):
     """The moves of a section.
 
-    ``steps`` holds each :class:`BlockMoves` (on the face moves and switches of its own,
+    ``steps`` holds each :class:`BlockMoves` (on the face the moves and switches of
     `g12.polar.face`), and each mark's action, in order. ``position`` is the machine's after them,
     ``angle`` that of C in the contour's plane, in radians. ``notes`` are messages for the operator.
     """
@@ -71,10 +72,10 @@ class StepMaker:
             self.steps.append(BlockMoves(line, axes, segments, stop))
             self.position = MachinePosition(*segments[-1][:3])
 
-    def _make_up(self, path: Sequence[PathElement], x: float, z: float, least: float) -> None:
-        """Move the slides to x and z, by what the last segments of a path have left over."""
+    def _add_remainder(self, path: Sequence[PathElement], x: float, z: float, least: float) -> None:
+        """Move the slides to x and z, by the remainder of the last segments of a path."""
         rest = {"X": x - self.position.x, "Z": z - self.position.z}
-        axes = "".join(axis for axis, off in rest.items() if abs(off) > LEFT_OVER * least)
+        axes = "".join(axis for axis, off in rest.items() if abs(off) > REMAINDER_SHARE * least)
         if axes:
             last = [element for element in path if not isinstance(element, Mark)][-1]
             self._run(last.line, axes, [(x, self.position.c, z, last.feed)], True)
@@ -87,14 +88,14 @@ class StepMaker:
         stop: bool,
         least: float,
     ) -> Split:
-        """Return what ``split`` makes of a move; refuse one that would be cut too small.
+        """Return the segments that ``split`` makes of a move; refuse too many of them.
 
         ``split`` is called with a deviation, and again where a segment would move its slide by less
-        than ``least``: that segment leaves the slide where it is, and deviates by that much more.
+        than ``least``: that segment does not move the slide, and deviates by that much more.
         """
         try:
             ends = split(chord_deviation(tolerance, stop))
-            if keeps_slide(ends, least):
+            if has_short_slide_move(ends, least):
                 ends = split(chord_deviation(tolerance, stop, least))
             return ends
         except TooManySegments:
@@ -105,10 +106,10 @@ class StepMaker:
             )
 
 
-def chord_deviation(tolerance: float, stop: bool, kept: float = 0.0) -> float:
+def chord_deviation(tolerance: float, stop: bool, slide_error: float = 0.0) -> float:
     """Return the deviation that the segments of a move may have; ``stop``: at its end.
 
-    ``kept`` is the further deviation of a segment that leaves a slide where it is.
+    ``slide_error`` is the further deviation of a segment that does not move a slide.
     """
-    remaining = max(tolerance - kept, 0.5 * tolerance)
+    remaining = max(tolerance - slide_error, 0.5 * tolerance)
     return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * remaining)

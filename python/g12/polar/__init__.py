@@ -10,7 +10,7 @@ are in program units throughout.
 2. ``pole``: moves that touch the spindle's centre end there. ``beside``: the path of a tool beside
    the X line stays clear of it.
 3. `g12.moves.exact_stops`: where the tool must stop.
-4. ``face``: what LinuxCNC plans itself as lines and arcs, with the kinematics of the face.
+4. ``face``: moves that LinuxCNC plans itself as lines and arcs, with the kinematics of the face.
 5. ``segments``: of the rest the fewest straight moves in X and C that stay within the tolerance;
    `g12.moves.feed`: their F words.
 """

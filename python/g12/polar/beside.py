@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A tool beside the X line: its slide does not pass the spindle's centre line.
 
-The tool is at ``beside`` (POLAR_TOOL_OFFSET, Fanuc's parameter 5464) from the line on which the
+The tool is ``beside`` (POLAR_TOOL_OFFSET, Fanuc's parameter 5464) away from the line on which the
 slide moves it, above zero on the side to which C words grow. For the tool to be at the distance r
-from the pole the slide has to stand at s, and C to be turned by less than the angle of the point:
+from the pole the slide has to be at s, and C at less than the angle of the point:
 
                        . * tool           s = sqrt(r**2 - beside**2)
                 r . '    |
@@ -62,7 +62,7 @@ def check_reach(
             contour.refuse(
                 move.line,
                 f"the tool's centre would come to {number(nearest)} from the spindle's centre: it "
-                f"stands {number(abs(beside))} beside X's line (POLAR_TOOL_OFFSET) and comes no "
+                f"is {number(abs(beside))} beside X's line (POLAR_TOOL_OFFSET) and comes no "
                 f"nearer than {number(least)}",
             )
 
@@ -74,7 +74,7 @@ def split_beside(curve: Curve, law: Law, beside: float) -> Split:
     def radius(at: float) -> float:
         return abs(curve.point(at / length))
 
-    stretch = Stretch(0.0, length, _apsides(curve, length), radius)
+    stretch = Stretch(0.0, length, _apsides(curve), radius)
     lengths, shares = spaced(stretch, _density(curve, law, beside))
     slides = [
         slide_at(_moved(curve, at / length, law.deviation * used), beside)
@@ -98,8 +98,8 @@ def _angles(slides: list[tuple[float, complex]]) -> list[float]:
     return angles
 
 
-def _apsides(curve: Curve, length: float) -> list[float]:
-    """Return the lengths along a move, also outside it, of the apsides seen from the pole."""
+def _apsides(curve: Curve) -> list[float]:
+    """Return the lengths along a move, also outside it, of its apsides about the pole."""
     if isinstance(curve, Line):
         return [curve.length_to(POLE)]
     turn = copysign(1.0, curve.sweep)
@@ -116,16 +116,16 @@ def _density(curve: Curve, law: Law, beside: float) -> Density:
 
     def density(at: float) -> tuple[float, float]:
         share = min(max(at / length, 0.0), 1.0)
-        slide, way = slide_at(curve.point(share), beside)
-        along, around = along_and_around(curve.direction(share), way)
+        slide, slide_direction = slide_at(curve.point(share), beside)
+        along, around = along_and_around(curve.direction(share), slide_direction)
         bend, change = _curvature(slide, along, around, beside, own)
-        wanted = sqrt(bulging * abs(bend - own))
+        by_bulge = sqrt(bulging * abs(bend - own))
         growth, turning = abs(along + beside / slide * around) / slide, abs(around) / slide
-        segments = max(wanted, growth, turning, (flat * abs(change)) ** (1.0 / 3.0), 1.0 / length)
+        segments = max(by_bulge, growth, turning, (flat * abs(change)) ** (1.0 / 3.0), 1.0 / length)
         smooth = even * growth * around * around
         if smooth > segments:
             segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))
-        return segments, copysign((wanted / segments) ** 2, bend - own)
+        return segments, copysign((by_bulge / segments) ** 2, bend - own)
 
     return density
 

@@ -55,7 +55,9 @@ def in_face(move: PlaneMove | Plunge, angle: float) -> PlaneMove | Plunge:
     return move._replace(curve=Arc(curve.start * back, curve.centre * back, curve.sweep))
 
 
-def passed(move: PlaneMove, angle: float, beside: float = 0.0) -> list[tuple[float, float, float]]:
+def positions_along(
+    move: PlaneMove, angle: float, beside: float = 0.0
+) -> list[tuple[float, float, float]]:
     """Return positions on a move: of the slide, of C in radians, of Z.
 
     The farthest one and the end are among them. ``angle`` is C's at the start; the angles continue

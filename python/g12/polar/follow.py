@@ -10,8 +10,8 @@ the acceleration a along the radius and b around it, C and the slide need
     the slide's          a + w**2 / r
 
 An arc needs v**2 / R towards its centre. The planner uses the rest of its acceleration along the
-path, wherever the operator stops the feed or lets it go on: so it is assumed everywhere. Of each
-axis' acceleration a point needs a share p v**2, and a share q for a unit of acceleration along the
+path, wherever the operator holds the feed or releases it: so it is assumed everywhere. Of each
+axis's acceleration a point needs a share p v**2, and a share q for a unit of acceleration along the
 path:
 
     p v**2 + q sqrt(A**2 - (v**2 / R)**2) <= 1
@@ -77,8 +77,8 @@ def demands_of(move: PlaneMove, limits: FaceLimits) -> Sequence[Demand]:
 def followed(move: PlaneMove, demand: Demand, limits: FaceLimits, share: float = 1.0) -> float:
     """Return the highest feed per minute that C and the slide can follow at a point.
 
-    They follow any lower one, too, with a share of the planner's acceleration in use. The feed is
-    inf where the planner itself goes no faster.
+    They can follow any lower feed too. ``share`` is the share of the planner's acceleration that is
+    in use. The feed is inf where the planner itself limits it.
     """
     bend, most = 0.0, share * limits.acceleration
     if isinstance(move.curve, Arc):
@@ -105,7 +105,7 @@ def can_follow(move: PlaneMove, limits: FaceLimits, share: float = 1.0) -> bool:
 def can_follow_at(
     move: PlaneMove, demands: Sequence[Demand], limits: FaceLimits, share: float
 ) -> bool:
-    """Return the same, by the move's demands."""
+    """Return what `can_follow` does, for the demands of the move."""
     return all(
         FOLLOW_SLACK * followed(move, demand, limits, share) >= move.feed for demand in demands
     )
@@ -114,8 +114,8 @@ def can_follow_at(
 def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
     curve, beside = move.curve, limits.beside
     point = curve.point(at)
-    slide, way = slide_at(point, beside)
-    along, around = along_and_around(curve.direction(at), way)
+    slide, slide_direction = slide_at(point, beside)
+    along, around = along_and_around(curve.direction(at), slide_direction)
     slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_POINT)), move.feed, limits)
     if abs(point) <= abs(beside) + SAME_POINT:
         return Demand(at, 0.0, (), slowness)

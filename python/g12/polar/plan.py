@@ -19,14 +19,14 @@ from g12.moves.steps import (
     StepMaker,
 )
 from g12.polar.beside import along_and_around, check_reach, slide_at, split_beside
-from g12.polar.face import FaceMove, FaceSwitch, in_face, passed
+from g12.polar.face import FaceMove, FaceSwitch, in_face, positions_along
 from g12.polar.follow import FaceLimits
 from g12.polar.pole import POLE, through_pole
 from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
 
 POLE_SHARE = 0.5  # of the tolerance: a path nearer to the pole than this runs through it
-NO_ROTATION = 1e-9  # radians
+NO_ROTATION = 1e-9  # radians: C does not turn
 RIPPLE = 0.01  # relative: how much the speed may differ from F inside a segment
 
 
@@ -99,8 +99,8 @@ def quickness(
     in_plane = complex(*direction[:2])
     if not in_plane:
         return x_acceleration
-    slide, way = slide_at(point, beside)
-    along, around = along_and_around(in_plane, way)
+    slide, slide_direction = slide_at(point, beside)
+    along, around = along_and_around(in_plane, slide_direction)
     moved = max(abs(along + beside / slide * around), abs(direction[2]))
     return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
 
@@ -146,7 +146,7 @@ class _SlideAndSpindle(StepMaker):
         if isinstance(move, Plunge):
             points = [(*self.position[:2], move.z1)]
         else:
-            there = passed(move, self.angle, self._settings.beside)
+            there = positions_along(move, self.angle, self._settings.beside)
             self.angle = there[-1][1]
             points = [(slide, self._entry + degrees(angle), z) for slide, angle, z in there]
         self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
@@ -157,7 +157,7 @@ class _SlideAndSpindle(StepMaker):
         self._run(move.line, "Z", [(self.position.x, self.position.c, move.z1, move.feed)], stop)
 
     def finish(self, path: Sequence[PathElement]) -> None:
-        """Switch back from the face; add what the last segments left over of X and Z."""
+        """Switch back from the face; add the remainder of the last segments in X and Z."""
         self.switch(path[-1].line if path else 0, None)
         slide, z = self.position.x, self.position.z
         for element in path:
@@ -165,10 +165,10 @@ class _SlideAndSpindle(StepMaker):
         moves = [element for element in path if isinstance(element, PlaneMove)]
         if moves:
             slide, _ = slide_at(moves[-1].end, self._settings.beside)
-        self._make_up(path, slide, z, self._settings.least_x)
+        self._add_remainder(path, slide, z, self._settings.least_x)
 
     def _turn(self, move: PlaneMove, angle: float) -> None:
-        """Rotate C at the pole, the shorter way; by half a turn in the direction that unwinds C."""
+        """Rotate C at the pole by the shorter turn; half a turn in the direction that unwinds C."""
         turn = remainder(angle - self.angle, 2 * pi)
         if abs(abs(turn) - pi) < NO_ROTATION:
             turn = copysign(pi, -self.angle)

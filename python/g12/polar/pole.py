@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The pole: the spindle's centre, where the C axis has no angle of its own.
 
-A path that comes closer to the pole than ``pole_radius`` is led through it exactly: in along a
-radius, a rotation of C at the pole, out along another. A line is such a radius nearly; of an arc
-the part beside the pole is replaced that a radius leaves by a fifth of ``pole_radius`` at most.
+A path that comes closer to the pole than ``pole_radius`` is rerouted through it exactly: in along a
+radius, a rotation of C at the pole, out along another. A line that close is nearly such a radius.
+Of an arc the portion next to the pole is replaced, as far as a radius deviates from it by a fifth
+of ``pole_radius`` at most.
 """
 
 from __future__ import annotations
@@ -15,18 +16,18 @@ from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.geometry.curve import Arc, Line, sweep_between
 
 POLE = 0j
-FLAT_SHARE = 0.2  # of the pole_radius: how far the radii that replace an arc may be from it
+FLAT_SHARE = 0.2  # of the pole_radius: greatest deviation from an arc of the radii that replace it
 
 
 def through_pole(
     contour: Contour, path: Sequence[PathElement], pole_radius: float, refused: bool
 ) -> list[PathElement]:
-    """Return the path with each move that comes within ``pole_radius`` of the pole led into it."""
-    led: list[PathElement] = []
+    """Return the path with each move within ``pole_radius`` of the pole rerouted through it."""
+    rerouted: list[PathElement] = []
     for move in path:
-        portions = _led(move, pole_radius) if isinstance(move, PlaneMove) else None
+        portions = _rerouted(move, pole_radius) if isinstance(move, PlaneMove) else None
         if portions is None:
-            led.append(move)
+            rerouted.append(move)
         elif refused:
             contour.refuse(
                 move.line,
@@ -34,19 +35,19 @@ def through_pole(
                 "(POLAR_POLE = refuse)",
             )
         else:
-            led.extend(portions)
-    return led
+            rerouted.extend(portions)
+    return rerouted
 
 
-def _led(move: PlaneMove, pole_radius: float) -> list[PathElement] | None:
-    """Return what replaces a move within ``pole_radius`` of the pole, None for others."""
+def _rerouted(move: PlaneMove, pole_radius: float) -> list[PathElement] | None:
+    """Return the moves that replace one within ``pole_radius`` of the pole, None for others."""
     curve = move.curve
     ends = [float(k) for k, end in enumerate((curve.start, curve.end)) if abs(end) <= pole_radius]
     if isinstance(curve, Line):
         return _replaced(move, ends[:1] or _line_passes(curve, pole_radius), 1.0, pole_radius)
-    half = (
-        2.0 * asin(min(0.5, sqrt(2.0 * FLAT_SHARE * pole_radius / curve.radius))) / abs(curve.sweep)
-    )
+    # A chord of the angle 2 asin(s) from the pole has the sagitta radius s**2 / 2.
+    sine = min(0.5, sqrt(2.0 * FLAT_SHARE * pole_radius / curve.radius))
+    half = 2.0 * asin(sine) / abs(curve.sweep)
     inside = [
         share
         for share in _arc_passes(curve, pole_radius)
@@ -73,7 +74,7 @@ def _arc_passes(arc: Arc, pole_radius: float) -> list[float]:
 def _replaced(
     move: PlaneMove, passes: list[float], half: float, pole_radius: float
 ) -> list[PathElement] | None:
-    """Return the move with what is up to ``half`` beside each pass replaced by radii."""
+    """Return the move with its portions up to ``half`` from each pass replaced by radii."""
     if not passes:
         return None
     moves, done = list[PathElement](), 0.0
@@ -92,7 +93,7 @@ def _replaced(
 def _radius(
     move: PlaneMove, share: float, at_pole: float, pole_radius: float, outwards: bool = False
 ) -> list[PathElement]:
-    """Return the radius between a point of a move and the pole: nothing where it is there."""
+    """Return the radius between a point of a move and the pole: none for a point at the pole."""
     point, level, pole_level = move.curve.point(share), move.level(share), move.level(at_pole)
     if abs(point) > pole_radius:
         inwards = move._replace(curve=Line(point, POLE), z0=level, z1=pole_level)

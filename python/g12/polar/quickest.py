@@ -22,21 +22,11 @@ from typing import NamedTuple
 from g12.compensation.contour import PathElement, PlaneMove
 from g12.polar.follow import Demand, FaceLimits, can_follow, can_follow_at, demands_of, followed
 
-ACCELERATION_SHARES = (
-    *(0.96**k for k in range(14)),
-    0.5,
-    0.4,
-    0.28,
-    0.18,
-    0.1,
-    0.05,
-)  # of the INI's
+# of the INI's acceleration
+ACCELERATION_SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)
 PLANNED = 0.7  # of the acceleration: the planner's along the path, measured
-FEED_RATIO, LEAST_FEED = (
-    0.85,
-    0.08,
-)  # tried feeds are F times powers of FEED_STEP, down to LEAST_FEED
-CAREFUL = 0.98  # of the limits, where only some points are checked
+FEED_RATIO, LEAST_FEED = 0.85, 0.08  # tried feeds: F times powers of the ratio, down to the least
+CAREFUL = 0.98  # of the limits: a margin, as only some points are checked
 GAIN = 0.02  # seconds: a lower acceleration has to save this at least
 LEAST_GAIN = 0.9  # of the time in segments: the face has to be quicker by this at least
 SWITCHING = 0.05  # seconds at rest for the switch to the face and the one back
@@ -167,7 +157,7 @@ def _worth(feed: float, ends: Sequence[Demand]) -> float:
 def _worth_it(spans: list[_Span]) -> list[_Span]:
     """Return spans, those on the face only where they last long enough to switch to it.
 
-    Elements that are no moves in the plane go with the one before them.
+    An element that is no move in the plane belongs to the element before it.
     """
     worth: list[_Span] = []
     for on_face, run in _stretches(spans):
@@ -179,11 +169,11 @@ def _worth_it(spans: list[_Span]) -> list[_Span]:
 
 def _stretches(spans: list[_Span]) -> Iterator[tuple[bool, list[_Span]]]:
     """Yield the spans from one switch to the next, and whether they are on the face."""
-    on_face, led = False, []
+    on_face, labelled = False, []
     for span in spans:
         on_face = bool(span.feed) if span.element.demands else on_face
-        led.append((on_face, span))
-    for there, run in groupby(led, itemgetter(0)):
+        labelled.append((on_face, span))
+    for there, run in groupby(labelled, itemgetter(0)):
         yield there, [span for _, span in run]
 
 

@@ -3,11 +3,12 @@
 
 A straight move of X and C draws a spiral r = r0 + k (angle - angle0) in the plane. Where the path
 makes the angle p with the radius, the spiral has the curvature sin p (1 + cos(p)**2) / r. A segment
-of length L bulges from a path of another curvature by |difference| L**2 / 8: so many segments per
-unit of length are sqrt(|difference| / (8 bulge)).
+of length L bulges from a path of another curvature by |difference| L**2 / 8. So a unit of length
+needs sqrt(|difference| / (8 bulge)) segments.
 
-The speed along the part is not constant inside a segment: it changes by the part sin(p)**2 dr / r.
-And where r grows by more than e times, none of this is true any more: segments end before.
+The speed along the part is not constant inside a segment: it changes by the fraction
+sin(p)**2 dr / r. Where r grows by more than e times these approximations fail: segments are
+shorter.
 
                        r  . ' * point                             * point
                      . '     |                         r  . '   /
@@ -67,7 +68,7 @@ def _split_line(line: Line, law: Law) -> Split:
         return Split([r0, r1], [angle, angle], [0.0, length])
     turn = 1.0 if distance > 0.0 else -1.0
     distance = abs(distance)
-    deviation = min(law.deviation, 0.5 * distance)  # never off the path by so much as to the pole
+    deviation = min(law.deviation, 0.5 * distance)  # less than the distance to the pole
     u0 = started.real / distance
     u1 = u0 + length / distance
     foot = angle_of(line.start) - turn * atan(u0)
@@ -102,7 +103,7 @@ def _is_one_segment(
 
 
 def _line_density(distance: float, deviation: float, law: Law) -> Density:
-    """Return the segments per unit of u, and the part of the deviation they use."""
+    """Return the segments per unit of u, and the share of the deviation that they use."""
     bulging = sqrt(distance / (8.0 * BULGE * deviation))
     even = 0.5 / law.ripple
     x_hold, c_hold = law.x_hold * distance, law.c_hold * distance * distance
@@ -110,13 +111,13 @@ def _line_density(distance: float, deviation: float, law: Law) -> Density:
     def density(u: float) -> tuple[float, float]:
         v = u * u
         m = 1.0 + v
-        wanted = bulging * sqrt(m + v) / m
+        by_bulge = bulging * sqrt(m + v) / m
         growth = abs(u) / m
-        segments = max(wanted, growth)
+        segments = max(by_bulge, growth)
         smooth = even * growth / m
         if smooth > segments:
             segments = max(segments, min(smooth, x_hold, c_hold * sqrt(m)))
-        return segments, (wanted / segments) ** 2
+        return segments, (by_bulge / segments) ** 2
 
     return density
 
@@ -144,9 +145,9 @@ def _split_arc(arc: Arc, law: Law) -> Split:
 
 
 def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density:
-    """Return the segments per radian, and the part of the deviation they use, above zero outside.
+    """Return the segments per radian, and the share of the deviation, above zero outside the arc.
 
-    Where the curvatures are the same they have the length of a segment that begins there.
+    Where the curvatures are equal, the length is that of a segment which begins there.
     """
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
     flat = (min(e, 1.0) * radius / (18.0 * BULGE * deviation)) ** (1.0 / 3.0)
@@ -159,13 +160,13 @@ def _arc_density(radius: float, e: float, deviation: float, law: Law) -> Density
         m = nearest + 4.0 * e * half * half
         w = 0.5 * (m + inside)
         p = m * m - w * (2.0 * m - w * w)
-        wanted = bulging * sqrt(abs(p)) / m
+        by_bulge = bulging * sqrt(abs(p)) / m
         growth = e * abs(sin(a)) / m
-        segments = max(wanted, growth, flat)
+        segments = max(by_bulge, growth, flat)
         smooth = even * growth * w * w / m
         if smooth > segments:
             segments = max(segments, min(smooth, x_hold, c_hold * sqrt(m)))
-        return segments, copysign((wanted / segments) ** 2, p)
+        return segments, copysign((by_bulge / segments) ** 2, p)
 
     return density
 

@@ -9,8 +9,8 @@ from math import hypot, inf, radians, sqrt
 from g12.errors import number
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.setup import (
-    CLOSING_MM,
     LEAST_MM,
+    RADIUS_TOLERANCE_MM,
     SectionSetup,
     check_entry,
     rapid_feed_of,
@@ -62,11 +62,11 @@ def _word_rules(start: SectionStart, settings: Settings) -> WordRules:
     return WordRules(
         words=POLAR_WORDS,
         diameter=diameter,
-        x_scale=(0.5 if diameter else 1.0) / (0.5 if g7 else 1.0),  # G7 has halved it already
+        x_scale=(0.5 if diameter else 1.0) / (0.5 if g7 else 1.0),  # the parser halves X in G7
         c_scale=1.0,
         third_with_others=settings.polar_z == "allow",
         rapid_feed=rapid_feed_of(start, settings),
-        closing=CLOSING_MM * start.millimetre,
+        radius_tolerance=RADIUS_TOLERANCE_MM * start.millimetre,
         beside=settings.polar_tool_offset * start.machine_unit,
     )
 

@@ -18,7 +18,7 @@ CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
 LEFT_OUT = -9999.0  # an entry of a call that is left out
 WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
-COUNTLESS = 1e9  # steps; a quotient beyond it could not even be rounded
+COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceiling
 MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
 
 
@@ -44,7 +44,7 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
 def check_start(words: Words, context: Context) -> None:
     """Refuse to begin while the tool is still offset from the programmed point after a G40."""
     if context.offset_pending:
-        raise words.refuse("the tool still stands offset: after G40 move in X or Y first")
+        raise words.refuse("the tool is still offset: after G40 move in X or Y first")
 
 
 def coordinate(word: float | None, present: float, context: Context) -> float:

@@ -149,7 +149,7 @@ def check_call(text: str, off_code: str, location: BlockLocation) -> None:
     called = MADE_OUTSIDE.search(text)
     if called:
         raise location.refuse(
-            f"o<{called[1]}> is made outside of a section: "
+            f"o<{called[1]}> must be called outside of a section: "
             f"{off_code} in the line before it, {location.code} again after it"
         )
 

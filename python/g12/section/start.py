@@ -38,7 +38,7 @@ class SectionStart(NamedTuple):
     diameter: bool  # G7
     yz_plane: bool  # G19
     compensated: bool
-    offset_pending: bool  # after G40 the tool is still beside the programmed point
+    offset_pending: bool  # after G40 the tool is still offset from the programmed point
     inverse_time: bool  # G93
     surface_speed: bool  # G96
     rotated: bool  # the work offset, by G10 L2 R
@@ -50,8 +50,9 @@ class WordRules(NamedTuple):
 
     ``diameter``: X words are diameters. ``x_scale`` converts a parsed X word into a radius value,
     ``c_scale`` a C word into a length. ``third_with_others``: the axis at right angles to the plane
-    may move together with those in it. ``rapid_feed`` is None where G0 is refused, ``closing`` the
-    radius mismatch that an arc may have, ``beside`` the tool's distance from the X line towards C+.
+    may move together with those in it. ``rapid_feed`` is None where G0 is refused,
+    ``radius_tolerance`` is how far an arc's radii at start and end may differ, ``beside`` the
+    tool's distance from the X line towards C+.
     """
 
     words: SectionWords
@@ -60,5 +61,5 @@ class WordRules(NamedTuple):
     c_scale: float
     third_with_others: bool
     rapid_feed: float | None
-    closing: float
+    radius_tolerance: float
     beside: float = 0.0

@@ -9,13 +9,13 @@ class SectionWords(NamedTuple):
     """The words of a kind of section.
 
     ``plane`` are the axes of its contour: first, second and, at right angles to the plane, the
-    third. ``c_is_length``: C is a length in a plane that is laid through the axis where it stands;
+    third. ``c_is_length``: C is a length in a plane through the axis, at the present angle of C;
     else it is the axis's angle in degrees. ``letters`` are groups that move one axis; a block has
     one of each. ``foreign`` maps letters that the parser does not know to those it is given
     instead; ``relative`` are the letters for increments of an axis. ``plain`` matches a line that
     has nothing but numbers after a move's letters.
 
-    ``planes`` are the G codes of planes that may stand inside. ``plane_name`` and ``centre_name``
+    ``planes`` are the G codes of planes that a section accepts. ``plane_name`` and ``centre_name``
     are for messages; ``refused`` are reasons by letter, ``own_block`` is that of a third axis which
     may not move together with the others, ``origin`` that of another work offset.
     """

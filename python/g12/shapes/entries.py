@@ -126,9 +126,9 @@ def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> 
 
 
 def heights_of(entries: ShapeEntries, context: Context) -> Heights:
-    """Return the heights of a tool that stands above the face."""
+    """Return the heights of a tool, which must be above the face."""
     if not context.z > 0:
-        rule = "a shape begins where the tool stands, which must be above the face at Z0"
+        rule = "a shape begins at the tool's position, which must be above the face at Z0"
         raise entries.refuse(f"Z{number(context.z)}: {rule}")
     return Heights(context.z, min(context.z, context.length(CLEAR_MM)))
 

@@ -151,7 +151,7 @@ def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachin
         raise entries.refuse("needs a tool on the X line, not [G12] POLAR_TOOL_OFFSET beside it")
     if context.x <= radius:
         raise entries.refuse(
-            f"X{number(context.x)} (radius): the tool must stand outside the surface, beyond"
+            f"X{number(context.x)} (radius): the tool must be outside the surface, beyond"
             f" {number(radius)}"
         )
     position = HolePosition(radius, z, angle, 1, 0, context.x - radius)
@@ -209,7 +209,7 @@ def on_face(
 ) -> HolePosition:
     """Return the position of a hole on the face; with a tool beside the X line X is smaller."""
     if not context.z > 0:
-        raise entries.refuse(f"Z{number(context.z)}: the tool must stand above the face at Z0")
+        raise entries.refuse(f"Z{number(context.z)}: the tool must be above the face at Z0")
     beside = machine.beside
     if abs(beside) > radius:
         raise entries.refuse(

@@ -58,7 +58,7 @@ POLYGON_ENTRIES = (
     "plunge_feed",
     "angle",
 )
-TWO_FLATS = 2  # corner distance of two flats, which do not meet
+TWO_FLATS = 2  # sides: two flats, which have no corner
 MOST_SIDES = 100
 FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one
 UNLIMITED = 1e9  # half the length of an unlimited flat

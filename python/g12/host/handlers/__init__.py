@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LinuxCNC calls for each code: words and state in, a plan made, its motion handed over."""
+"""The functions that LinuxCNC calls for each code: they read, plan, and hand over the motion."""

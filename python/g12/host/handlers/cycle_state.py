@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The interpreter's state before a cycle, the hand-over to NGC, and the state kept between cycles.
 
-Facts about the interpreter that the code relies on stand beside the line that does.
+A comment at a line names the fact about the interpreter that the line relies on.
 """
 
 from __future__ import annotations
@@ -97,14 +97,14 @@ def words_of_block(interp: Interp) -> Words:
     words = Words(code_of_block(interp), values)
     other = code_reading_words(block, words)
     if other:
-        raise words.refuse(f"{other} cannot stand in the same block")
+        raise words.refuse(f"{other} cannot be in the same block")
     return words
 
 
 def code_reading_words(block: ParsedBlock, words: Words) -> str | None:
     """Return a code of the block that would read a word of the cycle too, or change its tool.
 
-    (The interpreter knows the tool that M6 brings only after the block.)
+    (The interpreter knows the tool of M6 only after the block.)
     """
     g_modes = block.g_modes
     if g_modes[GGroup.NON_MODAL] != NO_CODE:
@@ -120,7 +120,7 @@ def code_reading_words(block: ParsedBlock, words: Words) -> str | None:
 
 
 def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
-    """Return the entries of ``o<sub> call`` if the code stands alone in that sub, else None.
+    """Return the entries of ``o<sub> call`` if the code is that sub's only block, else None.
 
     The frame of the remap is on top of the sub's; #1 to #30 are still the sub's in a prolog.
     """
@@ -157,8 +157,8 @@ def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
 def last_radius(interp: Interp) -> float | None:
     """Return the cutter radius of the last D commanded, by a cycle or by G41/G42.
 
-    The interpreter keeps its compensation radius after G40 and converts it with G20/G21, and
-    the cycles store their D there too: one register, as on the control.
+    The interpreter's compensation radius remains after G40 and is converted by G20/G21. The cycles
+    store their D there too: one register, as on the control.
     """
     state, radius = state_of(interp), interp.cutter_comp_radius
     state.radius_commanded = state.radius_commanded or radius > 0
@@ -255,7 +255,7 @@ def per_revolution(interp: Interp) -> bool:
 
 
 def pocket_entry() -> PocketEntry:
-    """Return the entry of a Haas pocket by [G12]."""
+    """Return how the tool enters a Haas pocket, by [G12]."""
     settings = MACHINE.settings
     return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
 
@@ -289,5 +289,5 @@ def restore_modes(interp: Interp) -> None:
     """Restore the modes before the block: motion, G90/G91, G90.1/G91.1, G7/G8."""
     motion, distance, centre, diameter = state_of(interp).modes
     interp.motion_mode = motion
-    # a block after the assignment makes LinuxCNC show the restored active codes
+    # after the assignment a block is needed for LinuxCNC to show the restored codes as active
     interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")

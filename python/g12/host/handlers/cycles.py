@@ -103,7 +103,7 @@ def g13_mitsubishi(self, **words):
 
 
 def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
-    """Return the event of a code block, or of the call if the code stands in o<circle_mill>."""
+    """Return the event of a code block, or of the call if the code is in o<circle_mill>."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     plane = cycle_state.first_plane(interp)
     entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))

@@ -36,7 +36,7 @@ def cylinder_mode(self, **words) -> Iterator[int]:
         if block.c_flag and block.c_number == 0.0:
             if has_move_words(block, but=RADIUS):
                 raise BlockRefusal(
-                    messages.code_of_block(self), f"{RADIUS}0 stands alone in its block"
+                    messages.code_of_block(self), f"{RADIUS}0 must be alone in its block"
                 )
         else:
             if is_typed(self):

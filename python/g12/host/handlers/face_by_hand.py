@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 typed in MDI, with kinematics: X and Y move on the face until G13.1.
 
-Nothing is planned ahead here. LinuxCNC executes the lines in between itself. `polar_xzc` slows them
-where C could not follow (M52 P1), and blocks programs. When the face ends in another way than by
-G13.1, it blocks all motion until G13.1 or the next G12.1: lines that an operator types then still
-use X and Y of the face.
+Nothing is planned ahead here: LinuxCNC executes the lines itself. `polar_xzc` slows them where C
+could not follow (M52 P1), and blocks programs. When the face ends in another way than by G13.1, it
+blocks all motion until G13.1 or the next G12.1: the operator's next line may still use X and Y of
+the face.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def switch_off(interp: Interp) -> Iterator[int]:
     if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
-    give_back_modes(interp)
+    restore_modes_found(interp)
     if by_hand or face_in_force():
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
@@ -86,7 +86,7 @@ def switch_off(interp: Interp) -> Iterator[int]:
 
 
 def abort(interp: Interp) -> None:
-    """Switch back after an abort, when no wait is possible: request it and go on.
+    """Request the switch back after an abort, when no wait is possible.
 
     The position that LinuxCNC took at the abort is the face's. `Interp::read_inputs`
     (rs274ngc_pre.cc) takes the machine's new position when it reads the next line, as after a tool
@@ -103,15 +103,15 @@ def abort(interp: Interp) -> None:
         messages.message(
             f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed"
         )
-    give_back_modes(interp)
+    restore_modes_found(interp)
     interp.toolchange_flag = True
 
 
 def _lock(interp: Interp) -> None:
     """Make LinuxCNC refuse on the face the codes that it refuses under compensation.
 
-    G41 and G42 are among it, and planes, offsets, tools and M52. With a radius of 0, and no move
-    made with it, everything else is as without (`Interp::find_ends`, `Interp::convert_straight`).
+    These are G41 and G42, planes, offsets, tools and M52. With a radius of 0, and before any move
+    with it, compensation has no other effect (`Interp::find_ends`, `Interp::convert_straight`).
     """
     interp.cutter_comp_side, interp.cutter_comp_radius = ONLY_MOVES, 0.0
     interp.cutter_comp_firstmove = True
@@ -126,7 +126,7 @@ def _unlock(interp: Interp) -> ByHand | None:
     return by_hand
 
 
-def give_back_modes(interp: Interp) -> None:
+def restore_modes_found(interp: Interp) -> None:
     """Restore the modes before `switch_on` or a section."""
     found, interp.g12_found = getattr(interp, "g12_found", None), None
     if found:

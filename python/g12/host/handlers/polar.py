@@ -39,7 +39,7 @@ def check_at_start() -> None:
     try:
         refuse_owned_codes(MACHINE.remaps, owns_g12_1(Path("/proc/self/maps").read_text()))
     except Refusal as refusal:
-        messages.say_at_start(refusal.message)
+        messages.report_at_start(refusal.message)
 
 
 def polar_on(self, **words) -> Iterator[int]:
@@ -57,10 +57,10 @@ def polar_on(self, **words) -> Iterator[int]:
 
 
 def polar_off(self, **words) -> Iterator[int]:
-    """End what G12.1 in MDI began: the handler of G13.1 outside a section.
+    """End the face of a G12.1 in MDI: the handler of G13.1 outside a section.
 
     Otherwise it is a safety line and does nothing. With a P word it is LinuxCNC's
-    ON_ABORT_COMMAND, which gets the reason after it.
+    ON_ABORT_COMMAND, to which LinuxCNC appends the reason.
     """
     try:
         messages.forget_return(self)
@@ -68,7 +68,7 @@ def polar_off(self, **words) -> Iterator[int]:
         if has_move_words(block) or (
             block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)
         ):
-            raise BlockRefusal(messages.code_of_block(self), "stands alone in its block")
+            raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
         if block.p_flag:
             after_abort(self)
         elif MACHINE.switches_kinematics and self.task:
@@ -79,9 +79,9 @@ def polar_off(self, **words) -> Iterator[int]:
 
 
 def after_abort(interp: Interp) -> None:
-    """Open the clamp of C, and come back from the face, after an abort.
+    """Open the clamp of C, and switch back from the face, after an abort.
 
-    In this order: coming back ends with what acts on the next line that is read.
+    In this order: the switch ends with a flag for the next line that LinuxCNC reads.
     """
     if MACHINE.settings.c_clamp:
         modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
@@ -90,14 +90,14 @@ def after_abort(interp: Interp) -> None:
 
 
 def run_by_hand(interp: Interp) -> Iterator[int]:
-    """Switch on in MDI, where nothing after it can be read: it could be an old program's."""
+    """Switch on in MDI, where no following lines can be read: they could be an old program's."""
     start = start_of_section(interp, 0)
     if not MACHINE.switches_kinematics:
         raise BlockRefusal(start.location.code, NOT_IN_MDI)
     if face_in_force():
         raise BlockRefusal(start.location.code, "is already on")
     check_section_start(start, MACHINE.coordinates)
-    setup = _setup(start)  # refuses what the machine cannot
+    setup = _setup(start)  # may refuse
     yield from face_by_hand.switch_on(interp, start, setup.words.beside)
 
 

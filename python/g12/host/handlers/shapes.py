@@ -90,9 +90,8 @@ def polar_shape(self, **words):
     check_nearest(entries, plan.extent(), machine)
     stay_in_travel(entries, plan.extent(), setup)
     numbers = plan.locals()
-    if (
-        self.c_axis_wrapped
-    ):  # on a wrapped axis a sign is the direction of the turn, and 360 is refused
+    # on a wrapped axis a sign is the direction of the turn, and 360 is refused
+    if self.c_axis_wrapped:
         numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
     x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
@@ -106,8 +105,8 @@ def prepare_holes(
 ) -> int:
     """Check holes and set the locals of their motion, which runs in G61 as drilling cycles do.
 
-    With blended rapids C would turn before the tool is out of its hole, or before the move ahead of
-    the call has ended.
+    With blended rapids C would turn before the tool is out of its hole, or before the move that
+    precedes the call has ended.
     """
     entries = ShapeEntries(name, HOLE_CALLS[name].entries, locals_at(interp, level))
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
@@ -174,7 +173,7 @@ def shape_at_work(interp: Interp) -> str:
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise BlockRefusal(code, where)
     if not is_alone(interp.blocks[interp.remap_level]):
-        raise BlockRefusal(code, "stands alone in its block")
+        raise BlockRefusal(code, "must be alone in its block")
     return name
 
 

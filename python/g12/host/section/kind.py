@@ -37,11 +37,11 @@ NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
 
 
 class SectionKind(NamedTuple, Generic[Planning]):
-    """The differences of one kind of section.
+    """The properties in which one kind of section differs from another.
 
-    ``letters`` are those of the block that switches on. ``check`` refuses to begin a section,
-    ``setup`` returns its settings, ``codes`` its codes, by the one that began it. ``plan`` turns
-    the contour into moves.
+    ``letters`` are those that the block that switches on may have. ``check`` refuses to begin a
+    section, ``setup`` returns its settings, ``codes`` its codes for the one that began it. ``plan``
+    turns the contour into moves.
     """
 
     letters: str
@@ -66,7 +66,7 @@ def has_move_words(block: ParsedBlock, but: str = "") -> bool:
     return any(getattr(block, f"{word}_flag") for word in "abcdhijkruvwxyz" if word != but.lower())
 
 
-def rest_of_program(interp: Interp) -> ProgramLines:
+def following_lines(interp: Interp) -> ProgramLines:
     """Return the lines after the block; refuse a program whose file is missing."""
     try:
         program = ProgramLines(interp, getattr(interp, "g12_source", None))
@@ -79,7 +79,7 @@ def rest_of_program(interp: Interp) -> ProgramLines:
 
 def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
-    program, running = rest_of_program(interp), running_file(interp)
+    program, running = following_lines(interp), running_file(interp)
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
         yield from _section(interp, kind, frame, program).run()
@@ -90,7 +90,7 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     except Exception as error:
         line = line_named(error)
         called = program.source is not program.home and not line
-        frame.give_up(line or program.line, called=called, goes_on=program.next_at_home)
+        frame.unwind(line or program.line, called=called, continue_at=program.next_at_home)
         if isinstance(error, Refusal) and line and program.home.filename != running:
             file = os.path.basename(program.home.filename)
             raise with_line(error, LineOfFile(line, file)) from None
@@ -98,7 +98,7 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
 
 
 def report_turns(interp: Interp, turned: float) -> None:
-    """Show the operator, once a program, that C has to unwind more than a turn (degrees)."""
+    """Show the operator, once a program, how far C has to unwind; ``turned`` is in degrees."""
     if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
         code, turns = messages.code_of_block(interp), abs(turned) / DEGREES_PER_TURN
         text = (

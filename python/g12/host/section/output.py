@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Execution of a planned section: its moves and actions, in order.
 
-While segments go out the interpreter is in G90 G94 with C unwrapped, and blends them in G64.
-`SectionOutput.release` restores the modes that the program commanded. That happens wherever the
-program can read them, or the machine waits. The move before the section would be blended into its
-first segment: a G4 P0 stops it. (Also under G61: the path control in force at a move decides how it
-ends.)
+The interpreter executes segments in G90 G94 with C unwrapped, blended in G64.
+`SectionOutput.release` restores the modes that the program commanded, wherever the program can read
+them, or the machine waits. The move before the section would be blended into its first segment: a
+G4 P0 stops it. (Also under G61: a move ends by the path control in force at that move.)
 
 A G4 P0 also stops a segment that another one is blended into. While two segments that turn C are
 blended, LinuxCNC (2.9.0~pre1, 2.9.4, 2.10) brakes the first with half of the acceleration and
 starts the second with half of it, but with all of it if that ends in G61. Together they would reach
 1.5 times the feed and the acceleration.
 
-On the face (`configs/kinematics`) lines and arcs go out as they are, in X and Y. For the switch
-there and back the machine has to stop, and the interpreter to wait for it.
+On the face (`configs/kinematics`) lines and arcs are executed as they are, in X and Y. For the
+switch there and back the machine has to stop, and the interpreter to wait for it.
 """
 
 from __future__ import annotations
@@ -117,7 +116,7 @@ class PathControl:
         self._in_force, self._blending = self._commanded, self._tolerances
 
     def renew(self) -> None:
-        """Command the next one even if unchanged: Run from line skips the block that set it."""
+        """Set the next one even if it is unchanged: Run from line skips the block that set it."""
         self._in_force = ""
 
     def inside(self, turning: bool) -> None:
@@ -139,7 +138,7 @@ class PathControl:
             return self._commanded
         return EXACT_PATH if stop else ""
 
-    def give_back(self) -> None:
+    def restore(self) -> None:
         """Restore the commanded path control."""
         if self._blending != self._tolerances:
             self.set(self._tolerances)
@@ -191,8 +190,8 @@ class SectionOutput:
 
         ``exact_lines`` are those of blocks with G9. Yields blocks to execute and to wait for.
         """
-        self._stop_in_front(steps)
-        self._take_over()
+        self._stop_before_section(steps)
+        self._set_own_modes()
         for step, following in zip(steps, [*steps[1:], None]):
             if isinstance(step, Action):
                 self._act(step)
@@ -208,19 +207,19 @@ class SectionOutput:
         """Restore the modes that the program commanded."""
         interp = self.interp
         interp.c_axis_wrapped = self._wrapped
-        self.path.give_back()
+        self.path.restore()
         self._per_revolution = modes.per_revolution
         interp.execute("G95" * modes.per_revolution + f"F{decimal(modes.feed)}")
         interp.execute("G91" if modes.incremental else "G90")
         interp.motion_mode = modes.motion
 
-    def _stop_in_front(self, steps: Sequence[PlanStep]) -> None:
+    def _stop_before_section(self, steps: Sequence[PlanStep]) -> None:
         if steps and not self._begun:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
         self._begun = True
 
-    def _take_over(self) -> None:
+    def _set_own_modes(self) -> None:
         interp = self.interp
         interp.c_axis_wrapped = False
         interp.distance_mode = self.absolute
@@ -268,7 +267,7 @@ class SectionOutput:
         self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
 
     def _switch(self, step: FaceSwitch) -> Iterator[str]:
-        """Switch to the face or back; the answer of the program's last M66 is lost."""
+        """Switch to the face or back; the result of the program's last M66 is restored."""
         interp = self.interp
         interp.sequence_number = step.line
         found = interp.params[INPUT_FOUND]
@@ -281,7 +280,7 @@ class SectionOutput:
         else:
             interp.execute(interp.g12_found)
             yield from to_axes(interp)
-            interp.g12_found = None  # only now: an abort during the wait drops what was executed
+            interp.g12_found = None  # only now: an abort during the wait drops the block before it
         if not has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""
@@ -307,9 +306,8 @@ class SectionOutput:
         self.path.on_face()
         ends = isinstance(following, FaceSwitch)
         if ends or (isinstance(following, FaceMove) and flows_into(move, following.move)):
-            self.path.set(
-                EXACT_PATH
-            )  # a tangent arc needs no blending, for which LinuxCNC halves the acceleration
+            # a tangent arc needs no blending, for which LinuxCNC halves the acceleration
+            self.path.set(EXACT_PATH)
         ending = self.path.ending(False, exact_stop, block_ends)
         if ending:
             self.path.set(ending)
@@ -338,7 +336,7 @@ class SectionOutput:
         self.release(action.modes)
         self._execute(action)
         self.path.find()
-        self._take_over()
+        self._set_own_modes()
 
     def _execute(self, action: Action) -> None:
         """Execute the action's block as one of the program, which a remapped code requires."""

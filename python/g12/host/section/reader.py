@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The blocks of a section: motion is collected as a contour, modes act, actions are kept.
+"""The blocks of a section: motion is collected as a contour, modes act, actions are queued.
 
-A block without motion is kept in order between the moves; assignments act at once. While a section
-is read, the interpreter's position and modes are set to the programmed ones, so that a program
-reads them from #5420, #<_x> or #<_feed>.
+A block without motion is queued in order between the moves; assignments act at once. While a
+section is read, the interpreter's position and modes are set to the programmed ones, so that a
+program reads them from #5420, #<_x> or #<_feed>.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class SectionReader:
             code=start.location.code,
             names=PlaneNames(first, second, third, known.centre_name),
             diameter=rules.diameter if known.plane[0] == "X" else None,
-            closing=rules.closing,
+            radius_tolerance=rules.radius_tolerance,
             start=Start(start.x, radians(angle), start.z),
             beside=rules.beside,
         )
@@ -192,7 +192,7 @@ class SectionReader:
             motion = modes.motion if motion == NO_CODE else motion
             self.set_modes(modes._replace(feed=f if has_f else modes.feed, motion=motion))
         if has_x or has_c or has_z or has_i or has_j or has_r:
-            self._keep_apart()
+            self._separate()
             words = MoveWords(
                 x if has_x else None,
                 c if has_c else None,
@@ -238,7 +238,7 @@ class SectionReader:
         return self._speeds[self._spindle]
 
     def action(self, line: TextLine, block: SectionBlock) -> None:
-        """Keep the block's actions besides motion."""
+        """Queue the block's actions besides motion."""
         self._mark(self.action_text(line, block))
 
     def action_text(self, line: TextLine, block: SectionBlock) -> str:
@@ -252,11 +252,11 @@ class SectionReader:
         return text
 
     def move(self, line: TextLine, block: SectionBlock) -> None:
-        """Add the block's motion and compensation, and keep the stop after it."""
+        """Add the block's motion and compensation, and queue the stop after it."""
         if line.exact_stop:
             self.exact_lines.add(self.program.line)
         if block.moves:
-            self._keep_apart()
+            self._separate()
         if block.g[GGroup.COMPENSATION] != NO_CODE:
             self._compensate(block.g[GGroup.COMPENSATION] // 10)
         if block.moves:
@@ -265,32 +265,31 @@ class SectionReader:
         self._mark(stop_text(block))
 
     def comment(self, line: TextLine) -> None:
-        """Keep a comment, message or report, with its parameters as they are now."""
+        """Queue a comment, message or report, with the present values of its parameters."""
         if line.python:
-            self._keep(Action(self.program.shown_line, line.python, self.modes))
-        for comment in line.comments[
-            -1:
-        ]:  # the interpreter's parsed block has only the last comment of a line
+            self._queue(Action(self.program.shown_line, line.python, self.modes))
+        # the interpreter's parsed block has only the last comment of a line
+        for comment in line.comments[-1:]:
             if "#" in comment:
                 self.show_plane()
                 self.interp.read("")  # updates #5420
             text = comment_text(comment, self._parameter)
             modes = self.modes if may_fail(comment) else None
-            self._keep(Action(self.program.shown_line, text, modes))
+            self._queue(Action(self.program.shown_line, text, modes))
 
     def returned(self) -> None:
-        """Restore what an M73 saved in subs that have ended."""
+        """Restore the modes that an M73 saved in subs that have ended."""
         for level in sorted(self._restored_on_return, reverse=True):
             if level > self.interp.call_level:
                 self._restore(level)
                 self._restored_on_return.discard(level)
 
-    def _keep(self, action: Action) -> None:
+    def _queue(self, action: Action) -> None:
         self.contour.mark(action, line=action.line)
 
     def _mark(self, text: str) -> None:
         if text:
-            self._keep(Action(self.program.shown_line, text, self.modes))
+            self._queue(Action(self.program.shown_line, text, self.modes))
 
     def _parameter(self, name: str) -> float | None:
         """Return a parameter by number or name, None if there is none."""
@@ -335,11 +334,11 @@ class SectionReader:
             for axis, value, here in zip(plane, (x, c, z), (contour.x, contour.c, contour.z))
         )
 
-    def _keep_apart(self) -> None:
-        """Mark the end of a block where the next one's line has the same number, as in a loop."""
+    def _separate(self) -> None:
+        """Mark the end of a block before another on the same line, as in a loop."""
         line = self.program.shown_line
         if line == self._moved:
-            self._keep(Action(line, BLOCK_END, None))
+            self._queue(Action(line, BLOCK_END, None))
         self._moved = line
 
     def _check_third(self, *others: float | None) -> None:
@@ -386,15 +385,15 @@ class SectionReader:
         elif code == M_INVALIDATE:
             self._saved.pop(level, None)
             self._restored_on_return.discard(level)
-            self._keep(Action(self.program.shown_line, f"M{M_INVALIDATE}", self.modes, level))
+            self._queue(Action(self.program.shown_line, f"M{M_INVALIDATE}", self.modes, level))
         else:
             self._saved[level] = self.modes
             if code == M_AUTORESTORE and level > self.start.level:
                 self._restored_on_return.add(level)
-            self._keep(Action(self.program.shown_line, f"M{M_SAVE}", self.modes, level))
+            self._queue(Action(self.program.shown_line, f"M{M_SAVE}", self.modes, level))
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
             raise self.location.refuse("M72: no modes were saved in this section")
-        self._keep(Action(self.program.shown_line, f"M{M_RESTORE}", self.modes, level))
+        self._queue(Action(self.program.shown_line, f"M{M_RESTORE}", self.modes, level))
         self.set_modes(self._saved[level])

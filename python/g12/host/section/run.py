@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A section of interpolation: read to its end, planned as a whole, then moved.
+"""A section of interpolation: read to its end, planned as a whole, then executed.
 
-The handler of G12.1 or G7.1 reads the program on by itself (`ProgramLines`). The interpreter parses
-every line and executes O-words at once; the other blocks are collected (`SectionReader`). After the
-code that switches off, the contour is planned (`g12.polar.plan`, `g12.cylinder.plan`) and executed
-(`SectionOutput`).
+The handler of G12.1 or G7.1 reads the following lines itself (`ProgramLines`). The interpreter
+parses every line and executes O-words at once; the other blocks are collected (`SectionReader`).
+After the code that switches off, the contour is planned (`g12.polar.plan`, `g12.cylinder.plan`) and
+executed (`SectionOutput`).
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ class Section:
         *,
         first: str = "",
     ) -> None:
-        """``first`` is a code that acts as if it were in the section's first line."""
+        """``first`` is a block that acts as if it were the section's first line."""
         self.codes, self.setup, self.plan = codes, setup, plan
         self.frame, self.program = frame, reader.program
         self.reader, self.output = reader, output
@@ -107,7 +107,7 @@ class Section:
         if self._first:
             self.program.parse_rewritten(self._first)
             first = split_line(self._first, known)
-            yield from self._obey(first, block_of(self.reader.parsed))
+            yield from self._process(first, block_of(self.reader.parsed))
         for _ in range(MOST_SECTION_LINES):
             raw = program.take()
             if raw is None:
@@ -152,9 +152,9 @@ class Section:
             yield from self._finish(line, block)
         else:
             self._check(block)
-            yield from self._obey(line, block)
+            yield from self._process(line, block)
 
-    def _obey(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
+    def _process(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
         """Process a block in the order in which the interpreter executes one."""
         reader = self.reader
         line = reader.with_spindle(line)
@@ -197,13 +197,13 @@ class Section:
         self.reader.show_plane()
         self._check_done(self.program.control(line.control))
         self.reader.returned()
-        self._see_skipping(line)
+        self._update_phase(line)
 
     def _call_remapped(self, line: TextLine) -> None:
         """Let the interpreter call a sub for an M code: its lines are lines of the section."""
         self.reader.show_plane()
         self._check_done(self.program.call(line.text))
-        self._see_skipping(line)
+        self._update_phase(line)
 
     def _check_level(self, line: TextLine) -> None:
         if line.control in ("endsub", "return"):
@@ -216,8 +216,8 @@ class Section:
         if status or self.reader.has_moved():
             raise self._refuse("what is called here moves or waits by itself")
 
-    def _see_skipping(self, line: TextLine) -> None:
-        """Note whether the following lines are skipped, and the O-word that started it."""
+    def _update_phase(self, line: TextLine) -> None:
+        """Note whether the following lines are skipped, and the O-word that skips them."""
         skipping = self.program.skipping()
         if skipping and self._phase is Phase.READING:
             self._skipped_for = line.text
@@ -246,7 +246,7 @@ class Section:
         """End the section at the block that switches off."""
         off = self.codes.off_code
         if line.relative or not alone(block, self.codes.word):
-            raise self._refuse(f"{off} stands alone in its block")
+            raise self._refuse(f"{off} must be alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
