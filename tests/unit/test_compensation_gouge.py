@@ -162,7 +162,7 @@ def test_a_contour_closes_though_rounding_left_a_gap(front, behind):
 def test_a_contour_closes_over_twice_what_arcs_are_forgiven(gap, told, at_start):
     ends = (-gap, 40.0) if at_start else (40.0, -gap)
     contour = contour_of(Drawn(extended(*ends), LEFT, 3.0, []))
-    contour.closing = 0.03
+    contour.radius_tolerance = 0.03
     assert refusal(contour) == ""
     assert bool(contour.notes) is told
 

@@ -162,7 +162,7 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
 
 def test_the_settings_of_a_section_are_in_program_units():
     made = setup_of(machine_unit=1 / 25.4, millimetre=1 / 25.4)
-    lengths = [made.tolerance, *made.plan[1:5], made.words.closing]
+    lengths = [made.tolerance, *made.plan[1:5], made.words.radius_tolerance]
     in_mm = [0.005, 0.005, 0.001, 900, 1100, 0.0127]
     assert lengths == pytest.approx([length / 25.4 for length in in_mm])
     assert (made.plan.radius, *made.plan[5:]) == (RADIUS, 3600.0)

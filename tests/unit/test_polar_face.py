@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which moves of a section go out as X and Y of the face, and how."""
 
-import cmath
 from math import atan2, degrees, hypot, pi
 
 import numpy as np
@@ -10,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
+from g12.geometry.curve import angle_of
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceSwitch, flows_into, in_face, positions_along
 from g12.polar.plan import PolarSettings, plan
@@ -48,16 +48,16 @@ def test_the_face_is_the_plane_turned(move, angle):
 
 @settings(max_examples=200, deadline=None)
 @given(st.one_of(lines, arcs), st.floats(-20, 20))
-def test_passed_tells_the_end_and_the_farthest(move, off):
+def test_positions_along_a_move_include_its_end_and_the_farthest(move, off):
     points = motion(move)[0]
     if abs(points).min() < 0.5:
         return
-    begin = cmath.phase(move.start) + off
-    places = positions_along(move, begin)
+    begin = angle_of(move.start) + off
+    positions = positions_along(move, begin)
     angles = np.unwrap(np.angle(points))
-    assert places[-1][0] == pytest.approx(abs(move.end))
-    assert places[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
-    assert max(radius for radius, *_ in [*places, (abs(points[0]),)]) >= abs(points).max() - 1e-4
+    assert positions[-1][0] == pytest.approx(abs(move.end))
+    assert positions[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
+    assert max(radius for radius, *_ in [*positions, (abs(points[0]),)]) >= abs(points).max() - 1e-4
 
 
 def contour(*points, feed=2000.0):

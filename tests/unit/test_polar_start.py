@@ -52,7 +52,7 @@ def test_where_no_section_begins(found, rule):
 
 @pytest.mark.parametrize("millimetre", [1.0, 1 / INCH])
 def test_ends_that_rounded_words_leave_open_are_closed_in_any_unit(millimetre):
-    assert setup_of(millimetre=millimetre).words.closing == pytest.approx(
+    assert setup_of(millimetre=millimetre).words.radius_tolerance == pytest.approx(
         0.0005 * INCH * millimetre
     )
 
