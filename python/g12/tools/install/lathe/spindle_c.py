@@ -40,10 +40,10 @@ SIGNALS = {  # key of [SPINDLE_C]: its pin, and the signal's name if the pin has
     "ORIENT": ("spindle.0.orient", "sc-orienting"),
     "ANGLE": ("joint.{joint}.pos-cmd", "sc-c-angle"),
     "COMMAND": ("joint.{joint}.motor-pos-cmd", "sc-c-command"),
-    "PLACE": ("axis.c.pos-cmd", "sc-c-stands"),
+    "PLACE": ("axis.c.pos-cmd", "sc-c-position"),
     "SPEED": ("spindle.0.speed-out-rps", "sc-speed-out"),
     "ON": ("spindle.0.on", "sc-started"),
-    "BRAKE": ("spindle.0.brake", "sc-brake-asked"),
+    "BRAKE": ("spindle.0.brake", "sc-brake-requested"),
 }
 ENCODER = ("TURNS", "RPS", "INDEX")
 OWN_PINS = (
