@@ -7,7 +7,7 @@ import re
 import pytest
 
 from g12.tools.commands.main import main
-from g12.tools.verify.sections import section
+from g12.tools.verify.compare import section
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 MILL = str(SIM / "mill_mm_headless.ini")
@@ -116,10 +116,8 @@ def test_what_a_section_gains_from_kinematics(written, capsys):
 
 
 def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
-    lay = section.lay_section
-    monkeypatch.setattr(
-        section, "lay_section", lambda one, path, *more: lay(one, [*path, *path], *more)
-    )
+    lay = section.lay
+    monkeypatch.setattr(section, "lay", lambda path, *more: lay([*path, *path], *more))
     program = str(PROGRAMS / "polar" / "slot.ngc")
     code, out, _ = verify(capsys, program, "--ini", LATHE)
     assert code == 1 and "is not cut" in out

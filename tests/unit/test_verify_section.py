@@ -7,15 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from g12.tools.path.follow import follow
 from g12.tools.path.part import Part
-from g12.tools.path.track import track
-from g12.tools.verify.compare.section import feed_off, lay_section, plane_of
-from g12.tools.verify.expected.compensated import contour_path
+from g12.tools.path.section_axes import SectionAxes
+from g12.tools.verify.compare.section import judge_toolpath
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
-from g12.tools.verify.sections.section_motion import SectionAxes
-from support.made_moves import LIMITS, Hand, samples_of
+from g12.tools.verify.sections.view import view_of
+from support.made_moves import Hand, samples_of, seen_by
 
 FACE = Part(turning=True)
 TOLERANCE = 0.006
@@ -75,10 +73,9 @@ def cut(ways, first=40 + 0j, last=40 + 0j):
 
 
 def measure(hand, elements, real=None, **options):
-    path = track(FACE, hand.moves, LIMITS)
     found = section(elements, end=len(hand.moves), **options)
-    run = follow(path, hand.moves, real(path), 1.0) if real else None
-    return measure_section(found, path, hand.moves, {1: 2 * TOOL}, AXES, TOLERANCE, run)
+    seen = seen_by(FACE, hand, {1: 2 * TOOL}, real)
+    return measure_section(view_of(found, *seen, axes=AXES, tolerance=TOLERANCE))
 
 
 def codes(facts):
@@ -192,11 +189,9 @@ def test_a_spiral_beside_the_centre_lasts_as_long_as_the_line_that_it_is_for(x, 
     programmed = abs(x - 2.0) or turn
     feed = share * 600.0 * programmed / abs(end - start)
     hand.moves[-1] = hand.moves[-1]._replace(feed=feed)
-    made = section([line(2, start, end)], end=2, x=2.0)
-    expected = contour_path([replace(made.elements[0], feed=600.0)], 0.0, 0.0, TOLERANCE)
-    plane, path = plane_of(made, hand.moves[1]), track(FACE, hand.moves, LIMITS)
-    found = lay_section(made, expected, plane, hand.moves, path, (1.0, 1.0))
-    assert (feed_off(found, hand.moves) is not None) is off
+    made = section([replace(line(2, start, end), feed=600.0)], end=2, x=2.0)
+    view = view_of(made, *seen_by(FACE, hand, {}), axes=AXES, tolerance=1.0)
+    assert [each.code for each in judge_toolpath(view)] == ["feed"] * off
 
 
 @pytest.mark.parametrize(("share", "found"), [(0.98, True), (1.0, False), (1.02, True)])

@@ -12,13 +12,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from g12.tools.path.follow import follow
+from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.surface import Surface
-from g12.tools.path.track import track
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
-from g12.tools.verify.sections.section_motion import SectionAxes
-from support.made_moves import LIMITS, Hand, samples_of
+from g12.tools.verify.sections.view import view_of
+from support.made_moves import Hand, samples_of, seen_by
 
 RADIUS, DEPTH, AIR, TOOL = 20.0, 18.0, 24.0, 3.0
 TOLERANCE = 0.006
@@ -63,13 +62,15 @@ def drawn(*ends, side=0, first=3):
 
 
 def facts_of(hand, elements, real=None):
-    moves = hand.moves
-    path = track(Surface(turning=True, radius=RADIUS), moves, LIMITS)
     contour = SectionContour(
-        1, 9, 1, len(moves), "G7.1", 0j, tuple(elements), height=AIR, surface=RADIUS
+        1, 9, 1, len(hand.moves), "G7.1", 0j, tuple(elements), height=AIR, surface=RADIUS
     )
-    run = follow(path, moves, real(path), 1.0) if real else None
-    return measure_section(contour, path, moves, {1: 2 * TOOL}, AXES, TOLERANCE, run)
+    return measured(hand, contour, real)
+
+
+def measured(hand, contour, real=None):
+    seen = seen_by(Surface(turning=True, radius=RADIUS), hand, {1: 2 * TOOL}, real)
+    return measure_section(view_of(contour, *seen, axes=AXES, tolerance=TOLERANCE))
 
 
 def findings(hand, elements):
@@ -156,8 +157,7 @@ def test_compensation_keeps_the_cutter_on_its_side(side, away, found):
     contour = SectionContour(
         1, 9, 2, len(hand.moves), "G7.1", 10j, tuple(wall(side)), height=DEPTH, surface=RADIUS
     )
-    path = track(Surface(turning=True, radius=RADIUS), hand.moves, LIMITS)
-    facts = measure_section(contour, path, hand.moves, {1: 2 * TOOL}, AXES, TOLERANCE)
+    facts = measured(hand, contour)
     assert found in texts(facts)
     assert bool(found) == (facts.deviation > TOLERANCE)
 

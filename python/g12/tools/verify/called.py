@@ -4,6 +4,7 @@
 What a run makes of a shape is judged with the section in its sub. Lengths are mm.
 """
 
+import math
 from bisect import bisect
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -13,12 +14,14 @@ from typing import Any, NamedTuple
 from g12.geometry.curve import Line
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
+from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.slowest import Pace
-from g12.tools.path.track import STILL, Track
+from g12.tools.path.track import STILL
 from g12.tools.preview.executed_blocks import CLAMP, Block
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.compare.path import Laid, Made, judge_path, lay
-from g12.tools.verify.compare.section import FacePlane, SectionPath, judge_toolpath, made_of
+from g12.tools.verify.compare.plane import turned_plane
+from g12.tools.verify.compare.section import LaidMoves, ToolpathView, judge_toolpath
 from g12.tools.verify.compare.state import judge_state, state_differences
 from g12.tools.verify.expected.contour import ACTS
 from g12.tools.verify.expected.holes import Holes, HolesPath, holes_of
@@ -28,27 +31,30 @@ from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LAST_DECIMAL, LEVEL
-from g12.tools.verify.sections.section_motion import SectionAxes, slower_on_face
+from g12.tools.verify.subject import Subject
 
 
 def measure_shape(
-    call: SubCall,
-    path: Track,
-    moves: Sequence[Move],
-    axes: SectionAxes,
-    tolerance: float,
+    call: SubCall, subject: Subject, axes: SectionAxes, tolerance: float
 ) -> MeasuredCut:
-    """Return what was measured of a shape; ``path`` is that of the face about its X0."""
-    block = call.block
-    plane, expected = FacePlane(*call.zero), shape_path(call)
-    segments = ((index, path.positions[path.vertices(index)]) for index in call.moves)
-    laid = lay(expected, made_of(segments, moves, plane), tolerance + LAST_DECIMAL)
-    found = SectionPath(expected, [], laid)
-    slower = slower_on_face(found, moves, path, axes)
+    """Return what was measured of a shape; the ``subject`` is that of the face about its X0."""
+    block, expected = call.block, shape_path(call)
+    view = ToolpathView(
+        expected=expected,
+        plane=turned_plane(math.radians(call.zero[2]), call.zero[1]),
+        own=call.moves,
+        moves=subject.trace.moves,
+        path=subject.path,
+        real=None,
+        axes=axes,
+        allowed=(tolerance + LAST_DECIMAL, math.inf),
+        diameters=call.diameters,
+        last=call.line,
+    )
     state = state_differences(block.state_after, call.leaves())
     events = dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))
     judged = [
-        *judge_toolpath(found, plane, call.diameters, moves, slower, call.line),
+        *judge_toolpath(view),
         *judge_state(state, events, call.line),
     ]
     values = {
@@ -56,12 +62,12 @@ def measure_shape(
         "entries": call.given,
         "lowest": min(move.end_level for move in expected),
     }
-    return _called_cut(call, found, values, judged)
+    return _called_cut(call, view.found, values, judged)
 
 
 def _called_cut(
     call: SubCall,
-    found: SectionPath,
+    found: LaidMoves,
     values: Mapping[str, Any],
     judged: Iterable[Finding],
 ) -> MeasuredCut:
@@ -95,7 +101,7 @@ def measure_holes(
     laid, run = lay(expected, _made_of_holes(holes, moves, own), tolerance), None
     if real and not laid.difference and not holes.pitch:
         run = _laid_run(holes, expected, real, own, tolerance)
-    found = SectionPath(expected, [], laid, run)
+    found = LaidMoves(laid, run)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
     texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
     state = state_differences(block.state_after, call.leaves())

@@ -18,7 +18,7 @@ from shapely.ops import unary_union
 
 from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL, going, portions
 from g12.tools.path.part import X, Z, is_sideways, swept
-from g12.tools.verify.compare.section import Plane, plane_of
+from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.mistakes.neighbours import judge_circles
 from g12.tools.verify.result.finding import Finding, also_in
@@ -255,7 +255,7 @@ def _remaining(workpiece: Workpiece, section: SectionContour) -> Finding | None:
     """Return what remains of a bar beyond a contour that it is to be cut away to, if anything."""
     moves = workpiece.program.moves
     level = min(moves[index].end[Z] for index in range(section.at, section.end))
-    plane = Plane(section, moves[section.at])
+    plane = plane_of(section, moves[section.at])
     region = unary_union([beyond(each, plane, workpiece.shape) for each in outlines_of(section)])
     if level < workpiece.top - SAME_LEVEL:
         uncut = workpiece.material.standing(region, level)

@@ -16,6 +16,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.material.stock import StockText
 from g12.tools.path.part import part_of
 from g12.tools.path.samples import Samples
+from g12.tools.path.section_axes import axes_of_section
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import limits_of
 from g12.tools.preview.ended import ended, explained
@@ -26,7 +27,7 @@ from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
 from g12.tools.verify.commanded import Commanded, commanded_by, moves_there
-from g12.tools.verify.compare.section import x0_of
+from g12.tools.verify.compare.plane import x0_of
 from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.mistakes.tool import (
     judge_feeds,
@@ -48,7 +49,6 @@ from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import RUN, WALL
 from g12.tools.verify.sections.section import measure_section
-from g12.tools.verify.sections.section_motion import axes_of_section
 from g12.tools.verify.subject import Subject, subject_of
 from g12.tools.verify.workpiece import Workpiece, workpiece_of
 
@@ -197,12 +197,11 @@ def measured(
             for circle in counted(commanded.circles, "measuring pocket", tell)
         ],
         [
-            measure_section(each, view.path, moves, subject.trace.diameters, axes, polar, view.real)
+            measure_section(subject.view(each, axes, polar))
             for each in counted(commanded.sections, "measuring section", tell)
-            for view in [subject.of_section(each)]
         ],
         [
-            measure_shape(each, subject.about(each.zero[0], each.moves).path, moves, axes, polar)
+            measure_shape(each, subject.about(each.zero[0], each.moves), axes, polar)
             for each in counted(commanded.shapes, "measuring shape", tell)
         ],
         [measure_holes(each, moves, polar, clamp, pace, real) for each in commanded.holes],

@@ -10,11 +10,13 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import Part, part_of_program
 from g12.tools.path.samples import Samples
+from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.moves import Trace
-from g12.tools.verify.compare.section import x0_of
+from g12.tools.verify.compare.plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.sections.view import SectionView, view_of
 
 SAME_X0 = 1e-6  # mm
 
@@ -54,21 +56,21 @@ class Subject:
     def about(self, centre: float, own: range | None = None) -> Self:
         """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
         same = abs(self.part.centre - centre) < SAME_X0
-        return self if same else self._seen_as(replace(self.part, centre=centre), own)
+        return self if same else self._on(replace(self.part, centre=centre), own)
 
     def on_surface(self, radius: float, own: range | None = None) -> Self:
         """Return the same on a cylinder's unrolled surface."""
-        return self._seen_as(Surface(turning=True, radius=radius), own)
+        there = self._on(Surface(turning=True, radius=radius), own)
+        return self._surfaces.setdefault(radius, there) if self.samples else there
 
-    def of_section(self, section: SectionContour) -> Self:
-        """Return the same as the part of a section sees it."""
+    def view(self, section: SectionContour, axes: SectionAxes, tolerance: float) -> SectionView:
+        """Return a section that moves as its part sees it."""
         own, radius = range(section.at, section.end), section.surface
-        if not radius:
-            return self.about(x0_of(section, self.trace.moves[section.at]), own)
-        view = self.on_surface(radius, own)
-        return self._surfaces.setdefault(radius, view) if self.samples else view
+        x0 = x0_of(section, self.trace.moves[section.at])
+        there = self.on_surface(radius, own) if radius else self.about(x0, own)
+        return view_of(section, self.trace, there.path, there.real, axes, tolerance)
 
-    def _seen_as(self, part: Part, own: range | None) -> Self:
+    def _on(self, part: Part, own: range | None) -> Self:
         return replace(self, part=part, own=None if self.samples else own)
 
 

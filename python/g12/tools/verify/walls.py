@@ -30,7 +30,7 @@ from g12.tools.material.material import SAME_LEVEL, Material
 from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
-from g12.tools.verify.compare.section import Plane, plane_of
+from g12.tools.verify.compare.plane import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.sections.outline import LENGTHLESS, Outline, outlines_of, vectors
@@ -190,7 +190,7 @@ def _spans(
 
 def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
     """Yield what a section on a face is cut in, each area with its top."""
-    plane = Plane(section, moves[section.at])
+    plane = plane_of(section, moves[section.at])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     lowest = min((move.end[Z] for move in cut), default=math.inf)
     falls = (move.start[Z] for move in cut if move.end[Z] < move.start[Z] - SAME_LEVEL)

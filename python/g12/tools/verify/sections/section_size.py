@@ -6,15 +6,15 @@ centre; leads that stick out of a closed contour are no part of it.
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from g12.geometry.curve import Curve, Line
-from g12.tools.verify.compare.section import SectionPath
-from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.expected.contour import Element
 from g12.tools.verify.sections.outline import LENGTHLESS, MEETS, outlines_of
+from g12.tools.verify.sections.view import SectionView
 
 PARALLEL = 1e-4  # radians between parallel sides
 
@@ -22,63 +22,50 @@ PARALLEL = 1e-4  # radians between parallel sides
 class SectionSize(NamedTuple):
     """The least and the greatest of a contour, as programmed and reached, and its widths."""
 
-    wanted: tuple[float, float]
+    programmed: tuple[float, float]
     reached: tuple[float, float]
-    flats: tuple[tuple[float, float], ...]
+    flats: list[tuple[float, float]]
 
 
 class CutWall(NamedTuple):
     """A wall along an element: where its points are by the words, and as reached."""
 
     element: Element
-    wanted: np.ndarray
+    programmed: np.ndarray
     reached: np.ndarray
 
 
-def contour_size(
-    section: SectionContour,
-    found: SectionPath,
-    points: Mapping[int, np.ndarray],
-    radius: float,
-    sizes: Callable[[np.ndarray], np.ndarray],
-) -> SectionSize:
-    """Return the size of what is compensated of a contour, of all of it if nothing is.
-
-    ``points`` are those of the tool's centre in the plane by move, ``sizes`` what counts of them.
-    """
-    sides = {each.side for each in section.elements if not each.ramp} - {0} or {0}
-    leads = [lead for outline in outlines_of(section) for lead in outline.leads]
-    walls = [each for each in walls_along(found, points, radius) if each.element.side in sides]
-    walls = [on_shape(wall, leads) for wall in walls]
-    wanted, reached = ([sizes(wall[at]) for wall in walls] for at in (1, 2))
+def contour_size(view: SectionView) -> SectionSize:
+    """Return the size of what is compensated of a contour, of all of it if nothing is."""
+    sides = {each.side for each in view.section.elements if not each.ramp} - {0} or {0}
+    leads = [lead for outline in outlines_of(view.section) for lead in outline.leads]
+    walls = [on_shape(wall, leads) for wall in walls_along(view) if wall.element.side in sides]
+    sizes = view.plane.sizes
+    programmed = span([sizes(wall.programmed) for wall in walls])
+    reached = span([sizes(wall.reached) for wall in walls])
     flats = across_flats([wall for wall in walls if wall.element.side])
-    return SectionSize(span(wanted), span(reached), tuple(sorted(flats, reverse=True)))
+    return SectionSize(programmed, reached, sorted(flats, reverse=True))
 
 
 def on_shape(wall: CutWall, leads: Sequence[Curve]) -> CutWall:
     """Return what of a wall is no lead."""
-    on = [all(lead.distance(place) > MEETS for lead in leads) for place in wall.wanted]
-    return CutWall(wall.element, wall.wanted[on], wall.reached[on])
+    on = [all(lead.distance(place) > MEETS for lead in leads) for place in wall.programmed]
+    return CutWall(wall.element, wall.programmed[on], wall.reached[on])
 
 
-def walls_along(
-    found: SectionPath, points: Mapping[int, np.ndarray], radius: float
-) -> Iterator[CutWall]:
+def walls_along(view: SectionView) -> Iterator[CutWall]:
     """Yield the wall of each element that is cut."""
     segments: dict[int, list[np.ndarray]] = {}
-    for index, made in (found.run or found.emitted).spans.items():
+    laid, across = view.found.run or view.found.emitted, set(view.across)
+    for index, made in laid.spans.items():
         whole = made.index == made.last or made.share > 1.0 - LENGTHLESS
-        if whole and found.expected[made.last].name == "contour" and index in points:
+        if whole and view.expected[made.last].name == "contour" and index in across:
             before = segments.setdefault(made.last, [])
-            before.append(points[index][1 if before else 0 :])
+            before.append(view.plane.points(view.motion(index))[1 if before else 0 :])
     for at, centres in segments.items():
-        element, curve, centre = (
-            found.elements[at],
-            found.expected[at].curve,
-            np.concatenate(centres),
-        )
-        nearest, normal = beside(curve, centre)
-        aside = element.side * radius * normal
+        element, centre = view.steps[at].element, np.concatenate(centres)
+        nearest, normal = beside(view.expected[at].curve, centre)
+        aside = element.side * view.tool * normal
         yield CutWall(element, nearest - aside, centre - aside)
 
 
