@@ -1,0 +1,330 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What verify reports of a program: the codes of its findings and notes, and their lines.
+
+A row is a beginning, the blocks after it, the codes, and the stock if it is given.
+"""
+
+import pytest
+
+from g12.tools.commands.main import main
+from g12.tools.machine.ini import read_ini
+from g12.tools.material.stock import StockText
+from g12.tools.plot.scene import scene_of_proof
+from g12.tools.units import MM
+from g12.tools.verify.proof import prove
+from g12.tools.verify.report import as_text
+from support.sim_machines import SIM
+
+BEGINNINGS = {  # the machine, and the blocks before a row's
+    "mill": ("mill_mm", "G21 G17 G40 G49 G90 G94 F600|T4 M6|G43 H4|S900 M3|G0 X0 Y0 Z1"),
+    "lathe": ("lathe_mm", "G21 G18 G7 G40 G90 G94|T1 M6|S900 M3|G0 X60 Z2 C0"),
+    "radii": ("lathe_mm", "G21 G18 G8 G40 G90 G94|T3 M6|S900 M3|G0 X18 Z2 C0"),
+    "inch": ("mill_inch", "G20 G17 G40 G49 G90 G94 G64 P.001|T1 M6 G43|S3000 M3|G0 X0 Y0 Z.1"),
+    "yasnac": ("mill_yasnac_mm", "G21 G17 G40 G49 G90 G94|T10 M6 G43|S3000 M3|G0 X0 Y0 Z2"),
+    "helix": ("mill_helix_mm", "G21 G17 G40 G49 G90 G94|T4 M6 G43|S3000 M3|G0 X0 Y0 Z1"),
+    "any mill": ("mill_mm", "G21 G17 G40 G49 G90 G94 F600"),
+    "any lathe": ("lathe_mm", "G21 G18 G7 G40 G90 G94 F600"),
+}
+BEGIN, END = "G12.1|G1 C25 F2000|G41 X27 F1000|Z-5", "G40 X60 F2000|G13.1|G0 Z2"
+FLAT = f"{BEGIN}|C-25|{END}"
+SLOT = "G12.1|G1 Z-1 F800|X-18|X18|Z2|G13.1"
+SIDES = "C-7.7942|X0 C-15.5885|X-27 C-7.7942|C7.7942|X0 C15.5885|X27 C7.7942"
+HEXAGON = f"G0 X70|G12.1|G1 G41 X27 F1000|Z-5|{SIDES}|C0|G40 X70|Z2|G13.1"
+LOW, HIGH = "G13 I9 Z-2 D4", "G13 I9 Z-3 D4|G0 Z1"
+RING, CLEARED, SHALLOW = "G13 I20.2 Z-4 D4", "G13 I7 K20 Q6 Z-4 D4", "G13 I7 K20 Q6 Z-2 D4"
+FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [120] [0] [0] [0]"
+SIDE_HOLE = "o<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120] [0] [0] [0]"
+HOLES = "o<side_holes> call [4] [-15] [0] [90] [30] [6] [2] [100] [0] [.1] [0]"
+POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
+GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
+R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
+
+CASES = [
+    # where C stands
+    ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
+    ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),
+    ("lathe", f"{FLAT}|G0 C0|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G0 C180|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G0 C-39.805571|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G92 C0|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G10 L20 P1 C0|{FLAT}", ""),
+    ("lathe", f"o<turn> sub|G0 C0|o<turn> endsub|{FLAT}|o<turn> call|{FLAT}", ""),
+    ("lathe", f"{FLAT}|o1 if [1]|G0 X60 C[10 - 10]|o1 endif|{FLAT}", ""),
+    ("any lathe", f"T1 M6|S900 M3|G0 X60 Z2|{FLAT}", "zero-line-unknown 5"),
+    # at the centre
+    ("radii", f"{SLOT}|{SLOT}", "rubs 5, rubs 11"),
+    ("radii", "G12.1|G1 X-18 F800|Z-1|X-10|G13.1|G0 Z2", ""),
+    # the side of compensation
+    ("lathe", "G12.1|G1 X100 F2000|G42 X60 F1000|Z-5|C-30|X-60|C30|X60|C0|Z2|G40 X100|G13.1",
+     "side-other 5"),
+    ("lathe", FLAT.replace("G41", "G42"), "side-crossed 5"),
+    ("lathe", "G12.1|G1 G41 X-27 C-25 F1000|Z-5|C25|Z2|G40 X-70|G13.1", ""),
+    ("lathe", f"{BEGIN}|C-25|Z2|G40 X60|G41 X-27 C-25|Z-5|C25|Z2|G40 X-70|G13.1", ""),
+    ("lathe", "G12.1|G1 Z-5 F1000|G41 X-27 C-25|C25|Z2|G40 X-70|G13.1", "side-crossed 5"),
+    ("lathe", "G12.1|G1 X10 F1000|Z-1|G41 X40|C20|X-40|C-20|X40|C0|G40 X10|Z2|G13.1", ""),
+    ("lathe", f"{BEGIN}|{SIDES}|{END}", ""),
+    ("lathe", f"{BEGIN}|{SIDES}|{END}".replace("X-27", "X27"), "goes-back 11, goes-back 14"),
+    # depth
+    ("mill", "G13 I9 Z3 D4", "cuts-air 6, above-zero 6"),
+    ("mill", "G0 Z-4|G13 I9 Z-3 D4", "bored-assumed 6, cuts-air 7"),
+    ("mill", "G91|G13 I9 Z3 D4", "cuts-air 7, above-zero 7"),
+    ("mill", "G13 I9 D4", "above-zero 6"),
+    ("mill", "G0 Z-4|G13 I9 Z-4 D4|G0 Z1", "bored-assumed 6"),
+    ("mill", "G0 X9 Z30|X0 Y0|Z1|G13 I9 Z5 D4|G0 Z1|X40|G13 I9 Z-2|G0 Z1",
+     "cuts-air 9, above-zero 9"),
+    ("lathe", FLAT.replace("Z-5", "Z5"), "above-start 5, above-zero 5"),
+    ("lathe", FLAT.replace("Z-5", "Z2"), "above-zero 5"),
+    ("lathe", f"G1 Z-5 F1000|{FLAT.replace('|Z-5', '').replace('G13.1', 'Z2|G13.1')}", ""),
+    # the travel
+    ("mill", f"{HIGH}|G0 X3000|{HIGH}", "travel 9"),
+    ("mill", f"{HIGH}|G55 G0 X3000|{HIGH}", "travel-perhaps 9"),
+    ("mill", f"{HIGH}|G0 X300|{HIGH}", ""),
+    # the spindle
+    ("any mill", f"T4 M6 G43|G0 Z1|{LOW}", "spindle-stands 4"),
+    ("any mill", f"T4 M6 G43|G0 Z1|{LOW} S900 M3", ""),
+    ("mill", f"M5|{LOW}", "spindle-stands 7"),
+    ("mill", f"T4 M6|{LOW}", "spindle-stands 7"),
+    ("mill", f"{LOW}|M5", ""),
+    ("any mill", f"T4 M6 G43|G0 Z1|M3|{LOW}", "spindle-stands 5"),
+    ("mill", f"M5|M3|G0 X1|{LOW}", ""),
+    ("any mill", f"T4 M6 G43|G0 Z1|M103 P1|{LOW}", ""),  # a user's code may turn a spindle
+    ("mill", f"S900 M4|{LOW}", "spindle-m4 7"),
+    ("any lathe", f"T1 M6|G0 X60 Z2 C0|{FLAT}", "tool-spindle 4"),
+    # tool length: T1 is 25.4 long, T3 25, T4 30
+    ("mill", f"{LOW}|G0 Z50|T4 M6|G43|S900 M3|G0 X60 Z1|{LOW}", ""),
+    ("any mill", f"T4 M6|S900 M3|G43 H0|G0 Z1|{LOW}", ""),  # the loaded tool's, in LinuxCNC
+    ("any mill", f"T4 M6|S900 M3|G43 H1|G0 Z1|{LOW}", "length-deeper 6"),
+    ("any mill", f"T4 M6|S900 M3|G43 H6|G0 Z1|{LOW}", "length-higher 6"),
+    ("any mill", f"T4 M6|S900 M3|G0 Z1|{LOW}", "length-not-used 5"),
+    ("any mill", f"T1 M6|S900 M3|G43|G0 Z1|G12 I5 Z-1|G0 Z50|T4 M6|S900 M3|G0 Z1|{LOW}",
+     "length-deeper 11"),
+    ("mill", f"G49|G0 Z1|{LOW}", "length-not-used 8"),
+    ("any mill", f"G10 L1 P4 Z20 R5|T4 M6|S900 M3|G43|G0 Z1|{LOW}", ""),
+    # feeds, return levels, C
+    ("mill", f"G95 F60|{LOW}|G94", "feed-per-revolution 7"),
+    ("mill", f"F.2|{LOW}", "feed-per-minute 7"),
+    ("mill", f"F20000|{LOW}", "feed-cut-down 7"),
+    ("lathe", "S2000|G95 F9|G12.1|G1 X27|Z-5|C-25|X60|G13.1", "feed-cut-down 7"),
+    ("lathe", "F.9|G12.1|G1 X27|Z-5|C-25|X60|G13.1", "feed-per-minute 6"),
+    ("lathe", f"G99 F.3|G0 X60 Z2 C0|G1 X50 C90 F500|{FLAT}", "return-level 5, native-c 7"),
+    ("lathe", f"G0 X60 Z10|{FACE_HOLE.replace('120', '12000')}|G0 Z10", "feed-cut-down 6"),
+    # pockets that meet
+    ("mill", f"{CLEARED}|G0 Z1|{RING}", ""),
+    ("mill", RING, "core-stands 6"),
+    ("mill", f"{SHALLOW}|G0 Z1|{RING}", "core-stands 8"),
+    ("mill", f"{CLEARED}|G0 Z1|X50|{CLEARED}", ""),
+    ("mill", f"{CLEARED}|G0 Z1|X20|{CLEARED}", "cuts-wall 9"),
+    ("mill", f"{CLEARED}|G0 Z1|X2|{SHALLOW.replace('K20', 'K8')}", "cut-before 9"),
+    ("mill", f"{CLEARED}|G0 Z1|{CLEARED}", "cut-before 8"),
+    ("mill", f"{SHALLOW}|G0 Z1|{CLEARED}", ""),
+    ("mill", f"{CLEARED}|G0 Z1|o1 if [0]|{CLEARED}|o1 endif", "never-run 9"),
+    ("mill", f"{CLEARED}|M2|{CLEARED}", "never-run 8"),
+    ("helix", "G13 I9 K18 Q4 Z-3 D4 F500|G13 I18 F300|G0 Z5", "cut-before 6"),
+    # rapids
+    ("mill", f"{CLEARED}|G0 Z1|X40|Z-2|Z1", "rapid-beside 9"),
+    ("mill", f"{CLEARED}|G0 Z-2|Z1", ""),
+    ("mill", f"{CLEARED}|G0 Z-2|G53 G0 X90 Z0", "rapid-by-machine 8"),
+    ("mill", f"{CLEARED}|G0 Z1|G53 G0 X90 Z0", ""),
+    ("any mill", f"T4 M6|S900 M3|G43|G0 X0 Y0|Z1|{LOW}|G53 G0 Z0|T3 M6|G43|G0 X60|Z1",
+     "rapid-by-machine 8"),
+    ("inch", f"G0 X0|{POCKET}|G0 Z-.01|X2|{POCKET}|G0 Z.1", "rapid-through 8, rapid-beside 8"),
+    ("inch", f"G0 X0|{POCKET}|G0 Z-.1|X2|{POCKET}|G0 Z.1", "rapid-through 8, rapid-beside 8"),
+    ("inch", f"G0 X0|{POCKET}|G0 Z-.3|X2|{POCKET}|G0 Z.1", "rapid-through 8, rapid-beside 8"),
+    ("inch", f"G0 X0|{POCKET}|G0 Z.1|X2|{POCKET}|G0 Z.1", ""),
+    ("inch", f"G0 X-2|{POCKET}|G0 Z.1|G0 X0|{POCKET}|G0 Z-.01|X2|{POCKET}|G0 Z.1",
+     "rapid-through 11, rapid-beside 11"),
+    ("inch", f"G0 X-2|{POCKET}|G0 Z.1|G0 X0|{POCKET}|G0 Z.1|X2|{POCKET}|G0 Z.1", ""),
+    ("inch", f"G0 Z-.3|{POCKET.replace(' Z-.3', '')}|G0 Z.1", "bored-assumed 5"),
+    ("inch", f"G0 Z-.3|{POCKET.replace(' Z-.3', '')}|G0 Z.1", "rapid-into 5", "4x4x1"),
+    ("inch", f"G0 Z-.3|{POCKET.replace(' Z-.3', '')}|G0 Z.1", "", "4x4x1 bore .7"),
+    ("inch", f"{POCKET}|G0 Z.1|G53 G0 Z0", "plunge-into-stock 5", "4x4x1"),
+    ("yasnac", R38, "plunge-into-stock 5, rapid-through 6, core-stands 6", "200x200x20"),
+    ("yasnac", R38, "rapid-through 6, core-stands 6", "200x200x20 bore 30"),
+    ("yasnac", R38, "no-stock-met 6", "200x200x20 bore 80"),
+    ("lathe", f"G0 X60 Z10|{FACE_HOLE}|G0 Z10", ""),
+    ("lathe", f"G0 X60 Z10|{FACE_HOLE}|G0 X20 Z-3|X30", "rapid-through 8, rapid-beside 8"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z5 C0", ""),
+    ("lathe", f"{HEXAGON}|G0 X70 Z-3|X0|Z5", "rapid-through 20"),
+    ("lathe", f"{HEXAGON}|G53 G0 X200|G53 G0 Z0", "plunge-into-stock 8", "40"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z5 C0|X80|G0 X70 Z5|{SIDE_HOLE}", "rapid-turned 20"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z5 C0|G0 X70 Z5|{SIDE_HOLE}|G0 X0",
+     "bar-remains 6, plunge-into-stock 8, rapid-into 22", "60"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z-3|X0|Z5|X70 Z2 C0|{HEXAGON}|G0 X70 Z5|{SIDE_HOLE}",
+     "rapid-through 20, rapid-turned 37"),
+    ("lathe", "G0 X40|G12.1|G1 Z-2 F200|X20 F600|G13.1|G0 C180|Z2",
+     "rapid-through 10, rapid-beside 10"),
+    ("lathe", "G0 X40|G12.1|G1 Z-2 F200|X20 F600|G13.1|G0 Z2|C180", ""),
+    ("any lathe", "T1 M6|S900 M3|G0 X10 Z-3 C0|G12.1|G1 X20 F600|Z2|G13.1",
+     "rapid-into 4, first-rapid 4", "30"),
+    ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "rapid-into 7", "40"),
+    ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "", "9"),
+    ("lathe", f"G0 Z10|Z-15|X10|X60|{HOLES.replace('30', '40')}|G0 X80", "rapid-into 7", "40"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z-20|X36|G7.1 C25|G1 X36 F200|Z-40 C60|X70|G7.1 C0",
+     "plunge-into-stock 8, rapid-into 20, not-below-start 21, inside-surface 21", "50"),
+    ("lathe", f"{HEXAGON}|G0 X70 Z-20|X56|G7.1 C25|G1 X36 F200|Z-40 C60|X70|G7.1 C0",
+     "plunge-into-stock 8", "50"),
+    ("lathe", f"{GROOVE.replace('G7', 'X44|G7')}|G1 X60|G7.1 C0",
+     "rapid-into 6, not-below-start 7, inside-surface 7", "50"),
+    ("lathe", f"{GROOVE.replace('G7', 'X52|G7')}|G1 X60|G7.1 C0", "", "50"),
+    ("lathe", f"{HEXAGON.replace('Z-5', 'Z-15')}|G0 Z5|T2 M6|G0 X70 Z-3|"
+     f"{HOLES.replace('-15', '-3')}|G0 X80",
+     "plunge-into-stock 8, rapid-after-cuts 22, tool-spindle 22", "40"),
+    ("lathe", f"{HEXAGON}|G0 Z5|T2 M6|G0 X70 Z-3|{HOLES.replace('-15', '-3')}|G0 X80",
+     "plunge-into-stock 8, rapid-into 22, tool-spindle 22", "40"),
+    # cylinders
+    ("lathe", f"{GROOVE}|G7.1 C0|G0 Z5", "rapid-through 10, rapid-beside 10"),
+    ("lathe", f"{GROOVE}|G7.1 C0|G0 C0", "rapid-through 10"),
+    ("lathe", f"{GROOVE}|G7.1 C0|G0 C420", "rapid-through 10"),
+    ("lathe", f"{GROOVE}|G1 X60|G7.1 C0|G0 C0", ""),
+    ("lathe", "G0 X46 Z-30|G7.1 C20|G1 X36 F200|C90|X46|G7.1 C0", ""),
+    ("lathe", "G0 X46 Z-30|G7.1 C10|G1 X36 F200|C90|X46|G7.1 C0", "above-surface 6"),
+    # a sub that is called twice, a sub's own file, two flats round the outside of the bar
+    ("any lathe", f"o7 sub|G0 C#1|{FLAT.replace('G41', 'G42')}|o7 endsub|T1 M6|S900 M3|"
+     f"G0 X60 Z2|o7 call [0]|o7 call [180]",
+     "side-crossed 4, side-crossed 4"),
+    ("lathe", "G0 Z5|o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]",
+     "plunge-into-stock 6", "40"),
+    ("lathe", "G0 X80|G12.1|G1 C25 F2000|G41 X27 F1000|Z-5|C-25|G40 X80|Z2|C-45|X-80|C-25|"
+     "G41 X-27|Z-5|C25|G40 X-80|Z2|G13.1",
+     "", "40"),
+]  # fmt: skip
+SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are no cut
+
+
+@pytest.fixture
+def proof_of(tmp_path):
+    """Return a function: the proof of a program whose blocks follow a beginning."""
+
+    def proof(beginning, blocks, stock=None, changed=None, **more):
+        machine, head = BEGINNINGS[beginning]
+        program = tmp_path / "program.ngc"
+        program.write_text(f"{head}|{blocks}|M2|".replace("|", "\n"))
+        ini = read_ini(SIM / f"{machine}_headless.ini").replaced(changed or {})
+        return prove(program, ini, stock=StockText(stock) if stock else None, **more)
+
+    return proof
+
+
+@pytest.fixture
+def codes(proof_of):
+    """Return a function: the codes and lines of what verify reports of a program."""
+
+    def judged(*case, **more):
+        found = (each for each in proof_of(*case, **more).judged if each.code not in SAME)
+        return ", ".join(f"{each.code} {each.line}" for each in found)
+
+    return judged
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case[0]}, {case[1]}"[:60])
+def test_the_codes_of_a_program(case, codes):
+    beginning, blocks, expected, *stock = case
+    assert codes(beginning, blocks, *stock) == expected
+
+
+@pytest.mark.parametrize("c", [-660, -300, 60, 200, 361, 400, 540, 660, 720, 1100])
+def test_a_wall_of_a_groove_at_any_turn_of_c(c, codes):
+    groove = f"{GROOVE.replace('C60', f'C{c}')}|G7.1 C0"
+    assert codes("lathe", f"{groove}|G0 Z5") == "rapid-through 10, rapid-beside 10"
+    assert codes("lathe", f"{groove}|G0 X60|Z5|C{c - 720}") == ""
+    assert codes("lathe", f"{groove}|G0 C{c}|X60") == ""
+
+
+@pytest.mark.parametrize("change", ["T4 M6|G43", "T4 M6 G43", "G43 H4|T4 M6"])
+@pytest.mark.parametrize("system", ["G54", "G55"])
+def test_with_a_work_offset_no_z_is_known_before_the_first_one(system, change, codes):
+    offsets = {5220: 1} | {first + axis: -99.7 for first in (5221, 5241) for axis in range(3)}
+    blocks = f"{system}|{change}|S900 M3|G0 X0 Y0|X5|Z1|X0|{LOW}"
+    assert codes("any mill", blocks, parameters=offsets) == ""
+
+
+MOVED = "positions below are the machine's; the program's zero is at machine"
+AT_X10 = "X0, the spindle's axis, is at machine X10\n"
+SAID = [  # a program, and a part of its report
+    ("lathe", f"{FLAT}|{FLAT}",
+     "line 13: C stands where line 11 left it, turned by −39.8° against"),
+    ("any lathe", f"T1 M6|G0 X60 Z2|{FLAT}", "its zero line is where C stands, at 0°"),
+    ("radii", SLOT, "C turns in place at the centre, by 360° in all: there the tool rubs for 1 s"),
+    ("lathe", "G12.1|G1 X100 F2000|G42 X60|Z-5|C-30|X-60|C30|X60|C0|Z2|G40 X100|G13.1",
+     "the tool is inside the closed contour, it comes from outside: G41? "
+     "(else go inside before the line with G42)"),
+    ("any lathe", f"o7 sub|G0 C#1|{FLAT.replace('G41', 'G42')}|o7 endsub|T1 M6|G0 X60 Z2|"
+     "o7 call [0]|o7 call [180]",
+     "line 4 (2 times): the tool crosses the contour on its way in: G41?"),
+    ("any lathe", f"o7 sub|{FLAT}|o7 endsub|T1 M6|G0 X60 Z2 C0|o7 call",
+     "lines 3 to 9, called in line 14: G12.1\n"),
+    ("mill", "G0 Z-4|G13 I9 Z-3 D4", "its depth Z−3 lies above Z−4, where the tool comes from"),
+    ("mill", "G91|G13 I9 Z3 D4", "its depth Z4 lies above Z1"),
+    ("lathe", FLAT.replace("Z-5", "Z5"), "its contour at Z5 lies above Z2"),
+    ("mill", f"{HIGH}|G0 X3000|{HIGH}", "the X axis would go to 3004, its limit is 500 mm"),
+    ("mill", f"G10 L2 P1 X2 Z-30|G0 X0 Y0 Z1|{LOW}", f"{MOVED} X2 Y0 Z−30"),
+    ("mill", f"G92 X-2 Y0 Z31|{LOW}", f"{MOVED} X2 Y0 Z−30"),
+    ("radii", f"G10 L2 P1 X10 Z-90 C30|G0 X18 Z2 C0|{SLOT}", f"{MOVED} Z−90; {AT_X10}"),
+    ("radii", "G10 L2 P1 X10 Z-90 C30|G0 X23 Z2 C0|G7.1 C20|G1 Z-40 C60 F250|G7.1 C0", AT_X10),
+    ("lathe", f"{BEGIN}|{SIDES}|{END}", "  from centre     programmed 13.5 to "),
+    ("lathe", f"{BEGIN.replace('C25', 'C12')}|{SIDES}|{END}", "programmed 13.5 to 15.58"),
+    ("lathe", f"{BEGIN}|{SIDES}|{END}", "  across flats    programmed 27, reached 27"),
+    ("mill", RING, "  core            radius 10.2 mm, by design of a single ring"),
+    ("mill", CLEARED, "  left inside     0 mm²"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("beginning", "blocks", "said"), SAID)
+def test_what_a_report_says(beginning, blocks, said, proof_of):
+    assert said in as_text(proof_of(beginning, blocks), MM, full=True)
+
+
+def test_what_a_flat_and_a_small_circle_have_not(proof_of):
+    assert "across flats" not in as_text(proof_of("lathe", FLAT), MM, full=True)
+    assert "  core  " not in as_text(proof_of("mill", "G13 I9 Z-3 D4"), MM, full=True)
+
+
+def test_a_picture_shows_what_is_uncut_and_where_findings_are(proof_of):
+    seen = scene_of_proof(proof_of("mill", "G12 I7 K40 Q15 Z-3 D5|G0 Z1")).seen
+    assert [(each.code, each.line) for each in seen.signs] == [("wrong-cutter", 6)]
+    assert [each.line for each in seen.uncut] == [6] and seen.uncut[0].values["shape"].area > 100
+    (air,) = scene_of_proof(proof_of("mill", "G13 I9 Z3 D4")).seen.signs
+    assert air.code == "cuts-air"
+    (crossed,) = (
+        each
+        for each in scene_of_proof(proof_of("lathe", FLAT.replace("G41", "G42"))).seen.signs
+        if each.code == "side-crossed"
+    )
+    assert crossed.place == pytest.approx((30, 0, 2))
+
+
+def test_nothing_is_said_of_the_spindle_where_there_are_several(codes):
+    blocks = f"T4 M6 G43|S900 M3 $1|G0 Z1|{LOW}"
+    assert codes("any mill", blocks, changed={"TRAJ": {"SPINDLES": "2"}}) == ""
+
+
+def test_plot_says_once_that_the_spindle_stands(tmp_path, capsys):
+    program = tmp_path / "program.ngc"
+    program.write_text(f"G21 G90 F600|T4 M6|G0 Z1|{LOW}|{LOW}|M2|".replace("|", "\n"))
+    words = ["--ini", str(SIM / "mill_mm_headless.ini"), "-o", str(tmp_path / "picture.svg")]
+    assert main(["plot", str(program), *words]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert [line[:13] for line in said if "spindle does not turn" in line] == ["note, line 4:"]
+
+
+def test_c_beside_x_has_another_feed_at_the_edge_of_the_part(proof_of):
+    judged = proof_of("lathe", "G1 X50 C90 F500").judged
+    (native,) = (each for each in judged if each.code == "native-c")
+    assert native.line == 5 and native.values["most"] > 1000
+
+
+@pytest.mark.parametrize(
+    ("beginning", "blocks", "stored", "expected"),
+    [
+        ("any lathe", "G28|G28", "", "place-not-set 2"),
+        ("any lathe", "G28|G28", "5163\t-12.5\n", ""),
+        ("any mill", "G28|G28", "", ""),
+        ("any lathe", "G28.1|G28|G30", "", "place-not-set 4"),
+    ],
+)
+def test_a_g28_whose_place_was_never_set_is_noted_on_a_lathe(
+    beginning, blocks, stored, expected, codes, tmp_path
+):
+    (tmp_path / "own.var").write_text(stored)
+    changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "own.var")}}
+    assert codes(beginning, blocks, changed=changed) == expected
