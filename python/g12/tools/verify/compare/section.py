@@ -20,7 +20,7 @@ from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import OFF, Laid, Made, PathDifference, Span, judge_path, lay
 from g12.tools.verify.compare.plane import Plane
-from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.expected.toolpath import NO_LENGTH, Expected
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import FEED, JOINT
 
@@ -157,12 +157,15 @@ def _seconds_given(move: Move) -> float:
 
 
 def span_parts(path: Sequence[Expected], span: Span) -> Iterator[tuple[Expected, float]]:
-    """Yield the moves of a span of a toolpath, each with the length of it that is made."""
+    """Yield the moves of a span of a toolpath, each with the length of it that is made.
+
+    A span may begin at the end of the move before, but for rounding.
+    """
     for at in range(span.index, span.last + 1):
         begin = span.share if at == span.index else 0.0
         end = span.last_share if at == span.last else 1.0
         length = (end - begin) * path[at].length
-        if length > 0.0:
+        if length > NO_LENGTH:
             yield path[at], length
 
 
