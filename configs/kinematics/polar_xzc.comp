@@ -2,22 +2,22 @@ component polar_xzc "switchable kinematics of a lathe with an X slide and a C ax
 
 description
 """
-Kinematics module for a lathe whose tool stands on the X slide and whose work spindle turns as
-the C axis. It has two types:
+Kinematics module for a lathe whose tool is on the X slide and whose work spindle turns as the C
+axis. It has two types:
 
 .B Type 0
 is X, Z and C as they are: each axis is its joint. LinuxCNC starts in it.
 
 .B Type 1
-is the face of the part: X and Y are the tool's place on the face, seen from the part, Z is Z. The
-slide stands at hypot(X, Y) and C at the angle of (X, Y), so lines and arcs in X and Y are lines
-and arcs on the part, planned by LinuxCNC with its whole look-ahead. C's zero line is where C
-stands when the type is switched on: there the tool is at X, Y0. C turns on over full turns,
-and the slide never goes below the centre.
+is the face of the part: X and Y are the tool's position on the face, in the part's frame, Z is Z. The
+slide is at hypot(X, Y) and C at the angle of (X, Y), so lines and arcs in X and Y are lines and arcs
+on the part, planned by LinuxCNC with its whole look-ahead. C's zero line is the angle of C at the
+switch to this type: there the tool is at X, Y0. C continues over full turns, and the slide never
+moves below the centre.
 
-A tool that does not pass the spindle's axis stands beside the X axis of the machine, by
+A tool that does not pass the spindle's axis is beside the X axis of the machine, by
 \\fBpolar-xzc.tool-offset\\fR, above zero on the side to which C turns the part's X axis. Then the face
-begins at X, Y \\fBtool-offset\\fR, and what is nearer to the centre than that cannot be reached.
+begins at X, Y \\fBtool-offset\\fR, and the tool comes no nearer to the centre than that.
 
 Load it in place of trivkins:
 
@@ -32,11 +32,11 @@ COORDINATES = X Y Z C
 .RE
 
 \\fBcoordinates\\fR gives each joint its letter, as with trivkins: X and C have to be there, Y may
-not be (it has no joint), every letter stands once. Letters other than X and C are their joints in
-both types.
+not be (it has no joint), each letter once. Letters other than X and C are their joints in both
+types.
 
-The type is chosen by the pin \\fBmotion.switchkins-type\\fR. The function \\fBpolar-xzc.guard\\fR,
-in the servo thread behind motion-controller, drives it:
+The pin \\fBmotion.switchkins-type\\fR selects the type. The function \\fBpolar-xzc.guard\\fR, in the
+servo thread after motion-controller, drives it:
 
 .RS
 .nf
@@ -45,7 +45,7 @@ net polar-centre motion.analog-out-02 => polar-xzc.centre
 net polar-request motion.analog-out-03 => polar-xzc.request
 net polar-enabled motion.motion-enabled => polar-xzc.enabled
 net polar-program motion.coord-mode => polar-xzc.program
-net polar-stands motion.in-position => polar-xzc.stands
+net polar-in-position motion.in-position => polar-xzc.stands
 net polar-type polar-xzc.type => motion.switchkins-type
 net polar-face polar-xzc.face => motion.digital-in-03
 net polar-jog polar-xzc.jog-inhibit => motion.jog-inhibit
@@ -60,31 +60,31 @@ setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 .fi
 .RE
 
-so that M68 E3 Q1 asks for the face and M68 E3 Q0 for X, Z and C. \\fBcentre\\fR is the position
-of the X joint at which the tool is on the spindle's axis; it counts when the face is switched on,
-as \\fBtool-offset\\fR does.
-The guard switches only when the machine has stood for six cycles. It goes back to type 0 by itself when the
-machine is switched off, stopped in an emergency or jogged; then the request has to be taken back
-before a new one counts. While the face is on and no program or MDI moves the machine, jogs are
-inhibited.
+so that M68 E3 Q1 requests the face and M68 E3 Q0 X, Z and C. \\fBcentre\\fR is the position of the X
+joint at which the tool is on the spindle's axis; it is read at the switch to the face, as is
+\\fBtool-offset\\fR.
+The guard switches only when the machine has been at rest for six cycles. It switches back to type 0 by
+itself when the machine is switched off, stopped in an emergency or jogged; then the request has to be
+withdrawn before a new one counts. While the face is on and no program or MDI moves the machine, jogs
+are inhibited.
 
-M68 E3 Q2 asks for the face by hand: for lines of MDI, which nobody has looked at before. With M52
-P1 their speed is kept such that C can follow, the slower the nearer to the centre, and a move of a
-program's line is held.
+M68 E3 Q2 requests the face by hand: for lines of MDI, which were not planned ahead. M52 P1 limits
+their speed to what C can follow, the slower the nearer to the centre, and a move of a program's line
+is held.
 
-With M68 E3 Q1 and M52 P1 the operator's feed override counts up to \\fBmost-override\\fR, if that is not 0:
-what it is turned up beyond that is taken back by \\fBfeed\\fR. G12.1 sets the pin, and \\fBunit\\fR, which it
-needs to know the override: a program's unit in the machine's.
+With M68 E3 Q1 and M52 P1 the operator's feed override applies up to \\fBmost-override\\fR, if that is not 0:
+\\fBfeed\\fR reduces a higher one. G12.1 sets the pin, and \\fBunit\\fR, a program's unit in the machine's,
+from which the module calculates the override.
 
-.B What is refused.
-A move that means nothing in the type in force fails, in words: one to a Y other than 0 in type 0,
-and one of C in type 1. So does any move while the type in force is another than the one that is
-asked for: M68 E3 Q3 asks for neither, so nothing moves by program or MDI until the next request. The
-face is not switched on with the tool beyond the centre.
+.B Refusals.
+A move that has no meaning in the active type fails with a message: one to a Y other than 0 in type 0,
+and one of C in type 1. So does any move while the active type is not the requested one: M68 E3 Q3
+requests neither, so nothing moves by program or MDI until the next request. The face is not switched
+on with the tool beyond the centre.
 
 .B The centre.
-In the centre the angle of C is free. It stays what it was when the tool came, so a path that leaves the
-centre in another direction than it came needs a turn of C in type 0 in between. LinuxCNC knows
+In the centre the angle of C is free. It does not change there, so a path that leaves the centre in
+another direction than that of its approach needs a turn of C in type 0 in between. LinuxCNC knows
 nothing of C's speed while it plans X and Y: feeds near the centre have to be chosen so that C can
 follow. The G12.1 of this package does both.
 
@@ -95,23 +95,23 @@ module tells them that type 0 is X, Z and C.
 
 modparam dummy coordinates=XZC "letter of each joint";
 
-pin in float request "1 asks for the face, 2 for the face by hand, 3 for no move, everything else for X, Z and C";
+pin in float request "1 requests the face, 2 the face by hand, 3 no move, any other value X, Z and C";
 pin in float centre "position of the X joint with the tool on the spindle's axis";
 pin in float tool_offset "of the tool from the X line: [G12]POLAR_TOOL_OFFSET";
 pin in bit enabled "the machine is on: motion.motion-enabled";
 pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-mode";
-pin in bit stands "the machine stands: motion.in-position";
-pin in s32 program_line "line of the move that is made, 0 in MDI: motion.program-line";
-pin in float speed "speed that is asked for: motion.requested-vel";
-pin in float feed_upm "feed under way, program units a minute: motion.feed-upm";
+pin in bit stands "the machine is at rest: motion.in-position";
+pin in s32 program_line "line of the present move, 0 in MDI: motion.program-line";
+pin in float speed "commanded speed: motion.requested-vel";
+pin in float feed_upm "present feed, program units a minute: motion.feed-upm";
 pin in float unit = 1.0 "of the program, in the machine's";
 pin in float most_override "of the feed on the face by program, 0 for any";
 pin in float acceleration "of the face's X and Y: [AXIS_X]MAX_ACCELERATION";
 pin in float c_speed "[AXIS_C]MAX_VELOCITY";
 pin in float c_acceleration "[AXIS_C]MAX_ACCELERATION";
 pin out float type "for motion.switchkins-type";
-pin out bit face "type 1 is in force";
-pin out bit jog_inhibit "type 1 is in force without a program or MDI: for motion.jog-inhibit";
+pin out bit face "type 1 is active";
+pin out bit jog_inhibit "type 1 is active without a program or MDI: for motion.jog-inhibit";
 pin out bit hold "a program moves the face by hand: for motion.feed-inhibit";
 pin out float feed = 1.0 "share of the speed that C can follow: for motion.adaptive-feed";
 
@@ -131,14 +131,14 @@ author "the g12 package";
 #include <kinematics.h>
 
 #define DEGREE (M_PI / 180.0)
-#define AT_CENTRE 1e-6 /* machine units: so near to it the angle of C is free */
-#define NO_MOVE 1e-6   /* machine units or degrees: rounding of a word that was not given */
+#define AT_CENTRE 1e-6 /* machine units: within this distance the angle of C is free */
+#define NO_MOVE 1e-6   /* machine units or degrees: rounding of an absent word */
 
 #define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
-#define NEARER 1.2 /* that begins so much outside of where the two are equal */
-#define SETTLED 6 /* cycles of standing: LinuxCNC smooths the joints' way over the last four */
+#define NEARER 1.2 /* ratio of the radius where that begins to the one where the two are equal */
+#define SETTLED 6 /* cycles at rest: LinuxCNC smooths the joints' motion over the last four */
 #define LEAST_FEED 0.01 /* by program: no override is so high that it needs less */
-#define ASIDE 0.4  /* of the acceleration: the rest is for what the slide has to do beside it */
+#define ASIDE 0.4  /* of the acceleration: the slide needs the rest for its own motion */
 
 enum { XZC, FACE, BY_HAND, NO_MOVES };
 static const char letters[] = "XYZABCUVW";
@@ -148,13 +148,13 @@ RTAPI_MP_STRING(coordinates, "letter of each joint");
 
 static struct {
     int kind;       /* XZC or FACE */
-    int begins;     /* the face was switched on, and forward has not seen it yet */
-    int given;      /* motion takes commands now: a cycle begins so, forward comes first behind it */
-    int spent;      /* the request ended by itself, and was not taken back since */
+    int begins;     /* the face was switched on, and forward was not called since */
+    int given;      /* motion takes commands now: at the start of a cycle, before forward */
+    int spent;      /* the request ended by itself, and was not withdrawn since */
     double origin;  /* of the face: position of the X joint */
     double zero;    /* of the face: C in degrees on its X axis */
-    double beside;  /* the X line stands the tool */
-    double slide;   /* where the slide stands, from the origin */
+    double beside;  /* distance of the tool from the X line */
+    double slide;   /* position of the slide, from the origin */
     int joints;
     int axis[EMCMOT_MAX_JOINTS]; /* index of each joint's letter */
     int x, c;                    /* joints */
@@ -171,22 +171,22 @@ static double *axis_of(EmcPose *pose, int axis)
 /* Take the joints' letters; return 0, or -1 for a machine that has no face. */
 static int take_coordinates(const char *text)
 {
-    int seen[EMCMOT_MAX_AXIS] = {0};
+    int times[EMCMOT_MAX_AXIS] = {0};
     const char *found;
 
     state.joints = 0;
     for (; *text; text++) {
         found = strchr(letters, *text & ~0x20);
-        if (!found || !*found || seen[found - letters]++ || *found == 'Y') return -1;
+        if (!found || !*found || times[found - letters]++ || *found == 'Y') return -1;
         if (state.joints == EMCMOT_MAX_JOINTS) return -1;
         if (*found == 'X') state.x = state.joints;
         if (*found == 'C') state.c = state.joints;
         state.axis[state.joints++] = found - letters;
     }
-    return seen[0] && seen[5] ? 0 : -1;
+    return times[0] && times[5] ? 0 : -1;
 }
 
-/* Put the face's X axis where C stands; stay in X, Z and C with the tool beyond the centre. */
+/* Put the face's X axis at the angle of C; remain in X, Z and C with the tool beyond the centre. */
 static void begin_face(const double *joint)
 {
     state.begins = 0;
@@ -216,21 +216,21 @@ int kinematicsForward(const double *joint, EmcPose *pose,
     return 0;
 }
 
-/* Tell whether the face is asked for, by a request that did not end by itself. */
-static int wanted(const struct __comp_state *__comp_inst)
+/* Return whether the face is requested, by a request that did not end by itself. */
+static int is_face_requested(const struct __comp_state *__comp_inst)
 {
     return (request == FACE || request == BY_HAND) && !state.spent;
 }
 
-/* Tell the operator why there are no joints: LinuxCNC shows a module's errors as its own. */
+/* Report to the operator why there are no joints: LinuxCNC shows a module's errors as its own. */
 static int refuse(const char *reason)
 {
     rtapi_print_msg(RTAPI_MSG_ERR, "polar mode: %s\n", reason);
     return -1;
 }
 
-/* Refuse a line that is given where the type in force is another than the one asked for. What is
-   under way then is made to its end. */
+/* Refuse a line that is commanded while the active type is not the requested one. The present move is
+   completed. */
 static int refused(void)
 {
     const struct __comp_state *__comp_inst = component;
@@ -238,17 +238,17 @@ static int refused(void)
     if (!state.given || !program) return 0;
     if (request == NO_MOVES || (request == BY_HAND && state.spent))
         return refuse("an abort or an error ended it, nothing moves until G13.1 or G12.1");
-    if (wanted(__comp_inst) != (state.kind == FACE))
+    if (is_face_requested(__comp_inst) != (state.kind == FACE))
         return refuse("the machine is about to change its kinematics, nothing moves until then");
     return 0;
 }
 
-/* joint holds where the joints are: C goes on from there over the full turns. */
+/* joint has the present positions: C continues from there over the full turns. */
 int kinematicsInverse(const EmcPose *pose, double *joint,
                       const KINEMATICS_INVERSE_FLAGS *iflags, KINEMATICS_FORWARD_FLAGS *fflags)
 {
     EmcPose world = *pose;
-    double x, y, slide, reach, present = joint[state.c];
+    double x, y, slide, square, present = joint[state.c];
     int k;
 
     (void)iflags;
@@ -262,10 +262,10 @@ int kinematicsInverse(const EmcPose *pose, double *joint,
     if (state.kind == FACE) {
         x = world.tran.x - state.origin;
         y = world.tran.y;
-        reach = x * x + y * y - state.beside * state.beside; /* the slide's, squared */
-        if (reach < -AT_CENTRE * fabs(state.beside))
-            return refuse("the tool stands beside X's line and comes no nearer to the centre");
-        slide = sqrt(fmax(reach, 0.0));
+        square = x * x + y * y - state.beside * state.beside; /* of the slide's position */
+        if (square < -AT_CENTRE * fabs(state.beside))
+            return refuse("the tool is beside X's line and comes no nearer to the centre");
+        slide = sqrt(fmax(square, 0.0));
         joint[state.x] = state.origin + slide;
         joint[state.c] = present;
         if (slide > AT_CENTRE || state.beside != 0.0) {
@@ -292,7 +292,7 @@ int kinematicsSwitch(int kind)
     return 0;
 }
 
-/* LinuxCNC after 2.9 asks what a type is; -1 is no information, and type 0 is meant by G13.1. */
+/* LinuxCNC after 2.9 reads the properties of a type; -1 is none. Its G13.1 selects type 0. */
 int kinematicsTypeFlags(int kind)
 {
 #ifdef KINSTYPE_IDENTITY
@@ -312,7 +312,7 @@ EXPORT_SYMBOL(kinematicsTypeFlags);
 
 /* Return the speed that C and the slide can follow where the slide is at r, whatever the
    direction: with its own acceleration A the planner turns C by up to A / r. Where that is more
-   than C's, speed grows with r only, so that a stop leaves C behind by LAG at most. */
+   than C's, speed grows with r only, so that in a stop C lags by LAG at most. */
 static double followed(const struct __comp_state *__comp_inst, double r)
 {
     double most = sqrt(2.0) * acceleration, c_most = c_acceleration * DEGREE;
@@ -328,8 +328,8 @@ static double followed(const struct __comp_state *__comp_inst, double r)
     return v * r / sqrt(r * r + state.beside * state.beside); /* the slide is so much faster */
 }
 
-/* Return the operator's feed override, as it last moved the machine: LinuxCNC tells what it makes of
-   F, together with the share that `feed` was in the cycle before. */
+/* Return the operator's feed override during the last motion: the feed that LinuxCNC reports is F
+   times the override times `feed` of the cycle before. */
 static double override(const struct __comp_state *__comp_inst)
 {
     static double known = 1.0;
@@ -338,7 +338,7 @@ static double override(const struct __comp_state *__comp_inst)
     return known;
 }
 
-/* Return the share of the speed that C can follow of what program and operator ask for. */
+/* Return the share of the commanded speed, override included, that C can follow. */
 static double share(const struct __comp_state *__comp_inst, int by_hand)
 {
     double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0, turned_up;
@@ -349,15 +349,15 @@ static double share(const struct __comp_state *__comp_inst, int by_hand)
     return fmax(most_override / turned_up, LEAST_FEED);
 }
 
-/* A switch while a jog is under way would make the axes jump to where the jog stood before it. */
+/* A switch during a jog would make the axes jump to their positions before the jog. */
 FUNCTION(guard)
 {
-    static int standing;
-    int asked = request == FACE || request == BY_HAND, by_hand;
+    static int at_rest; /* cycles */
+    int requested = request == FACE || request == BY_HAND, by_hand;
 
-    state.spent = asked && (state.spent || !enabled || !program);
-    standing = stands ? standing + (standing < SETTLED) : 0;
-    if (!enabled || (program && standing == SETTLED)) type = wanted(__comp_inst) ? FACE : XZC;
+    state.spent = requested && (state.spent || !enabled || !program);
+    at_rest = stands ? at_rest + (at_rest < SETTLED) : 0;
+    if (!enabled || (program && at_rest == SETTLED)) type = is_face_requested(__comp_inst) ? FACE : XZC;
     face = state.kind == FACE && !state.begins;
     by_hand = face && request == BY_HAND;
     jog_inhibit = face && !program;
@@ -373,7 +373,7 @@ EXTRA_SETUP()
     component = __comp_inst;
     if (take_coordinates(coordinates)) {
         rtapi_print_msg(RTAPI_MSG_ERR, "polar_xzc: coordinates=%s: X and C have to be there, Y"
-                        " may not, every letter stands once\n", coordinates);
+                        " may not, each letter once\n", coordinates);
         return -1;
     }
     return 0;
