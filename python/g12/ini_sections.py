@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Sections and keys of an INI file's text, the way LinuxCNC 2.9 reads them.
+"""Sections and keys of an INI file's text, as LinuxCNC 2.9 reads them.
 
 The first section of a name is read, a backslash at a line's end continues it, and of several
 lines with one key the first counts.  (2.10 reads later sections of the name too.)

@@ -134,3 +134,19 @@ def test_no_public_name_has_two_meanings():
                 owners.setdefault(node.name, []).append(name_of(path))
     twice = {name: files for name, files in owners.items() if len(files) > 1 and name not in ROLES}
     assert not twice
+
+
+def constants_of(path):
+    """Yield the constants of a file with their values as text."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+            yield node.targets[0].id, ast.unparse(node.value)
+
+
+def test_no_constant_of_what_linuxcnc_loads_has_two_values():
+    values = {}
+    for path in sorted(PACKAGE.rglob("*.py")):
+        if PACKAGE / "tools" not in path.parents:
+            for name, value in constants_of(path):
+                values.setdefault(name, set()).add(value)
+    assert not {name: found for name, found in values.items() if len(found) > 1 and name.isupper()}

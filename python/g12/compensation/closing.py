@@ -87,7 +87,7 @@ def _meetings(curves: Sequence[Curve], i: int, j: int, near: float) -> Iterator[
         start = min(max(one.length_to(a), 0.0), length)
         end = min(max(other.length_to(b, late=True), 0.0), rest)
         inside = near < start < length - near, near < end < rest - near
-        joints = _joint(curves, i, start), _joint(curves, j, end)
+        joints = _joined_directions(curves, i, start), _joined_directions(curves, j, end)
         crossing = all(inside) or any(
             within and joint and _goes_through(joint, curve, point)
             for within, joint, curve, point in zip(inside[::-1], joints, (other, one), (b, a))
@@ -96,7 +96,7 @@ def _meetings(curves: Sequence[Curve], i: int, j: int, near: float) -> Iterator[
         yield _Meeting(start, passed + end, crossing, outer or leads or not crossing)
 
 
-def _joint(curves: Sequence[Curve], k: int, along: float) -> tuple[complex, ...]:
+def _joined_directions(curves: Sequence[Curve], k: int, along: float) -> tuple[complex, ...]:
     """Return the directions on both sides of the nearer end of a move, if others join it."""
     at_end = along > 0.5 * curves[k].length
     first = k if at_end else k - 1

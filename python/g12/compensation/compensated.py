@@ -82,7 +82,7 @@ class CompensatedContour:
             if first < last:
                 wall = self.moves[index].portion(first, last)
                 self.walls[index] = wall._replace(z0=level, z1=level)
-        self.levels = frozenset(_level(self.moves[index].z1) for index in self.walls)
+        self.levels = frozenset(_level_key(self.moves[index].z1) for index in self.walls)
         passes = [(index, move) for index, cut in enumerate(cuts) for move in cut.path]
         self.passes = passes_of(passes)
         self.ramps = passes_of((RAMP, move) for ramp in ramps for move in ramp.path)
@@ -206,7 +206,7 @@ def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
     for index, move in path:
         if not isinstance(move, PlaneMove):
             continue
-        key, level = in_plane(move), frozenset([_level(move.z1)])
+        key, level = in_plane(move), frozenset([_level_key(move.z1)])
         before = kept.get(key)
         if before:
             index, level = before.move_index, level | before.levels
@@ -218,7 +218,7 @@ def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
 def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:
     """Return the greatest Z of each move, by its index; of repeated ones only the first's index.
 
-    Moves in the air, between a plunge up and a plunge down, are left out.
+    Moves in the air, between a plunge up and a plunge down, are omitted.
     """
     levels: dict[int, float] = {}
     first: dict[tuple[int, ...], int] = {}
@@ -273,6 +273,6 @@ def _nearest(
     return max(found, key=lambda each: abs(each[1]))
 
 
-def _level(z: float) -> int:
+def _level_key(z: float) -> int:
     """Return a Z level in whole steps of ``SAME_POINT``, so that rounding makes no difference."""
     return round(z / SAME_POINT)

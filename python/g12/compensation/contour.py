@@ -2,7 +2,7 @@
 """The programmed contour: lines and arcs in a flat plane, each with the block it comes from.
 
 The plane has the axes x and c, and z at right angles to it, all in program units; its points are
-complex numbers x + jc. On a part's face they are X (a radius value, whatever the X words meant), C
+complex numbers x + jc. On a part's face they are X (a radius value, whatever the X words are), C
 as a length, and Z, with their origin in the spindle's centre; on a cylinder C as a length, Z, and
 X. An angle grows from +x to +c; a positive sweep is counterclockwise (G3), in radians.
 """
@@ -82,7 +82,7 @@ class Plunge(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """A block without motion; the plan keeps the caller's ``action`` at this point of the order."""
+    """A block without motion; its ``action`` is a step of the plan at this point of the order."""
 
     line: int
     action: object

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Gouges between contours: the tool, on its way along one, cuts deep into the wall of another.
+"""Gouges between contours: the tool, while it machines one, cuts deep into the wall of another.
 
 That is refused only where it must be a mistake:
 
@@ -10,7 +10,7 @@ That is refused only where it must be a mistake:
 - the cut is deeper than an allowance for finishing can be: a deliberately larger offset makes the
   channel between two contours narrower by twice the allowance.
 
-Everything else is left to ``g12 verify``. Program units.
+All other cuts between contours are for ``g12 verify`` to report. Program units.
 """
 
 from __future__ import annotations

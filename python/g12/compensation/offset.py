@@ -9,7 +9,7 @@ neighbours:
 - ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
   the end of the last one. Blocks without motion in the plane are skipped.
 
-Corners that the tool cannot reach are refused, and so is a path on which it gouges (`gouge`).
+Corners that are too tight for the tool are refused, and so is a path on which it gouges (`gouge`).
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ def without_rounding_points(
     at = 0
     while at < len(elements):
         element = elements[at]
-        # A ramp is left as it is: the contour begins at its end.
+        # A ramp is not changed: the contour begins at its end.
         last, away = _line_through(elements, at, limit) if offset else (at, 0.0)
         offset = element.offset if isinstance(element, PlaneMove) else offset
         end = elements[last]
@@ -113,5 +113,5 @@ def _is_line(element: PathElement) -> TypeGuard[PlaneMove]:
 
 
 def _is_short(before: PlaneMove, move: PlaneMove, limit: float) -> bool:
-    """Return whether a move that follows another under compensation may be left out."""
+    """Return whether a move that follows another under compensation may be removed."""
     return bool(before.offset and move.offset) and move.length <= limit

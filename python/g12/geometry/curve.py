@@ -47,8 +47,8 @@ class Line(NamedTuple):
 
     def offset(self, distance: float) -> Line:
         """Return the parallel line, ``distance`` to the left of the motion."""
-        left = 1j * distance * self.direction()
-        return Line(self.start + left, self.end + left)
+        shift = 1j * distance * self.direction()
+        return Line(self.start + shift, self.end + shift)
 
     def share_of(self, point: complex) -> float:
         """Return the share of the line's point nearest to a point."""

@@ -13,4 +13,4 @@ CanonModule: TypeAlias = Any  # the module emccanon, or a test's substitute
 ToolTableEntry: TypeAlias = Any  # of the tool table
 
 PER_MINUTE, INVERSE_TIME, PER_REVOLUTION = 0, 1, 2  # feed_mode
-PLANES = {1: XY, 2: YZ, 3: XZ}  # plane
+PLANE_CODES = {1: XY, 2: YZ, 3: XZ}  # plane

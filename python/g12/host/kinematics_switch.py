@@ -18,7 +18,7 @@ import hal
 import linuxcnc
 
 from g12.errors import BlockRefusal, number
-from g12.host.interp import PLANES, Interp
+from g12.host.interp import PLANE_CODES, Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
 from g12.section.modes import decimal
@@ -54,7 +54,7 @@ def modes_found(interp: Interp) -> str:
     """Return the block that restores the modes that `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(IJK_MODES[code] for code in active if code in IJK_MODES)
-    return f"{PLANES[interp.plane]}{centres}{adaptive_feed(interp)}"
+    return f"{PLANE_CODES[interp.plane]}{centres}{adaptive_feed(interp)}"
 
 
 def adaptive_feed(interp: Interp) -> str:

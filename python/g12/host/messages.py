@@ -18,7 +18,7 @@ from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
 from g12.host.interp import Interp
 from g12.host.program_lines import line_of_block, line_of_call
 
-NO_FILE = ""  # the interpreter keeps no copy of it: a constant lives as long as the module
+NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
 
 
 @functools.cache  # several modules may report the same

@@ -10,7 +10,7 @@ from g12.lengths import MM_PER_INCH
 from g12.section.block_rules import NO_CODE, GGroup
 
 G7 = 70
-INCH = 1  # length_units
+INCH_UNITS = 1  # length_units
 
 
 def program_units_per_machine_unit(interp: Interp) -> float:
@@ -25,7 +25,7 @@ def millimetres_per_machine_unit() -> float:
 
 def millimetres_per_unit(interp: Interp) -> float:
     """Return the program's unit in mm."""
-    return MM_PER_INCH if interp.length_units == INCH else 1.0
+    return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
 
 
 def spindle_speed(interp: Interp) -> float:

@@ -198,7 +198,7 @@ class ProgramLines:
         self._in_file = interp.sequence_number = line
 
     def skipping(self) -> bool:
-        """Return whether the interpreter skips lines: a false if, or on the way to a sub."""
+        """Return whether the interpreter skips lines, after a false if or before a called sub."""
         self.interp.read("G1")
         return self.interp.blocks[0].motion_to_be == NO_CODE
 

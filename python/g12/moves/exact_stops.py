@@ -47,14 +47,14 @@ def stops(
         if isinstance(element, Mark):
             continue
         if following is not None:
-            corner = _corner(element, following, acceleration, stopping)
+            corner = _blending_distance(element, following, acceleration, stopping)
             stopping = corner > rounding
         marked[k] = stopping
         following = element
     return marked
 
 
-def _corner(
+def _blending_distance(
     a: MotionElement,
     b: MotionElement,
     acceleration: Callable[[Direction, complex], float],

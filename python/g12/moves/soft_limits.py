@@ -31,7 +31,7 @@ class Moving(Protocol):
 class Beyond(NamedTuple):
     """A move that an axis cannot make: where it would go, and its limit, in machine coordinates.
 
-    ``unit`` is theirs; ``converted`` says that the program's is another.
+    ``unit`` is theirs; ``converted``: the program's is another.
     """
 
     line: int

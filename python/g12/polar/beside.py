@@ -13,7 +13,7 @@ from the pole the slide has to be at s, and C at less than the angle of the poin
                  s
 
 No point nearer to the pole than ``beside`` can be reached, and none is commanded: `check_reach`
-keeps the path outside by the tolerance, and segments deviate by less.
+refuses a path within the tolerance of that circle, and segments deviate by less.
 
 Where the path makes the angle p with e, a straight move of X and C has the curvature
 

@@ -104,14 +104,14 @@ def _element(
         return _TimedElement(move, stop)
     demands, length = demands_of(move, limits), move.length
     corner = not isinstance(following, PlaneMove) or not _goes_straight_on(move, following)
-    return _TimedElement(move, stop, length, demands, corner, length * _slowness(demands))
+    return _TimedElement(move, stop, length, demands, corner, length * _mean_slowness(demands))
 
 
 def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
     return abs(following.curve.direction(0.0) - move.curve.direction(1.0)) < STRAIGHT_ON
 
 
-def _slowness(demands: Sequence[Demand]) -> float:
+def _mean_slowness(demands: Sequence[Demand]) -> float:
     """Return the approximate time in segments from first to last, for a unit of the length."""
     return sum(
         0.5 * (one.slowness + other.slowness) * (other.at - one.at)
@@ -127,7 +127,7 @@ def _spans(element: _TimedElement, limits: FaceLimits, share: float) -> list[_Sp
     if can_follow_at(move, demands, limits, share):
         return [_Span(element, 0.0, 1.0, move.feed)]
     levels = [
-        _level(CAREFUL * followed(move, demand, limits, share / CAREFUL) / move.feed)
+        _feed_share(CAREFUL * followed(move, demand, limits, share / CAREFUL) / move.feed)
         for demand in demands
     ]
     feeds = [
@@ -141,7 +141,7 @@ def _spans(element: _TimedElement, limits: FaceLimits, share: float) -> list[_Sp
     return spans
 
 
-def _level(share: float) -> float:
+def _feed_share(share: float) -> float:
     """Return the greatest tried share of the feed that is at most ``share``, 0.0 for too little."""
     if share >= 1.0:
         return 1.0
@@ -230,7 +230,7 @@ def _in_segments(span: _Span) -> float:
     if (span.first, span.last) == (0.0, 1.0):
         return element.in_segments
     there = [demand for demand in element.demands if span.first <= demand.at <= span.last]
-    return element.length * _slowness(there)
+    return element.length * _mean_slowness(there)
 
 
 def _smooth(spans: list[_Span]) -> Iterator[list[_Span]]:

@@ -44,7 +44,7 @@ class Law(NamedTuple):
 
     ``deviation`` from the path; ``ripple``: how far the speed may be from its mean within a
     segment, relative. For an even speed segments are not made shorter than 1 / ``x_hold`` or 1 / (r
-    ``c_hold``): on shorter ones the machine would not reach the speed at all.
+    ``c_hold``): on shorter ones the machine would not reach the speed.
     """
 
     deviation: float

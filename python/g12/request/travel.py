@@ -12,8 +12,8 @@ from g12.request.words import Words
 
 SpacePoint = tuple[float, float, float]  # X, Y, Z
 TRAVEL_AXES = "XYZ"
-X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-DIRECTIONS = {XY: (X, Y), XZ: (Z, X), YZ: (Y, Z)}
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
 
 
 class CycleExtent(NamedTuple):

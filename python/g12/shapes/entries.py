@@ -17,7 +17,7 @@ from g12.request.words import Words
 
 CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid
 WIDEST = 0.75  # of the cutter's diameter: greatest stepover
-MOST_PASSES = 10_000
+MOST_SHAPE_PASSES = 10_000
 MOST_MOVES = 100_000  # takes minutes to read, during which LinuxCNC handles no abort
 MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
 
@@ -109,8 +109,8 @@ def levels_of(entries: ShapeEntries, context: Context) -> Levels:
     depth = entries.require_positive("depth", "how deep, from the face at Z0")
     most = entries.positive("depth_per_pass", depth)
     levels = max(1, steps_between(0.0, depth, most, context.length(ROUNDING_MM)))
-    if levels > MOST_PASSES:
-        rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_PASSES}"
+    if levels > MOST_SHAPE_PASSES:
+        rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_SHAPE_PASSES}"
         raise entries.refuse(f"{entries.written('depth_per_pass', most)} {rule}")
     return Levels(levels, depth / levels)
 

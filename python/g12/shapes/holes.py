@@ -8,7 +8,7 @@ LinuxCNC's own drilling cycles take no C; in G7 and G19 2.9.0 does not halve the
 
 Rules, in the order of the checks: a tool in the spindle; where the holes are; depth and retract
 above 0; kind 0 to 3; feed above 0; no peck but in drilling; dwell from 0; a tap's spindle on, the
-right way; the tool above the face, or outside the surface; not too many moves.
+right direction; the tool above the face, or outside the surface; not too many moves.
 
 Lengths are in program units, X is a radius, angles are in degrees. Heights are above the face or
 the surface.
@@ -199,7 +199,7 @@ def hole_turn(entries: ShapeEntries, count: int) -> float:
 
 
 def shorter_turn(angle: float) -> float:
-    """Return an angle as the shorter turn, from -180 to 180; 180 keeps its sign."""
+    """Return an angle as the shorter turn, from -180 to 180; a half turn has the angle's sign."""
     short = angle - DEGREES_PER_TURN * ceil((angle - DEGREES_PER_TURN / 2) / DEGREES_PER_TURN)
     return -short if short == DEGREES_PER_TURN / 2 and angle < 0 else short
 

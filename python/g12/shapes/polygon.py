@@ -6,7 +6,7 @@ through the middle of a corner, each round begins and ends at (``outside``, 0), 
 
 1. an arc about the spindle's centre, away from the zero line
 2. a straight lead-in, tangent to the corner's arc in its middle
-3. flat after flat, with an arc about each corner; where the flats reach out of the stock, an arc
+3. flat after flat, with an arc about each corner; where the flats extend beyond the stock, an arc
    about the spindle's centre replaces the corner
 4. straight out where the last arc is on the zero line again, and back
 
@@ -61,7 +61,7 @@ POLYGON_ENTRIES = (
 TWO_FLATS = 2  # sides: two flats, which have no corner
 MOST_SIDES = 100
 FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one
-UNLIMITED = 1e9  # half the length of an unlimited flat
+UNLIMITED_FLAT = 1e9  # half the length of an unlimited flat
 
 
 class PolygonForm(NamedTuple):
@@ -94,7 +94,7 @@ class PolygonForm(NamedTuple):
     def side(self) -> float:
         """Return half the length of a flat."""
         if self.sides == TWO_FLATS:
-            return UNLIMITED
+            return UNLIMITED_FLAT
         return self.inner * tan(radians(self.half_turn))
 
     @property

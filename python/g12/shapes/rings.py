@@ -4,8 +4,8 @@
 A ring of the tool's centre is two half turns counterclockwise, each a line of ``length`` (0 in a
 round pocket) and a half circle of the ring's radius. The first ring is so small that it leaves no
 core. The descent follows it with a slope of [G12] ENTRY_ANGLE at most, and once more at the level.
-The stepover from ring to ring, and the way back, is a half circle of the mean radius, tangent to
-both.
+The stepover to the next ring, and the return to the first, is a half circle of the mean radius,
+tangent to both.
 
 Lengths are in program units.
 """

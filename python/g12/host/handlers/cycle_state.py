@@ -13,7 +13,7 @@ from g12.cycles.entry import PocketEntry
 from g12.host.interp import (
     INVERSE_TIME,
     PER_REVOLUTION,
-    PLANES,
+    PLANE_CODES,
     Interp,
     ParsedBlock,
     ToolTableEntry,
@@ -21,7 +21,7 @@ from g12.host.interp import (
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program, message_once
 from g12.host.modes import (
-    INCH,
+    INCH_UNITS,
     diameter_mode,
     millimetres_per_machine_unit,
     millimetres_per_unit,
@@ -198,12 +198,12 @@ def remember_first_plane(interp: Interp, height: float) -> None:
 def snapshot(interp: Interp) -> Context:
     """Return the state before the block: modes, units, position, tools."""
     return Context(
-        inch=interp.length_units == INCH,
+        inch=interp.length_units == INCH_UNITS,
         x=interp.current_x,
         y=interp.current_y,
         z=interp.current_z,
         incremental=interp.distance_mode == INCREMENTAL_MODE,
-        plane=PLANES.get(interp.plane, "G17.1, G18.1 or G19.1"),
+        plane=PLANE_CODES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
         per_revolution=per_revolution(interp),
         speed=spindle_speed(interp),
@@ -221,7 +221,7 @@ def other_unit(interp: Interp) -> str:
     """Return the program's unit of length where the machine's is another, else ""."""
     if not converts(program_units_per_machine_unit(interp)):
         return ""
-    return "in" if interp.length_units == INCH else "mm"
+    return "in" if interp.length_units == INCH_UNITS else "mm"
 
 
 def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:

@@ -38,7 +38,7 @@ from g12.section.start import SectionStart
 MDI_LINE = 0  # line number of the following moves, by which polar_xzc identifies them
 
 
-ONLY_MOVES = 3  # cutter_comp_side, neither left nor right: see `_lock`
+ONLY_MOVES = 3  # cutter_comp_side that is neither left nor right: see `_lock`
 COMPENSATION_OFF, COMPENSATED = 0, (1, 2)  # cutter_comp_side
 
 

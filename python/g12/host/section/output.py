@@ -225,7 +225,7 @@ class SectionOutput:
         interp.distance_mode = self.absolute
         if self._per_revolution:
             interp.execute("G94")
-        interp.feed_mode = PER_MINUTE  # reading ahead may have left the modes of the section's end
+        interp.feed_mode = PER_MINUTE  # reading ahead may have set the modes of the section's end
         interp.motion_mode = G1
 
     def _segments(self, run: BlockMoves, following: object, exact_stop: bool) -> None:

@@ -44,7 +44,7 @@ MOST_SECTION_LINES = 1_000_000  # LinuxCNC handles no abort while a section is r
 class Phase(Enum):
     """The phase of a section.
 
-    While it skips, after a false if or on the way to a sub, only O-words count. While it moves, the
+    While it skips, after a false if or before a called sub, only O-words count. While it moves, the
     interpreter's position is the machine's, in the modes commanded so far.
     """
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from interpreter import MODE_INCREMENTAL
 
 from g12.host import messages, modes
-from g12.host.interp import INVERSE_TIME, PER_REVOLUTION, PLANES, Interp, ParsedBlock
+from g12.host.interp import INVERSE_TIME, PER_REVOLUTION, PLANE_CODES, Interp, ParsedBlock
 from g12.host.program_lines import without_line
 from g12.host.section.reader import block_of
 from g12.host.spindle_c import missing_code
@@ -44,7 +44,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
         tool_radius=_tool_radius(interp, machine_unit),
         diameter=modes.diameter_mode(interp),
-        yz_plane=PLANES.get(interp.plane) == YZ,
+        yz_plane=PLANE_CODES.get(interp.plane) == YZ,
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
         inverse_time=interp.feed_mode == INVERSE_TIME,
