@@ -4,6 +4,8 @@
 A row is a beginning, the blocks after it, the codes, and the stock if it is given.
 """
 
+import math
+
 import pytest
 
 from g12.tools.commands.main import main
@@ -21,7 +23,8 @@ BEGINNINGS = {  # the machine, and the blocks before a row's
     "radii": ("lathe_mm", "G21 G18 G8 G40 G90 G94|T3 M6|S900 M3|G0 X18 Z2 C0"),
     "inch": ("mill_inch", "G20 G17 G40 G49 G90 G94 G64 P.001|T1 M6 G43|S3000 M3|G0 X0 Y0 Z.1"),
     "yasnac": ("mill_yasnac_mm", "G21 G17 G40 G49 G90 G94|T10 M6 G43|S3000 M3|G0 X0 Y0 Z2"),
-    "helix": ("mill_helix_mm", "G21 G17 G40 G49 G90 G94|T4 M6 G43|S3000 M3|G0 X0 Y0 Z1"),
+    "helix": ("mill_helix_mm", "G21 G17 G40 G49 G90 G94 F600|T4 M6 G43|S3000 M3|G0 X0 Y0 Z1"),
+    "mitsubishi": ("mill_mitsubishi_mm", "G21 G17 G40 G49 G90 G94 F600|T10 M6 G43|S3000 M3"),
     "any mill": ("mill_mm", "G21 G17 G40 G49 G90 G94 F600"),
     "any lathe": ("lathe_mm", "G21 G18 G7 G40 G90 G94 F600"),
 }
@@ -37,6 +40,11 @@ SIDE_HOLE = "o<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120] [0] [0]
 HOLES = "o<side_holes> call [4] [-15] [0] [90] [30] [6] [2] [100] [0] [.1] [0]"
 POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
 GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
+P = "G13 I7 K20 Q6 Z-3 D4"
+NARROW = FLAT.replace("C25", "C6")
+FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
+AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
+ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
 
 CASES = [
@@ -187,6 +195,62 @@ CASES = [
     ("lathe", "G0 X80|G12.1|G1 C25 F2000|G41 X27 F1000|Z-5|C-25|G40 X80|Z2|C-45|X-80|C-25|"
      "G41 X-27|Z-5|C25|G40 X-80|Z2|G13.1",
      "", "40"),
+    # what a pass before has cleared
+    ("mill", "G13 I9 K18 Q4 Z-3 D4|G13 I18|G0 Z5", "cut-before 7"),
+    ("mill", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
+    ("mill", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 6"),
+    ("mill", "G13 I9 K15 Q4 Z-1 D4|G13 I20 K24 Q4 Z-3|G0 Z5", "uncut 7"),
+    ("helix", "G13 I9 K18 Q4 Z-3 D4|G13 I18|G0 Z5", "cut-before 6"),
+    ("helix", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
+    ("helix", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 5"),
+    ("helix", "G13 I9 K15 Q4 Z-1 D4|G13 I20 K24 Q4 Z-3|G0 Z5", "uncut 6"),
+    # a retract that is missing between two, a circle where the tool came down
+    ("mill", f"{P}|G13 X60 I7 K20 Q6 Z-3|G0 Z2", "rapid-through 7, rapid-beside 7"),
+    ("mill", f"{P}|G0 Z2|G13 X60 I7 K20 Q6 Z-3|G0 Z2", ""),
+    ("helix", "G13 X30 I10 K20 Q6 Z-3 D4|G12 X90 Y9 I10 K20 Q6 Z-3|G0 Z1",
+     "rapid-through 6, rapid-beside 6"),
+    ("helix", "G13 X30 I10 K20 Q6 Z-3 D4|G0 Z1|G12 X90 Y9 I10 K20 Q6 Z-3|G0 Z1", ""),
+    ("mitsubishi", "G0 X0 Y0 Z5|Z-5|G12 I30 D10|G0 X100|G12 I30 D10|G0 Z5",
+     "bored-assumed 5, rapid-through 7, rapid-beside 7"),
+    # feeds and path control before, in and behind a section
+    ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94|G13.1|G0 Z5", "above-zero 6"),
+    ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94 F300|G95|G13.1|G0 Z5", "above-zero 6"),
+    ("radii", "G0 X30|G61|G12.1|G1 X20 C5 F500|G13.1|G0 X30 C0|G64|G12.1|G1 X15 C-5|X9|G13.1|G0 Z5",
+     "above-zero 7, above-zero 12"),
+    ("radii", "G0 X30|G12.1|G61|G1 X20 C5 F500|G64|G13.1|G0 X30 C0|G12.1|G1 X15 C-5|X9|G13.1|G0 Z5",
+     "above-zero 6, above-zero 12"),
+    ("radii", "G0 X30|G1 X28 F900|G61|G12.1|G1 X28 C9|G13.1|G0 Z5", "above-zero 8"),
+    ("radii", "G0 X30|G61.1|G1 X28 F900|G64|G12.1|G1 X28 C9|X20 C4|G13.1|G0 Z5", "above-zero 9"),
+    # holes with C
+    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}", "no-diameter 6"),
+    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{AROUND}", "no-diameter 6"),
+    ("lathe", f"G0 Z10|{AROUND}", ""),
+    ("lathe", f"G0 Z10|{AROUND.replace('[-10]', '[10]')}", "above-zero 6"),
+    ("lathe", f"G0 Z10|G95|{ON_FACE}", "feed-per-revolution 7"),
+    ("lathe", f"G0 Z10|G95|{ON_FACE.replace('[120]', '[.1]')}", ""),
+    ("lathe", f"G0 Z10|{AROUND}|G0 Z10|{ON_FACE}", "rapid-into 6, rapid-turned 7", "50"),
+    ("lathe", f"G0 Z10|{AROUND}|G0 Z10|{ON_FACE}", "rapid-turned 7", "40"),
+    # the stock
+    ("mill", P, "", "100x80x20 bore 12"),
+    ("mill", P, "", "bore 12"),
+    ("mill", P, "below-block 6", "100x80x2 bore 12"),
+    ("mill", f"X80|Z-3|X30|G0 Z1|X0|{P}|G0 Z1",
+     "rapid-through 8, plunge-into-stock 11", "100x80x20"),
+    ("mill", f"X36|X80|Z-3|G0 Z1|X0|{P}|G0 Z1", "", "60x80x20@-30,-40 bore 12"),
+    ("mill", f"Z-3|{P}|G0 Z1", "", "100x80x20 bore 12"),
+    ("mill", f"Z-3|{P}|G0 Z1", "rapid-into 6", "100x80x20"),
+    ("mill", "X40|G12 I9 Z-1 D4", "no-stock-met 7", "20x20x9"),
+    ("mill", "X40|G12 I9 Z-1 D4", "plunge-into-stock 7", "99x20x9"),
+    ("lathe", FLAT, "", "40"),
+    ("lathe", NARROW, "bar-remains 5, plunge-into-stock 8", "40"),
+    ("lathe", FLAT.replace("Z-5", "Z5"),
+     "above-start 5, no-stock-met 5, bar-remains 5, above-zero 5", "40"),
+    ("lathe", f"{FLAT}|G0 C0|{FLAT.replace('X27', 'X44')}", "no-stock-met 14", "40"),
+    ("lathe", f"{FLAT}|G0 C180|G12.1|G1 C25 F2000|G13.1|G0 Z-3|X20|Z2",
+     "no-stock-met 14, above-zero 14, rapid-through 18", "40"),
+    ("lathe", "G12.1|G1 Z-2 F300|Z2|G13.1", "no-stock-met 5", "40"),
+    ("lathe", f"{FLANK}|G1 X44|G7.1 C0|G0 C0", "", "40"),
+    ("lathe", f"{FLANK}|G1 Z-19|G7.1 C0|G0 C0", "rapid-through 11", "40"),
 ]  # fmt: skip
 SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are no cut
 
@@ -266,12 +330,32 @@ SAID = [  # a program, and a part of its report
     ("lathe", f"{BEGIN}|{SIDES}|{END}", "  across flats    programmed 27, reached 27"),
     ("mill", RING, "  core            radius 10.2 mm, by design of a single ring"),
     ("mill", CLEARED, "  left inside     0 mm²"),
+    ("mill", f"{P}|G13 X60 I7 K20 Q6 Z-3|G0 Z2",
+     "line 7: a rapid goes through material, from X15.372 Y0 Z−3 to "),
+    ("mill", "G12 I20 Z-1 D6",
+     "the loaded tool T4 (⌀ 10) is not D6 (⌀ 20): the wall comes out at radius 15, not 20"),
+    *(("mill", P, f"it plunges with {share} % of the cutter into the stock, at X0 Y0", stock)
+      for stock, share in (("100x80x20", 100), ("100x80x20@0,0", 25), ("bore 8", 36))),
+    ("lathe", NARROW, "of the cutter into the stock, at X19.5 Y6 of the face", "40"),
+    ("mill", P, "the lowest cut is 1 mm below the block", "100x80x2 bore 12"),
+    ("mill", f"X80|Z-3|X30|G0 Z1|X0|{P}", "line 8: a rapid goes through material, from X54.752 Y0 ",
+     "100x80x20"),
+    ("mill", f"Z-3|{P}", "line 6: a rapid goes down into 76.969 mm² of material", "100x80x20"),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("beginning", "blocks", "said"), SAID)
-def test_what_a_report_says(beginning, blocks, said, proof_of):
-    assert said in as_text(proof_of(beginning, blocks), MM, full=True)
+@pytest.mark.parametrize("case", SAID, ids=lambda case: case[2][:60])
+def test_what_a_report_says(case, proof_of):
+    beginning, blocks, said, *stock = case
+    assert said in as_text(proof_of(beginning, blocks, *stock), MM, full=True)
+
+
+@pytest.mark.parametrize(("blocks", "bar"), [(FLAT, 80), (FLAT.replace("|Z-5", ""), 40)])
+def test_how_much_of_the_bar_remains(blocks, bar, proof_of):
+    (found,) = (e for e in proof_of("lathe", blocks, str(bar)).judged if e.code == "bar-remains")
+    radius, length = bar / 2, 50 if "Z-5" in blocks else 0
+    segment = radius**2 * math.acos(13.5 / radius) - 13.5 * math.sqrt(radius**2 - 13.5**2)
+    assert segment - 21 * length - 1 < found.values["area"] < segment - 12 * length + 1  # the leads
 
 
 def test_what_a_flat_and_a_small_circle_have_not(proof_of):

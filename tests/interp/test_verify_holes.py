@@ -8,7 +8,7 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.proof import StockText, prove
+from g12.tools.verify.proof import prove
 from support.fault_tables import MachinedProgram
 from support.sim_machines import ROOT, SIM
 
@@ -34,12 +34,6 @@ def test_the_line_of_a_call_has_its_time_but_for_taps(tmp_path, capsys):
     fed = 3 * (10 / (120 / 60) + 0.5)  # from the retract to the depth, and the dwell
     assert holes.endswith(" s") and fed < float(holes.split()[-2]) < fed + 3
     assert tap.endswith("allowed)")
-
-
-@pytest.mark.parametrize("call", [FACE, SIDE])
-def test_a_tool_without_a_diameter_is_a_note(call, tmp_path):
-    proof = prove(written(tmp_path, call), read_ini(SIM / "lathe_mm_headless.ini"), tools={1: 0.0})
-    assert ("no-diameter", 6) in [(each.code, each.line) for each in proof.judged]
 
 
 def findings(path, ini, **options):
@@ -98,32 +92,6 @@ def test_a_clamp_that_no_trace_shows_is_named_as_not_judged(tmp_path):
     path = written(tmp_path, FACE)
     (found,) = (each for each in prove(path, ini, tools={1: 6.0}).judged if each.line)
     assert (found.code, found.line, found.is_not_judged) == ("clamp-unseen", 6, True)
-
-
-def test_a_bar_that_is_in_the_way(tmp_path):
-    ini = read_ini(SIM / "lathe_mm_headless.ini")
-    path = written(tmp_path, SIDE, "G0 Z10", FACE)
-    found = findings(path, ini, stock=StockText("50mm"))
-    assert found == [("rapid-into", 6)]
-    assert findings(path, ini, stock=StockText("40mm")) == []
-
-
-def notes(path, ini):
-    return [
-        (each.code, each.line) for each in prove(path, ini, tools={1: 6.0}).judged if each.is_note
-    ]
-
-
-def test_holes_in_front_of_the_part_are_noted(tmp_path):
-    ini = read_ini(SIM / "lathe_mm_headless.ini")
-    assert notes(written(tmp_path, SIDE), ini) == []
-    assert notes(written(tmp_path, SIDE.replace("[-10]", "[10]")), ini) == [("above-zero", 6)]
-
-
-def test_a_feed_per_minute_under_g95_is_named(tmp_path):
-    ini = read_ini(SIM / "lathe_mm_headless.ini")
-    assert notes(written(tmp_path, "G95", FACE), ini) == [("feed-per-revolution", 7)]
-    assert notes(written(tmp_path, "G95", FACE.replace("[120]", "[.1]")), ini) == []
 
 
 def test_each_tap_has_its_pitch_in_a_trace():

@@ -76,23 +76,6 @@ def test_a_pocket_without_z_is_cut_where_the_tool_stands(distance, repeats, clea
     assert depths == pytest.approx([-3, -3])
 
 
-@pytest.mark.parametrize("entry", ["plunge", "helix"])
-@pytest.mark.parametrize(
-    ("pockets", "left"),
-    [
-        (["G13 I9 K18 Q4 Z-3 D4", "G13 I18"], 0),
-        (["G13 I9 K15 Q4 Z-3 D4", "G13 I20 K24 Q4"], 0),
-        (["G13 I20 K24 Q4 Z-3 D4"], 1),
-        (["G13 I9 K15 Q4 Z-1 D4", "G13 I20 K24 Q4 Z-3"], 1),
-    ],
-)
-def test_what_a_pass_before_has_cleared_is_not_uncut(pockets, left, entry, tmp_path):
-    lines = [*MM, "G0 X0 Y0 Z1", *pockets, "G0 Z5"]
-    proof = proof_of_text(tmp_path, lines, changed={"G12": {"ENTRY": entry}})
-    found = [each.code for each in proof.judged if each.is_finding]
-    assert found == ["uncut"] * left
-
-
 # ---------------------------------------------------------------- words and modes
 
 
@@ -301,15 +284,6 @@ def test_the_spindle_is_where_x0_is(offset, units, tmp_path):
     assert proof.subject.part.centre == pytest.approx(x0)
 
 
-def test_another_tool_than_d_names_is_found(tmp_path):
-    proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D6"])
-    (_, text), (_, uncut) = proof.findings
-    assert "remain uncut" in uncut
-    assert text == (
-        "the loaded tool T4 (⌀ 10) is not D6 (⌀ 20): the wall comes out at radius 15, not 20"
-    )
-
-
 def test_a_program_that_moves_by_its_line_numbers_is_told_in_one_line(tmp_path):
     condition = ["o1 if [#<_line> GT 6]", "G0 X5", "o1 endif"]
     lines = [*MM, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", *condition]
@@ -339,52 +313,6 @@ def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
     assert [facts.values["radii"][0] for facts in proof.sections] == pytest.approx([13.5, 15])
     assert all(0 < facts.deviation < proof.tolerances.polar for facts in proof.sections)
     assert {facts.values["lowest_feed_line"] for facts in proof.sections} <= {4, 5, 7, 8}
-
-
-AGAIN = ["G13.1", "G0 X30 C0"]
-
-
-@pytest.mark.parametrize(
-    "lines",
-    [
-        ["G12.1", "G95 F.5", "G1 X20 C5", "G94", "G13.1"],
-        ["G12.1", "G95 F.5", "G1 X20 C5", "G94 F300", "G95", "G13.1"],
-        ["G61", "G12.1", "G1 X20 C5 F500", *AGAIN, "G64", "G12.1", "G1 X15 C-5", "X9", "G13.1"],
-        ["G12.1", "G61", "G1 X20 C5 F500", "G64", *AGAIN, "G12.1", "G1 X15 C-5", "X9", "G13.1"],
-        ["G1 X28 F900", "G61", "G12.1", "G1 X28 C9", "G13.1"],
-        ["G61.1", "G1 X28 F900", "G64", "G12.1", "G1 X28 C9", "X20 C4", "G13.1"],
-    ],
-)
-def test_feed_and_path_control_before_in_and_behind_a_section(lines, tmp_path):
-    proof = proof_of_text(tmp_path, [*FACE, *lines, "G0 Z5"], "lathe_mm")
-    assert proof.findings == []
-
-
-# ---------------------------------------------------------------- rapids
-
-
-def test_a_forgotten_retract_between_pockets_is_found(tmp_path):
-    lines = [*MM, "G0 X0 Y0 Z2", "G13 I7 K20 Q6 Z-3 D4", "G13 X60 I7 K20 Q6 Z-3", "G0 Z2"]
-    ((line, text),) = proof_of_text(tmp_path, lines).findings
-    assert line == 5
-    assert text.startswith("a rapid goes through material, from X15.372 Y0 Z−3 to ")
-    lines[4] = "G0 Z2\n" + lines[4]
-    assert proof_of_text(tmp_path, lines).findings == []
-
-
-def test_a_circle_cut_where_the_tool_stands_was_come_down_to(tmp_path):
-    head = ["G21 G17 G40 G49 G90 F600", "T10 M6", "G0 X0 Y0 Z5", "Z-5"]
-    lines = [*head, "G12 I30 D10", "G0 X100", "G12 I30 D10", "G0 Z5"]
-    found = proof_of_text(tmp_path, lines, "mill_mitsubishi_mm").findings
-    assert [line for line, _ in found] == [6]
-
-
-def test_a_rapid_above_pockets_with_a_helix_is_good(tmp_path):
-    pocket, helix = "I10 K20 Q6 Z-3", {"G12": {"ENTRY": "helix"}}
-    lines = [*MM, "G0 X0 Y0 Z1", f"G13 X30 {pocket} D4", "G0 Z1", f"G12 X90 Y9 {pocket}"]
-    assert proof_of_text(tmp_path, lines, changed=helix).findings == []
-    del lines[4]
-    assert [line for line, _ in proof_of_text(tmp_path, lines, changed=helix).findings] == [5]
 
 
 # ---------------------------------------------------------------- the machine's travel
