@@ -22,7 +22,7 @@ Find = Callable[[str, str], str | None]
 FindAll = Callable[[str, str], Sequence[str]]
 
 AXIS_LETTERS = "XYZABCUVW"
-NO_LIMIT = 1e99
+NO_LIMIT = 1e99  # LinuxCNC's default of a travel limit
 KINEMATICS_PARAMETER = b"_kins_type"  # a library symbol of interpreters that have G12.1 themselves
 AXIS_KEYS = (  # with LinuxCNC's defaults
     ("MIN_LIMIT", -NO_LIMIT),
@@ -165,7 +165,7 @@ def number_in(find: Find, section: str, key: str, default: float) -> float:
 
 
 def remap_lines(find_all: FindAll) -> list[Remap]:
-    """Return the REMAP lines."""
+    """Return the REMAP lines in the INI's order."""
     return [remap_from_value(value) for value in find_all("RS274NGC", "REMAP")]
 
 

@@ -21,7 +21,7 @@ from g12.lengths import is_inch
 
 INI_SECTION = "G12"
 M_CODE = re.compile(r"M\d{1,3}")
-TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002
+TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002  # defaults of POLAR_TOLERANCE
 
 
 @dataclass(frozen=True)

@@ -40,17 +40,17 @@ class PlaneMove(NamedTuple):
 
     @property
     def start(self) -> complex:
-        """The start in the plane."""
+        """The curve's start, x + jc."""
         return self.curve.start
 
     @property
     def end(self) -> complex:
-        """The end in the plane."""
+        """The curve's end, x + jc."""
         return self.curve.end
 
     @property
     def length(self) -> float:
-        """The length in the plane."""
+        """The curve's length, without the change of Z."""
         return self.curve.length
 
     @property

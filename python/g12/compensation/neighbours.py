@@ -73,7 +73,7 @@ class _SectionPasses:
 
     @cached_property
     def tree(self) -> BoxTree:
-        """The tree of the passes."""
+        """The passes, for a search by position."""
         return BoxTree([each.move.curve for _, each in self.passes])
 
 

@@ -52,14 +52,14 @@ from g12.request.words import Words
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
 NARROWER_MM = 0.254  # the default roughing width is the tool diameter less this
-RETRACT_MM = 2.54
+RETRACT_MM = 2.54  # 0.1 in, of a pocket between its levels: the manual
 ROUGH_FINISH_ARCS = (  # by D
     (CLOCKWISE, CLOCKWISE),
     (COUNTERCLOCKWISE, COUNTERCLOCKWISE),
     (CLOCKWISE, COUNTERCLOCKWISE),
     (COUNTERCLOCKWISE, CLOCKWISE),
 )
-INNER_SIDE, ON_CIRCLE, OUTER_SIDE = -1, 0, 1
+INNER_SIDE, ON_CIRCLE, OUTER_SIDE = -1, 0, 1  # factors of the tool radius
 TOOL_SIDES = {  # by rough direction, then C: the tool centre, left, right of the profile
     CLOCKWISE: (ON_CIRCLE, OUTER_SIDE, INNER_SIDE),
     COUNTERCLOCKWISE: (ON_CIRCLE, INNER_SIDE, OUTER_SIDE),
@@ -187,7 +187,7 @@ class MillEvent(NamedTuple):
     message: str | None  # for the operator, never a refusal
 
     def extent(self) -> CycleExtent:
-        """Return the extent of the cycle."""
+        """Return the largest circle, and the reference planes and final depth."""
         position, final = self.position, self.depths.final_z
         radius = max(self.roughing.rough_radius, self.side_finish.radius)
         heights = (position.first_plane, position.second_plane, final)

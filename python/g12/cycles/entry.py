@@ -15,7 +15,7 @@ from g12.request.context import Context
 from g12.request.words import Words
 
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
-MOST_HELIX_HALF_TURNS = 2000
+MOST_HELIX_HALF_TURNS = 2000  # a helix of more has a wrong I or Z
 
 
 class PocketEntry(NamedTuple):

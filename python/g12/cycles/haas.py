@@ -65,7 +65,7 @@ class Pocket(NamedTuple):
     message: str | None  # for the operator, never a refusal
 
     def extent(self) -> CycleExtent:
-        """Return the extent of the cycle."""
+        """Return the largest circle, and the first and last depth."""
         deepest = self.z + self.z_step * (self.levels - 1)
         return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, (self.z, deepest))
 

@@ -11,7 +11,7 @@ import math
 from g12.geometry.curve import Arc, Curve, Line
 
 PARALLEL_SINE = 1e-9  # sine of the angle between lines that are parallel
-TOUCHES = 1e-6
+TOUCHES = 1e-6  # as SAME_POINT of a contour
 
 
 def crossings(one: Curve, other: Curve) -> list[complex]:

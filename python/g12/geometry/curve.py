@@ -25,7 +25,7 @@ class Line(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Return the length."""
+        """The distance of the ends."""
         return abs(self.end - self.start)
 
     def point(self, share: float) -> complex:
@@ -82,17 +82,17 @@ class Arc(NamedTuple):
 
     @property
     def end(self) -> complex:
-        """Return the end point."""
+        """The start, turned about the centre by the sweep."""
         return self.point(1.0)
 
     @property
     def radius(self) -> float:
-        """Return the radius."""
+        """The distance of the start from the centre."""
         return abs(self.start - self.centre)
 
     @property
     def length(self) -> float:
-        """Return the length."""
+        """The radius times the angle."""
         return self.radius * abs(self.sweep)
 
     def point(self, share: float) -> complex:

@@ -18,7 +18,7 @@ from typing import NamedTuple
 from g12.host.interp import Interp
 from g12.section.block_rules import NO_CODE
 
-INTERP_OK = 0
+INTERP_OK = 0  # the module interpreter has it, which unit tests have not
 NO_REPEATS = 0  # L of an M98
 # O-words that always change the interpreter's position in its file
 JUMPING = ("call", "endsub", "return")

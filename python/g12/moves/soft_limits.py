@@ -21,7 +21,7 @@ class Moving(Protocol):
 
     @property
     def line(self) -> int:
-        """The line of the program."""
+        """The number of the block's line."""
 
     @property
     def segments(self) -> Sequence[tuple[float, ...]]:

@@ -45,6 +45,7 @@ class MGroup(IntEnum):
 
 G0, G1, G2, G3, G4 = 0, 10, 20, 30, 40
 M2, M30 = 2, 30
+# LinuxCNC's names for M70 to M73
 STATE_CODES = M_SAVE, M_INVALIDATE, M_RESTORE, M_AUTORESTORE = 70, 71, 72, 73
 KNOWN_G: dict[int, Collection[int]] = {
     GGroup.NON_MODAL: {G4},
@@ -103,7 +104,7 @@ REASON_OF_G = {
 }
 REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE)
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
-ORIENT = 19
+ORIENT = 19  # M19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait
 WAIT_RULE = "Q above zero, the longest wait in seconds"
 

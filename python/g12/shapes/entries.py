@@ -17,7 +17,7 @@ from g12.request.words import Words
 
 CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid
 WIDEST = 0.75  # of the cutter's diameter: greatest stepover
-MOST_SHAPE_PASSES = 10_000
+MOST_SHAPE_PASSES = 10_000  # more are a mistyped depth_per_pass
 MOST_MOVES = 100_000  # takes minutes to read, during which LinuxCNC handles no abort
 MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
 

@@ -59,7 +59,7 @@ POLYGON_ENTRIES = (
     "angle",
 )
 TWO_FLATS = 2  # sides: two flats, which have no corner
-MOST_SIDES = 100
+MOST_SIDES = 100  # more are a circle
 FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one
 UNLIMITED_FLAT = 1e9  # half the length of an unlimited flat
 

@@ -29,7 +29,7 @@ from g12.shapes.entries import (
     rounds_between,
 )
 
-MOST_RAMP_HALF_TURNS = 20_000
+MOST_RAMP_HALF_TURNS = 20_000  # of a pass; more are a very flat ENTRY_ANGLE
 
 
 class ClearingRings(NamedTuple):

@@ -41,6 +41,7 @@ READING_WORDS = (  # codes that read words of a cycle's block
     (GGroup.PATH_CONTROL, 640, "PQ"),
     (GGroup.SPINDLE, 960, "D"),
 )
+# M codes that neither read words of the block nor change the tool
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 INCREMENTAL_MODE = 1  # distance_mode
 

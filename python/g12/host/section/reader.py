@@ -302,7 +302,7 @@ class SectionReader:
             return None
 
     def _move(self, motion: int, words: MoveWords) -> None:
-        """Add a move."""
+        """Add a line or an arc to the contour, with its words converted to the plane."""
         contour, modes = self.contour, self.modes
         x, c, z, i, j, r, k, relative = words
         if motion not in SECTION_MOTIONS:
