@@ -34,7 +34,6 @@ def test_a_whole_number_keeps_its_limits():
     assert refusal(words(D=-1.0).take_whole, "D", least=0) == "G12: D-1 must be at least 0"
     assert refusal(words(D=4.0).take_whole, "D", least=0, most=3) == "G12: D4 must be at most 3"
     assert words(D=3.0).take_whole("D", least=3, most=3) == 3
-    assert words().take_whole("D", least=0) is None
     assert words().take_whole("D", least=1, default=7) == 7
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from copy import copy
-from functools import partial
 from math import copysign, sqrt
 from typing import NamedTuple, NoReturn
 
@@ -338,7 +337,7 @@ class Contour:
             return Arc(start, centre, turn * FULL_TURN)
         from_start, from_end = abs(arm), abs(end - centre)
         if not self._closes(from_start, from_end):
-            hint = self._hint(partial(self._centre_closes, arm), end)
+            hint = self._hint(lambda a, b: self._closes(abs(arm), abs(b - a - arm)), end)
             self.refuse(
                 line,
                 f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
@@ -355,10 +354,11 @@ class Contour:
         if apart <= SAME_POINT:
             self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
         if not self._spans(half, radius):
+            hint = self._hint(lambda a, b: self._spans(0.5 * abs(b - a), radius), end)
             self.refuse(
                 line,
                 f"{name} does not close: the ends are {number(apart)} apart, R must be at least "
-                f"{number(half)}{self._hint(partial(self._radius_closes, radius), end)}",
+                f"{number(half)}{hint}",
             )
         height = copysign(sqrt(max(0.0, radius * radius - half * half)) / apart, turn * radius)
         centre = (start + end) / 2 + 1j * height * (end - start)
@@ -371,12 +371,6 @@ class Contour:
 
     def _spans(self, half: float, radius: float) -> bool:
         return half - abs(radius) <= max(0.5 * self.radius_tolerance, RADIUS_TOLERANCE_RATIO * half)
-
-    def _centre_closes(self, arm: complex, start: complex, end: complex) -> bool:
-        return self._closes(abs(arm), abs(end - start - arm))
-
-    def _radius_closes(self, radius: float, start: complex, end: complex) -> bool:
-        return self._spans(0.5 * abs(end - start), radius)
 
     def _hint(self, closes: Callable[[complex, complex], bool], end: complex) -> str:
         """Return which other reading of the X words, if any, would close the arc."""

@@ -32,7 +32,7 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 
 from typing import NamedTuple
 
-from g12.errors import BlockRefusal, number
+from g12.errors import number
 from g12.lengths import ROUNDING_MM
 from g12.request.common import (
     CLOCKWISE,
@@ -95,14 +95,6 @@ class EventEntries(NamedTuple):
     finish: float
     bottom: bool
     finish_feed: float
-
-    def refuse(self, rule: str) -> BlockRefusal:
-        """Return the refusal of this event for breaking ``rule`` (the caller raises it)."""
-        return self.words.refuse(rule)
-
-    def tool_size(self, length: float) -> str:
-        """Return a tool's radius or diameter for a message."""
-        return self.context.tool_size(length)
 
 
 class EventCircle(NamedTuple):
@@ -304,12 +296,12 @@ def circle_of(entries: EventEntries) -> EventCircle:
     rough_arc, finish_arc = ROUGH_FINISH_ARCS[direction]
     side = TOOL_SIDES[rough_arc][compensation]
     if entries.pocket and side != INNER_SIDE:
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"D{direction} with {letter}{compensation} does not put the tool inside the pocket:"
             f" D0 and D2 need {letter}2, D1 and D3 need {letter}1"
         )
     if side == ON_CIRCLE and entries.finish:
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"{entries.letters.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
         )
@@ -325,14 +317,14 @@ def planes_of(entries: EventEntries) -> tuple[float, float]:
     if first is None:
         first = entries.plane
     if first is None:
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"{letters.first_plane} is missing: the first reference plane,"
             " which no earlier event has commanded"
         )
     if second is None:
         second = first
     if second < first - entries.context.length(ROUNDING_MM):
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"{letters.second_plane}{number(second)} must not be below the first reference"
             f" plane {letters.first_plane}{number(first)}"
         )
@@ -347,7 +339,7 @@ def roughing_of(
     check_room(entries, circle, tool, radius)
     if not entries.pocket:
         if width is not None:
-            raise entries.refuse(f"J{number(width)} is the roughing width of a pocket")
+            raise entries.words.refuse(f"J{number(width)} is the roughing width of a pocket")
         return Roughing(False, radius, 1, 0.0, radius, circle.rough_arc)
     rings = rings_of(entries, radius, tool, width)
     return Roughing(True, 0.0, rings, radius / rings, radius, circle.rough_arc)
@@ -359,11 +351,11 @@ def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: f
     if radius >= smallest:
         return
     if circle.side == ON_CIRCLE:
-        raise entries.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
+        raise entries.words.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
     finish = f" + {entries.letters.finish}{number(entries.finish)}" if entries.finish else ""
-    raise entries.refuse(
+    raise entries.words.refuse(
         f"R{number(circle.radius)} must be greater than the tool radius"
-        f" {entries.tool_size(tool.radius)} (T{tool.number}){finish}"
+        f" {entries.context.tool_size(tool.radius)} (T{tool.number}){finish}"
     )
 
 
@@ -372,13 +364,14 @@ def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float |
     length = entries.context.length
     widest = 2 * tool.radius - length(NARROWER_MM) if width is None else width
     least = length(SMALLEST_RING_MM)
-    if widest < least:
-        raise entries.refuse(
-            f"J is missing: its default, the tool diameter {entries.tool_size(2 * tool.radius)}"
+    if widest < least and width is None:
+        size = entries.context.tool_size(2 * tool.radius)
+        raise entries.words.refuse(
+            f"J is missing: its default, the tool diameter {size}"
             f" less {number(length(NARROWER_MM))}, is too small"
-            if width is None
-            else f"J{number(width)} must be at least {number(least)}"
         )
+    if widest < least:
+        raise entries.words.refuse(f"J{number(widest)} must be at least {number(least)}")
     return max(1, steps_between(0.0, outermost, widest, length(ROUNDING_MM)))
 
 
@@ -396,7 +389,7 @@ def depths_of(
             if entries.bottom
             else ""
         )
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"Z{number(depth)} must be below the first reference plane"
             f" {entries.letters.first_plane}{number(first_plane)}{finish}"
         )
@@ -414,7 +407,7 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> Si
     """
     smallest = entries.context.length(SMALLEST_RING_MM)
     if 0 < entries.finish < smallest:
-        raise entries.refuse(
+        raise entries.words.refuse(
             f"{entries.letters.finish}{number(entries.finish)} must be at least {number(smallest)}"
         )
     other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
@@ -433,6 +426,6 @@ def uncut_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str
         return None
     return (
         f"{entries.words.code}: the roughing width {number(roughing.roughing_width)} is greater"
-        f" than the tool diameter {entries.tool_size(2 * tool.radius)}: material is left between"
-        " the rings"
+        f" than the tool diameter {entries.context.tool_size(2 * tool.radius)}: material is left"
+        " between the rings"
     )

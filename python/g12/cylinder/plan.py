@@ -18,12 +18,7 @@ from g12.geometry.curve import Arc
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.spacing import BULGE, Stretch, spaced
-from g12.moves.steps import (
-    ROUNDING_SHARE,
-    MachinePosition,
-    SectionPlan,
-    StepMaker,
-)
+from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, StepMaker
 
 LEAST_DENSITY = 2.0  # segments per radian of an arc: fewer do not resemble it
 

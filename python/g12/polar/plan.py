@@ -12,12 +12,7 @@ from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Plunge
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
-from g12.moves.steps import (
-    ROUNDING_SHARE,
-    MachinePosition,
-    SectionPlan,
-    StepMaker,
-)
+from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, StepMaker
 from g12.polar.beside import along_and_around, check_reach, slide_at, split_beside
 from g12.polar.face import FaceMove, FaceSwitch, in_face, positions_along
 from g12.polar.follow import FaceLimits

@@ -103,12 +103,11 @@ def _element(
     if not isinstance(move, PlaneMove):
         return _TimedElement(move, stop)
     demands, length = demands_of(move, limits), move.length
-    corner = not isinstance(following, PlaneMove) or not _goes_straight_on(move, following)
+    corner = True
+    if isinstance(following, PlaneMove):
+        turn = following.curve.direction(0.0) - move.curve.direction(1.0)
+        corner = abs(turn) >= STRAIGHT_ON
     return _TimedElement(move, stop, length, demands, corner, length * _mean_slowness(demands))
-
-
-def _goes_straight_on(move: PlaneMove, following: PlaneMove) -> bool:
-    return abs(following.curve.direction(0.0) - move.curve.direction(1.0)) < STRAIGHT_ON
 
 
 def _mean_slowness(demands: Sequence[Demand]) -> float:

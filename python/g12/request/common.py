@@ -56,9 +56,9 @@ def coordinate(word: float | None, present: float, context: Context) -> float:
 
 def commanded_tool(words: Words, context: Context) -> Tool | None:
     """Return the tool that D names, None without D; D0 is a cutter without size."""
-    tool_number = words.take_whole("D", least=0)
-    if tool_number is None:
+    if "D" not in words:
         return None
+    tool_number = words.take_whole("D", least=0)
     if tool_number == 0:
         return Tool(0, 0.0)
     tool = context.tool_in_table(tool_number)

@@ -5,8 +5,6 @@ Every rule about a single word lives here, so that each refusal names the code, 
 the rule and the value in the same way.
 """
 
-from typing import overload
-
 from g12.errors import BlockRefusal, number
 from g12.lengths import LARGEST
 
@@ -63,17 +61,7 @@ class Words:
         self._check_present(letter, meaning)
         return self._positive(letter)
 
-    @overload
-    def take_whole(self, letter: str, least: int, default: int, most: int | None = None) -> int: ...
-
-    @overload
-    def take_whole(
-        self, letter: str, least: int, default: None = None, most: int | None = None
-    ) -> int | None: ...
-
-    def take_whole(
-        self, letter: str, least: int, default: int | None = None, most: int | None = None
-    ) -> int | None:
+    def take_whole(self, letter: str, least: int, default: int = 0, most: int | None = None) -> int:
         """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
         return self._whole(letter, least, most) if letter in self._remaining else default
 

@@ -22,11 +22,7 @@ from typing import NamedTuple
 from g12.errors import number
 from g12.lengths import DEGREES_PER_TURN, ROUNDING_MM
 from g12.request.context import Context
-from g12.shapes.entries import (
-    Extent,
-    ShapeEntries,
-    check_moves,
-)
+from g12.shapes.entries import Extent, ShapeEntries, check_moves
 
 HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 FACE_HOLES = ("count", "circle_diameter", "first_angle", "step_angle", *HOLE)

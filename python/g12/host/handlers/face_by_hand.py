@@ -15,23 +15,9 @@ from typing import NamedTuple
 import emccanon
 
 from g12.errors import BlockRefusal
-from g12.host import messages
+from g12.host import kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp
-from g12.host.kinematics_switch import (
-    FACE_OUTPUT,
-    ON_THE_FACE,
-    FaceRequest,
-    face_in_force,
-    has_switched,
-    modes_found,
-    not_switched,
-    other_module,
-    restore_accelerations,
-    to_axes,
-    to_face,
-    y_offset,
-)
 from g12.host.program_lines import ProgramLines, read_source
 from g12.section.start import SectionStart
 
@@ -56,16 +42,18 @@ class ByHand(NamedTuple):
 def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[int]:
     """Switch to the face if a section may begin, with the tool ``beside`` the X line."""
     code = start.location.code
-    if y_offset(interp):
+    if kinematics_switch.y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
-    interp.g12_found = modes_found(interp)
-    blocks = to_face(interp, start.machine_unit, FaceRequest.BY_HAND)
+    interp.g12_found = kinematics_switch.modes_found(interp)
+    blocks = kinematics_switch.to_face(
+        interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
+    )
     yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, blocks)
-    wrong = other_module(interp, beside)
+    wrong = kinematics_switch.other_module(interp, beside)
     if wrong:
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
-    interp.execute(ON_THE_FACE)
+    interp.execute(kinematics_switch.ON_THE_FACE)
     interp.g12_by_hand = ByHand(code, interp.cutter_comp_radius)
     _lock(interp)
 
@@ -77,12 +65,12 @@ def switch_off(interp: Interp) -> Iterator[int]:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
     restore_modes_found(interp)
-    if by_hand or face_in_force():
+    if by_hand or kinematics_switch.face_in_force():
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
         frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
         line = ProgramLines(interp, home).line if home else MDI_LINE
-        yield from _switch(interp, code, frame, line, to_axes(interp))
+        yield from _switch(interp, code, frame, line, kinematics_switch.to_axes(interp))
 
 
 def abort(interp: Interp) -> None:
@@ -93,9 +81,11 @@ def abort(interp: Interp) -> None:
     change. The canonical function makes the request: M68 is refused while compensation is on.
     """
     by_hand = _unlock(interp)
-    restore_accelerations(interp)
-    request = FaceRequest.NO_MOVES if by_hand else FaceRequest.OFF
-    emccanon.SET_AUX_OUTPUT_VALUE(FACE_OUTPUT, float(request))
+    kinematics_switch.restore_accelerations(interp)
+    request = (
+        kinematics_switch.FaceRequest.NO_MOVES if by_hand else kinematics_switch.FaceRequest.OFF
+    )
+    emccanon.SET_AUX_OUTPUT_VALUE(kinematics_switch.FACE_OUTPUT, float(request))
     if by_hand:
         interp.g12_by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:
@@ -140,5 +130,5 @@ def _switch(
     for block in blocks:
         yield from frame.execute_and_wait(block)
     frame.leave(line)
-    if not has_switched(interp):
-        raise BlockRefusal(code, not_switched())
+    if not kinematics_switch.has_switched(interp):
+        raise BlockRefusal(code, kinematics_switch.not_switched())

@@ -22,19 +22,8 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
+from g12.host import kinematics_switch
 from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp
-from g12.host.kinematics_switch import (
-    INPUT_FOUND,
-    ON_THE_FACE,
-    FaceRequest,
-    has_switched,
-    modes_found,
-    not_switched,
-    other_module,
-    to_axes,
-    to_face,
-    y_offset,
-)
 from g12.host.program_lines import error_text
 from g12.moves.feed import Segment
 from g12.moves.steps import BlockMoves
@@ -270,33 +259,37 @@ class SectionOutput:
         """Switch to the face or back; the result of the program's last M66 is restored."""
         interp = self.interp
         interp.sequence_number = step.line
-        found = interp.params[INPUT_FOUND]
+        found = interp.params[kinematics_switch.INPUT_FOUND]
         if step.on:
-            interp.g12_found = modes_found(interp)
+            interp.g12_found = kinematics_switch.modes_found(interp)
             most = step.share, step.override
-            yield from to_face(interp, self.machine_unit, FaceRequest.BY_PROGRAM, *most)
-            interp.execute(ON_THE_FACE)
+            yield from kinematics_switch.to_face(
+                interp, self.machine_unit, kinematics_switch.FaceRequest.BY_PROGRAM, *most
+            )
+            interp.execute(kinematics_switch.ON_THE_FACE)
             self.path.renew()
         else:
             interp.execute(interp.g12_found)
-            yield from to_axes(interp)
+            yield from kinematics_switch.to_axes(interp)
             interp.g12_found = None  # only now: an abort during the wait drops the block before it
-        if not has_switched(interp):
-            raise BlockLocation(self.code, step.line).refuse(not_switched())
+        if not kinematics_switch.has_switched(interp):
+            raise BlockLocation(self.code, step.line).refuse(kinematics_switch.not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""
         if wrong:
-            yield from to_axes(interp)
+            yield from kinematics_switch.to_axes(interp)
             raise BlockLocation(self.code, step.line).refuse(wrong)
-        interp.params[INPUT_FOUND] = found
+        interp.params[kinematics_switch.INPUT_FOUND] = found
         interp.current_x, interp.CC_current, interp.current_z = step.position
-        interp.current_y = step.on * self.beside - y_offset(interp)
+        interp.current_y = step.on * self.beside - kinematics_switch.y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(f"{MEANINGS_CHANGED}{step.share}")
 
     def _wrong_position(self, position: tuple[float, float, float]) -> str:
         """Return why the machine's actual position is not the planned one, "" if it is."""
         off = (abs(there - planned) for there, planned in zip(self._machine_position(), position))
-        return ELSEWHERE if max(off) > SWITCH_TOLERANCE else other_module(self.interp, self.beside)
+        if max(off) > SWITCH_TOLERANCE:
+            return ELSEWHERE
+        return kinematics_switch.other_module(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Execute a line, an arc or a move of Z on the face."""
@@ -316,10 +309,10 @@ class SectionOutput:
         values = {"F": move.feed}
         if curve:
             values["X"] = curve.end.real * self.x_factor
-            values["Y"] = curve.end.imag - y_offset(interp)
+            values["Y"] = curve.end.imag - kinematics_switch.y_offset(interp)
         if isinstance(curve, Arc):
             values["I"] = curve.centre.real - interp.current_x
-            values["J"] = curve.centre.imag - y_offset(interp) - interp.current_y
+            values["J"] = curve.centre.imag - kinematics_switch.y_offset(interp) - interp.current_y
         if move.z0 != move.z1:
             values["Z"] = move.z1
         interp.execute(words + "".join(f"{word}{value:.17f}" for word, value in values.items()))

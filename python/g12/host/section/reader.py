@@ -20,35 +20,15 @@ from g12.errors import number
 from g12.host.interp import PER_MINUTE, PER_REVOLUTION, Interp, ParsedBlock
 from g12.host.program_lines import ProgramLines, error_text
 from g12.host.section.output import BLOCK_END, Action
-from g12.section.block_rules import (
-    G0,
-    G1,
-    G2,
-    G3,
-    M_AUTORESTORE,
-    M_INVALIDATE,
-    M_RESTORE,
-    M_SAVE,
-    NO_CODE,
-    REASON_OF_G,
-    STATE_CODES,
-    GGroup,
-    MGroup,
-    SectionBlock,
-)
+from g12.section import block_rules
+from g12.section import modes as section_modes
+from g12.section.block_rules import NO_CODE, GGroup, SectionBlock
 from g12.section.line import BlockLocation, TextLine
-from g12.section.modes import (
-    SectionModes,
-    action_text,
-    comment_text,
-    may_fail,
-    modes_after,
-    stop_text,
-)
+from g12.section.modes import SectionModes
 from g12.section.start import SectionStart, WordRules
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
-SECTION_MOTIONS = (G0, G1, G2, G3)
+SECTION_MOTIONS = (block_rules.G0, block_rules.G1, block_rules.G2, block_rules.G3)
 MOST_FEED = 1e9  # program units per minute
 
 WORD_ATTRIBUTES = [
@@ -218,10 +198,10 @@ class SectionReader:
 
     def set_state(self, line: TextLine, block: SectionBlock) -> None:
         """Set the modes of a block, and save or restore those it names."""
-        code = block.m[MGroup.MODAL_STATE]
-        if code in STATE_CODES:
+        code = block.m[block_rules.MGroup.MODAL_STATE]
+        if code in block_rules.STATE_CODES:
             self._state_code(code)
-        self.set_modes(modes_after(self.modes, block, self._speed(line, block)))
+        self.set_modes(section_modes.modes_after(self.modes, block, self._speed(line, block)))
 
     def _speed(self, line: TextLine, block: SectionBlock) -> float:
         """Return the commanded speed of the spindle that feeds per revolution refer to."""
@@ -246,7 +226,7 @@ class SectionReader:
 
         Between the moves a refusal would come too late.
         """
-        text = action_text(block, line)
+        text = section_modes.action_text(block, line)
         if text:
             self.interp.read(text)
         return text
@@ -262,7 +242,7 @@ class SectionReader:
         if block.moves:
             x, c, z, i, j, r, k = map(block.words.get, "XCZIJRK")
             self._move(block.motion, MoveWords(x, c, z, i, j, r, k, line.relative))
-        self._mark(stop_text(block))
+        self._mark(section_modes.stop_text(block))
 
     def comment(self, line: TextLine) -> None:
         """Queue a comment, message or report, with the present values of its parameters."""
@@ -273,8 +253,8 @@ class SectionReader:
             if "#" in comment:
                 self.show_plane()
                 self.interp.read("")  # updates #5420
-            text = comment_text(comment, self._parameter)
-            modes = self.modes if may_fail(comment) else None
+            text = section_modes.comment_text(comment, self._parameter)
+            modes = self.modes if section_modes.may_fail(comment) else None
             self._queue(Action(self.program.shown_line, text, modes))
 
     def returned(self) -> None:
@@ -320,8 +300,8 @@ class SectionReader:
         if modes.incremental or relative:
             x, c, z = self._absolute(x, c, z, "XCZ" if modes.incremental else relative)
         line = self.program.shown_line
-        if G1 < motion <= G3:
-            turn = 1 if motion == G3 else -1
+        if block_rules.G1 < motion <= block_rules.G3:
+            turn = 1 if motion == block_rules.G3 else -1
             contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
         else:
             contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
@@ -361,7 +341,9 @@ class SectionReader:
     def _rapid_feed(self) -> float:
         feed = self.rules.rapid_feed
         if feed is None:
-            raise self.location.refuse(f"G0 is refused (it is still active): {REASON_OF_G[G0]}")
+            raise self.location.refuse(
+                f"G0 is refused (it is still active): {block_rules.REASON_OF_G[block_rules.G0]}"
+            )
         return feed
 
     def _compensate(self, side: int) -> None:
@@ -380,20 +362,24 @@ class SectionReader:
     def _state_code(self, code: int) -> None:
         """Execute M70 to M73: here for the section's modes, between the moves for the machine's."""
         level = self.interp.call_level
-        if code == M_RESTORE:
+        if code == block_rules.M_RESTORE:
             self._restore(level)
-        elif code == M_INVALIDATE:
+        elif code == block_rules.M_INVALIDATE:
             self._saved.pop(level, None)
             self._restored_on_return.discard(level)
-            self._queue(Action(self.program.shown_line, f"M{M_INVALIDATE}", self.modes, level))
+            self._queue(
+                Action(self.program.shown_line, f"M{block_rules.M_INVALIDATE}", self.modes, level)
+            )
         else:
             self._saved[level] = self.modes
-            if code == M_AUTORESTORE and level > self.start.level:
+            if code == block_rules.M_AUTORESTORE and level > self.start.level:
                 self._restored_on_return.add(level)
-            self._queue(Action(self.program.shown_line, f"M{M_SAVE}", self.modes, level))
+            self._queue(
+                Action(self.program.shown_line, f"M{block_rules.M_SAVE}", self.modes, level)
+            )
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
             raise self.location.refuse("M72: no modes were saved in this section")
-        self._queue(Action(self.program.shown_line, f"M{M_RESTORE}", self.modes, level))
+        self._queue(Action(self.program.shown_line, f"M{block_rules.M_RESTORE}", self.modes, level))
         self.set_modes(self._saved[level])

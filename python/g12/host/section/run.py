@@ -22,19 +22,8 @@ from g12.host.section.output import PlanStep, SectionOutput
 from g12.host.section.reader import SectionReader, block_of
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import SectionPlan
-from g12.section.block_rules import (
-    M2,
-    M30,
-    WAIT_FOR_INPUT,
-    MGroup,
-    SectionBlock,
-    alone,
-    check_block,
-    check_call,
-    check_codes,
-    check_letters,
-    m_code_alone,
-)
+from g12.section import block_rules
+from g12.section.block_rules import SectionBlock
 from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, split_line
 
@@ -138,8 +127,8 @@ class Section:
         if line.text == "%":
             self._end_of_file()
         location, known = self.reader.location, self.setup.words.words
-        check_codes(line.codes, known, self._rapid_allowed, location)
-        check_letters(line, known, location)
+        block_rules.check_codes(line.codes, known, self._rapid_allowed, location)
+        block_rules.check_letters(line, known, location)
         if "#" in line.text:
             self.reader.show_plane()
         if line.rewritten:
@@ -160,7 +149,7 @@ class Section:
         line = reader.with_spindle(line)
         reader.set_parameters(line)
         reader.set_state(line, block)
-        if block.m[MGroup.INPUT_OUTPUT] == WAIT_FOR_INPUT:
+        if block.m[block_rules.MGroup.INPUT_OUTPUT] == block_rules.WAIT_FOR_INPUT:
             yield from self._wait_for_input(reader.action_text(line, block))
         elif any(self.codes.remapped.get(code) for code in block.m):
             self._call_remapped(line)
@@ -172,11 +161,12 @@ class Section:
         codes, location = self.codes, self.reader.location
         if codes.begins(block):
             raise location.refuse(f"the section is already on: {codes.off_code} ends it")
-        if block.m[MGroup.STOP] in (M2, M30):
-            raise self._missing_off(f"M{block.m[MGroup.STOP]} comes before it")
-        check_block(block, self.setup.words.words, self._rapid_allowed, location)
+        stop = block.m[block_rules.MGroup.STOP]
+        if stop in (block_rules.M2, block_rules.M30):
+            raise self._missing_off(f"M{stop} comes before it")
+        block_rules.check_block(block, self.setup.words.words, self._rapid_allowed, location)
         for code in block.m:
-            if code in codes.remapped and not m_code_alone(block, code):
+            if code in codes.remapped and not block_rules.m_code_alone(block, code):
                 raise location.refuse(
                     f"M{code} is remapped: inside a section it needs a block of its own"
                 )
@@ -193,7 +183,7 @@ class Section:
             return
         if self._phase is Phase.READING and self.frame.is_current:
             self._check_level(line)
-        check_call(line.text, self.codes.off_code, self.reader.location)
+        block_rules.check_call(line.text, self.codes.off_code, self.reader.location)
         self.reader.show_plane()
         self._check_done(self.program.control(line.control))
         self.reader.returned()
@@ -245,7 +235,7 @@ class Section:
     def _finish(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
         off = self.codes.off_code
-        if line.relative or not alone(block, self.codes.word):
+        if line.relative or not block_rules.alone(block, self.codes.word):
             raise self._refuse(f"{off} must be alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
