@@ -2,17 +2,14 @@
 """Exact traces: positions, feeds, errors with text and line, and a clean start for each program."""
 
 import math
-import os
 import subprocess
 import textwrap
-import time
-from pathlib import Path
 
 import pytest
 
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
-from support.sim_machines import trace_text, with_package
+from support.sim_machines import trace_text
 
 INI = """\
 [EMC]
@@ -381,24 +378,6 @@ def test_a_machine_whose_python_does_not_load_says_so(ini, tmp_path):
     broken.write_text("import nothing_of_that_name\n")
     with pytest.raises(TraceFailure, match="nothing_of_that_name"):
         Tracer(ini, overrides={"PYTHON": {"TOPLEVEL": str(broken)}})
-
-
-def test_nothing_is_left_when_the_caller_is_killed(ini):
-    code = (
-        "import os, sys; from g12.tools.preview.tracer import Tracer; tracer = Tracer(sys.argv[1]);"
-        "print(tracer.folder, flush=True); os.kill(os.getpid(), 9)"
-    )
-    killed = subprocess.run(
-        [PYTHON, "-c", code, str(ini)],
-        capture_output=True,
-        text=True,
-        env=with_package(os.environ),
-    )
-    folder = Path(killed.stdout.strip())
-    end = time.monotonic() + 10
-    while folder.exists():
-        assert time.monotonic() < end
-        time.sleep(0.02)
 
 
 def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 
 from g12.tools.machine.ini import read_ini
-from g12.tools.translate.blocks.control import read_control
-from g12.tools.translate.program import translate_program
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.polar_programs import FIRST
@@ -190,15 +188,3 @@ def test_in_mdi(lathe):
     assert not lathe.errors() and lathe.stat().modes == before
     lathe.mdi("o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [0] [0] [7]")
     assert [error.text for error in lathe.errors()] == ["face_holes: kind 7 must be at most 3"]
-
-
-@in_segments
-def test_a_translated_cycle_turns_c_above_the_holes_alone(lathe):
-    lathe.reset()
-    text = "G21 G98 G97\nG0 X80. Z3. C0\nG83 X30. C20. Z-4. R-2. Q1500 F1200.\nH120. K2\nG80\nM30\n"
-    program = translate_program(text, read_control("fanuc-lathe")).text.splitlines()
-    run = lathe.run_text(["G64", *program])
-    assert run.error is None
-    found = bottoms(run.samples, "Z", -4)
-    assert found == [pytest.approx((15, -4, c), abs=SAME) for c in (20, 140, 260)]
-    assert turned_low(run.samples, "Z", 3) == 0

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The face's kinematics in a headless LinuxCNC: real motion, and no way into the wrong world."""
 
-import json
 import random
 import re
 import time
@@ -9,7 +8,6 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.commands.main import main
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import Round
 from support.kinematics import needs_kinematics, on_the_face, place
@@ -189,18 +187,11 @@ def test_the_tolerance_that_linuxcnc_starts_with_rounds_no_corner(lathe):
     assert off_the_corners(run.samples).max() < 0.005  # POLAR_TOLERANCE
 
 
-def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(tmp_path, capsys):
-    program = tmp_path / "corners.ngc"
+def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(lathe):
     square = ["G1 Z-1 F6000", *SQUARE[:-1], "C30", "X45 C32", "Z2"]
-    blocks = ["G21 G18 G8 G90 G94", *ROUGHLY[1:], *square, "G13.1", "M2"]
-    program.write_text("\n".join(blocks) + "\n")
-    ini = str(SIM / "lathe_mm_kinematics_headless.ini")
-    code = main(["verify", str(program), "--ini", ini, "--run", "--json"])
-    said = capsys.readouterr()
-    assert code == 0, said
-    (facts,) = json.loads(said.out)["sections"]
-    assert facts["deviation"] < 0.005
-    assert facts["segments"] < 10  # cut on the face
+    proof = lathe.proof_of_run(["G21 G18 G8 G90 G94 G64", *ROUGHLY[1:], *square, "G13.1", "M2"])
+    assert proof.findings == [] and proof.sections[0].deviation < 0.005
+    assert proof.sections[0].values["segments"] < 10  # cut on the face
 
 
 def test_blocks_that_wait_cut_a_section_in_two(lathe):

@@ -44,7 +44,6 @@ def views() -> tuple[Figure, Axes, Axes]:
     for axes, left, right in ((plan, -1.15, 1.15), (side, -0.66, 0.9)):
         axes.set(xlim=(left, right), ylim=(-1.3, 1.3), aspect="equal")
         axes.axis("off")
-    plan.add_patch(Rectangle((-1.1, -1.06), 2.2, 2.12, facecolor=STOCK, edgecolor="none"))
     return figure, plan, side
 
 
@@ -86,7 +85,7 @@ def section(side: Axes, heights: dict[str, float], levels: tuple[float, ...] = (
     side.add_patch(Rectangle((-0.66, -0.85), 1.02, 1.15, facecolor=STOCK, edgecolor=INK, lw=0.7))
     side.add_patch(Rectangle((-0.46, -0.5), 0.62, 0.81, facecolor=CUT, edgecolor="none"))
     side.plot((-0.46, -0.46, 0.16, 0.16), (0.3, -0.5, -0.5, 0.3), color=INK, lw=0.8)
-    side.add_patch(Rectangle((-0.27, -0.5), 0.24, 1.2, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    box(side, -0.27, -0.5, 0.24, 1.2, TOOL)
     for level in levels:
         side.plot((-0.46, 0.16), (level, level), color=FAINT, lw=0.6, ls=(0, (4, 3)))
     for words, height in heights.items():
@@ -94,9 +93,7 @@ def section(side: Axes, heights: dict[str, float], levels: tuple[float, ...] = (
         side.text(0.45, height, words, **{**WORDS, "ha": "left"})
 
 
-def haas() -> Figure:
-    """Return the picture of the Haas pocket's form."""
-    figure, plan, side = views()
+def haas(plan: Axes, side: Axes) -> None:
     circle(plan, 1.0, fill=CUT, width=1.2)
     for radius in (0.4, 0.7):
         circle(plan, radius, dashed=True, line=FAINT)
@@ -110,12 +107,9 @@ def haas() -> Figure:
     plan.text(*at(0.74, 0), "T", **WORDS)
     section(side, {"retract": 0.85, "Z top": 0.3, "Z depth": -0.5}, (0.033, -0.233))
     side.text(-0.54, -0.1, "L", **WORDS)
-    return figure
 
 
-def yasnac() -> Figure:
-    """Return the picture of the Yasnac circle's form."""
-    figure, plan, side = views()
+def yasnac(plan: Axes, side: Axes) -> None:
     circle(plan, 1.0, fill=CUT, width=1.2)
     circle(plan, 0.62, dashed=True, line=FAINT)
     circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
@@ -130,12 +124,9 @@ def yasnac() -> Figure:
     plan.text(*at(0.74, 0), "T", **WORDS)
     plan.text(0, -1.2, "I below 0: begun on the −X side", **NOTE)
     section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
-    return figure
 
 
-def mitsubishi() -> Figure:
-    """Return the picture of the Mitsubishi circle's form."""
-    figure, plan, side = views()
+def mitsubishi(plan: Axes, side: Axes) -> None:
     circle(plan, 1.0, fill=CUT, width=1.2)
     circle(plan, 0.48, fill=STOCK, width=0.6, line=FAINT)
     circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
@@ -146,12 +137,9 @@ def mitsubishi() -> Figure:
     plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
     plan.text(*at(0.74, 0), "T", **WORDS)
     section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
-    return figure
 
 
-def circle_mill() -> Figure:
-    """Return the picture of the circle mill event's form."""
-    figure, plan, side = views()
+def circle_mill(plan: Axes, side: Axes) -> None:
     circle(plan, 0.92, fill=CUT, width=1.2)
     circle(plan, 0.8, dashed=True, line=FAINT)
     for radius in (0.28, 0.56):
@@ -166,22 +154,24 @@ def circle_mill() -> Figure:
     plan.text(0, -1.2, "D  0 CW, 1 CCW, 2 CW/CCW, 3 CCW/CW", **NOTE)
     section(side, {"O": 0.85, "W": 0.42, "Z": -0.5}, (0.1, -0.2, -0.44))
     measure(side, (-0.38, 0.42), (-0.38, 0.1), "K")
-    return figure
 
 
-def face() -> tuple[Figure, Axes, Axes]:
-    """Return a picture with a bar's end from the front and the bar from the side."""
-    figure, plan, side = views()
-    plan.patches[0].remove()
+def bar_end(plan: Axes) -> None:
+    """Draw the zero line of a bar's end, which is seen from the front."""
     plan.annotate("", (1.12, 0), (0.98, 0), arrowprops={**ARROW, "arrowstyle": "-|>", "color": INK})
     plan.text(1.04, -0.12, "C0", **NOTE)
-    return figure, plan, side
+
+
+def box(axes: Axes, x: float, y: float, width: float, height: float, fill: str = CUT) -> None:
+    """Draw a rectangle from its lower left corner."""
+    edge = 0.8 if fill == STOCK else 0.7
+    axes.add_patch(Rectangle((x, y), width, height, facecolor=fill, edgecolor=INK, lw=edge))
 
 
 def bar_from_the_side(side: Axes) -> None:
     """Draw a bar that sticks out of a spindle, Z0 at its end, with something cut into it."""
-    side.add_patch(Rectangle((-0.6, -0.45), 0.65, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
-    side.add_patch(Rectangle((0.32, 0.02), 0.5, 0.22, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    box(side, -0.6, -0.45, 0.65, 0.9, STOCK)
+    box(side, 0.32, 0.02, 0.5, 0.22, TOOL)
     measure(side, (-0.25, -0.62), (0.05, -0.62), "")
     side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
     measure(side, (0.05, 0.62), (0.32, 0.62), "")
@@ -191,9 +181,7 @@ def bar_from_the_side(side: Axes) -> None:
     side.text(0.57, 0.13, "T", **WORDS)
 
 
-def polygon() -> Figure:
-    """Return the picture of the polygon's form."""
-    figure, plan, side = face()
+def polygon(plan: Axes, side: Axes) -> None:
     circle(plan, 0.95, fill=CUT, line=FAINT, dashed=True)
     corners = [at(0.56 / cos(radians(30)), angle) for angle in range(30, 390, 60)]
     plan.add_patch(Polygon(corners, closed=True, facecolor=STOCK, edgecolor=INK, lw=1.2))
@@ -207,14 +195,11 @@ def polygon() -> Figure:
                   **WORDS)  # fmt: skip
     plan.text(0.05, 1.1, "angle: C of the middle of a flat", **NOTE)
     bar_from_the_side(side)
-    side.add_patch(Rectangle((-0.25, 0.24), 0.3, 0.21, facecolor=CUT, edgecolor=INK, lw=0.7))
-    side.add_patch(Rectangle((-0.25, -0.45), 0.3, 0.21, facecolor=CUT, edgecolor=INK, lw=0.7))
-    return figure
+    box(side, -0.25, 0.24, 0.3, 0.21, CUT)
+    box(side, -0.25, -0.45, 0.3, 0.21, CUT)
 
 
-def slot() -> Figure:
-    """Return the picture of the slot's form."""
-    figure, plan, side = face()
+def slot(plan: Axes, side: Axes) -> None:
     circle(plan, 0.95, fill=STOCK)
     for end in (-0.5, 0.5):
         circle(plan, 0.24, centre=(end, 0), fill=CUT, width=1.2)
@@ -229,13 +214,10 @@ def slot() -> Figure:
     measure(plan, (-0.2, -0.24), (-0.2, 0.24), "width")
     plan.text(0.05, 1.1, "angle: C of the slot's middle line", **NOTE)
     bar_from_the_side(side)
-    side.add_patch(Rectangle((-0.25, -0.11), 0.3, 0.22, facecolor=CUT, edgecolor=INK, lw=0.7))
-    return figure
+    box(side, -0.25, -0.11, 0.3, 0.22, CUT)
 
 
-def face_pocket() -> Figure:
-    """Return the picture of the form of a round pocket on a face."""
-    figure, plan, side = face()
+def face_pocket(plan: Axes, side: Axes) -> None:
     centre = (0.36, 0.3)
     circle(plan, 0.95, fill=STOCK)
     circle(plan, 0.34, centre=centre, fill=CUT, width=1.2)
@@ -253,13 +235,10 @@ def face_pocket() -> Figure:
     measure(plan, (0.02, 0.78), (0.7, 0.78), "diameter")
     plan.text(0.05, 1.1, "X is a diameter, C a length", **NOTE)
     bar_from_the_side(side)
-    side.add_patch(Rectangle((-0.25, -0.05), 0.3, 0.36, facecolor=CUT, edgecolor=INK, lw=0.7))
-    return figure
+    box(side, -0.25, -0.05, 0.3, 0.36, CUT)
 
 
-def face_holes() -> Figure:
-    """Return the picture of the form of holes on a face."""
-    figure, plan, side = face()
+def face_holes(plan: Axes, side: Axes) -> None:
     circle(plan, 0.95, fill=STOCK)
     circle(plan, 0.62, line=FAINT, dashed=True)
     for angle in range(20, 380, 60):
@@ -273,14 +252,13 @@ def face_holes() -> Figure:
     measure(plan, at(0.62, 140), at(0.62, 320), "circle diameter", 0.5)
     plan.text(0.05, 1.1, "first: C of the first hole", **NOTE)
     bar_with_hole(side)
-    return figure
 
 
 def bar_with_hole(side: Axes) -> None:
     """Draw a bar with a hole from its end, and the drill at its retract height."""
-    side.add_patch(Rectangle((-0.6, -0.45), 0.65, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
-    side.add_patch(Rectangle((-0.25, 0.06), 0.3, 0.16, facecolor=CUT, edgecolor=INK, lw=0.7))
-    side.add_patch(Rectangle((0.3, 0.06), 0.5, 0.16, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    box(side, -0.6, -0.45, 0.65, 0.9, STOCK)
+    box(side, -0.25, 0.06, 0.3, 0.16, CUT)
+    box(side, 0.3, 0.06, 0.5, 0.16, TOOL)
     side.text(0.57, 0.14, "T", **WORDS)
     measure(side, (-0.25, -0.62), (0.05, -0.62), "")
     side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
@@ -290,9 +268,7 @@ def bar_with_hole(side: Axes) -> None:
     side.text(0.05, -1.08, "Z0", **WORDS)
 
 
-def side_holes() -> Figure:
-    """Return the picture of the form of holes round a bar."""
-    figure, plan, side = face()
+def side_holes(plan: Axes, side: Axes) -> None:
     circle(plan, 0.7, fill=STOCK, width=1.2)
     for angle in (30, 120, 210, 300):
         for across in (-0.1, 0.1):
@@ -307,38 +283,33 @@ def side_holes() -> Figure:
     plan.text(*at(0.84, 14), "first", bbox=PLATE, **WORDS)
     measure(plan, (-0.7, -0.95), (0.7, -0.95), "surface diameter")
     plan.text(0.05, 1.1, "first: C of the first hole", **NOTE)
-    side.add_patch(Rectangle((-0.6, -0.6), 1.1, 0.9, facecolor=STOCK, edgecolor=INK, lw=0.8))
-    side.add_patch(Rectangle((-0.13, 0.0), 0.16, 0.3, facecolor=CUT, edgecolor=INK, lw=0.7))
-    side.add_patch(Rectangle((-0.13, 0.5), 0.16, 0.45, facecolor=TOOL, edgecolor=INK, lw=0.7))
+    box(side, -0.6, -0.6, 1.1, 0.9, STOCK)
+    box(side, -0.13, 0.0, 0.16, 0.3, CUT)
+    box(side, -0.13, 0.5, 0.16, 0.45, TOOL)
     side.text(-0.05, 0.75, "T", **WORDS)
     measure(side, (-0.3, 0.0), (-0.3, 0.3), "depth")
     measure(side, (0.2, 0.3), (0.2, 0.5), "height")
     measure(side, (-0.05, -0.8), (0.5, -0.8), "z")
     side.plot((0.5, 0.5), (-0.95, 0.3), color=WORD, lw=0.5, ls=(0, (2, 2)))
     side.text(0.5, -1.08, "Z0", **WORDS)
-    return figure
 
 
-PICTURES = {
-    "form_haas": haas,
-    "form_yasnac": yasnac,
-    "form_mitsubishi": mitsubishi,
-    "form_circle_mill": circle_mill,
-    "form_polygon": polygon,
-    "form_slot": slot,
-    "form_face_pocket": face_pocket,
-    "form_face_holes": face_holes,
-    "form_side_holes": side_holes,
-}
+ON_A_MILL = (haas, yasnac, mitsubishi, circle_mill)
+ON_A_BAR = (polygon, slot, face_pocket, face_holes, side_holes)
 
 
 def draw_all() -> None:
     """Write every picture, for each unit's form the same."""
-    for name, picture in PICTURES.items():
-        figure = picture()
+    for draw in (*ON_A_MILL, *ON_A_BAR):
+        figure, plan, side = views()
+        if draw in ON_A_MILL:
+            plan.add_patch(Rectangle((-1.1, -1.06), 2.2, 2.12, facecolor=STOCK, edgecolor="none"))
+        else:
+            bar_end(plan)
+        draw(plan, side)
         for unit in UNITS:
-            figure.savefig(NGC / f"{name}_{unit}.png", dpi=DOTS_PER_INCH, facecolor="white",
-                           metadata={"Software": None})  # fmt: skip
+            figure.savefig(NGC / f"form_{draw.__name__}_{unit}.png", dpi=DOTS_PER_INCH,
+                           facecolor="white", metadata={"Software": None})  # fmt: skip
 
 
 if __name__ == "__main__":
