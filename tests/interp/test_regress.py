@@ -204,12 +204,12 @@ def test_programs_added_and_gone(pocket):
     assert code == 1
     assert lines == [
         "other.ngc: added, it is not recorded",
-        "pocket.ngc: gone, it was recorded",
-        "3 programs: 1 as recorded, 1 added, 1 gone",
+        "pocket.ngc: missing, it was recorded",
+        "3 programs: 1 as recorded, 1 added, 1 missing",
     ]
     code, lines, _ = pocket.run("record")
     assert code == 0
-    assert lines[:2] == ["other.ngc: new, 25 moves", "pocket.ngc: gone, it was recorded"]
+    assert lines[:2] == ["other.ngc: new, 25 moves", "pocket.ngc: missing, it was recorded"]
     assert not pocket.trace("pocket.ngc").exists()
     assert pocket.check() == (0, ["2 programs: 2 as recorded"])
 
@@ -320,7 +320,7 @@ def test_new_versions_of_the_programs_in_another_folder(pocket):
     assert code == 1
     assert lines[0] == "more.ngc: added, it is not recorded"
     assert lines[1].startswith("pocket.ngc:6: ")
-    assert "sub/plain.ngc: gone, it was recorded" in lines
+    assert "sub/plain.ngc: missing, it was recorded" in lines
     assert pocket.check()[0] == 0
 
 

@@ -123,7 +123,7 @@ def test_a_run_is_waited_for_as_long_as_its_program_needs(block, override, secon
     program = tmp_path / "part.ngc"
     program.write_text(f"G21 G90 {block}\nM2\n")
     ini = read_ini(SIM / "mill_mm.ini")
-    assert run.patience(run.preview_of(program, ini.path, None, None), ini, override) == (
+    assert run.default_timeout(run.preview_of(program, ini.path, None, None), ini, override) == (
         pytest.approx(seconds)
     )
 
@@ -146,4 +146,4 @@ def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, li
 
 def test_a_run_of_unknown_length_has_the_usual_time():
     ini = read_ini(SIM / "mill_mm.ini")
-    assert run.patience(None, ini, 100.0) == run.USUAL_TIMEOUT
+    assert run.default_timeout(None, ini, 100.0) == run.USUAL_TIMEOUT

@@ -714,7 +714,7 @@ def test_two_dialects_at_once(tmp_path, capsys):
 )
 def test_the_ways_to_name_features(words):
     options = install.command_parser().parse_args(words)
-    found = install.ini_and_features(options.ini, options.wanted)
+    found = install.ini_and_features(options.ini, options.features)
     assert found == (Path("mill.ini"), ["haas", "circle-mill"])
 
 

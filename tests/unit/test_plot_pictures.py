@@ -15,7 +15,7 @@ from shapely.geometry import Point
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
-from g12.tools.plot.deviation import most_telling, window_lines
+from g12.tools.plot.deviation import clearest_axes, window_lines
 from g12.tools.plot.face import programmed_history
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.mill import Layout, cut_through, removed_at
@@ -160,7 +160,7 @@ def test_many_depths_become_bands():
         hand.line(x=100 * (step % 2), z=-step / 10)
     levels = plan_view.milled_levels(scene(hand))
     assert len(levels) <= plan_view.BANDS
-    assert len(plan_view.few(levels)) == plan_view.MOST_LEVELS
+    assert len(plan_view.few(levels)) == plan_view.MOST_SHOWN_LEVELS
     shown = scene(hand)
     floors = [f"swept at Z{shown.unit.text(level.z)}" for level in (levels[0], levels[-1])]
     for room in (14, 9, 2):
@@ -288,7 +288,7 @@ def test_a_boss_stands_in_the_side_view():
 def test_what_stands_is_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
-    assert told == ["material left standing"]
+    assert told == ["uncut material"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 
@@ -450,7 +450,7 @@ def with_real_motion(hand, ini, aside):
     ],
 )
 def test_the_window_shows_the_axes_in_which_the_motion_strays(away, way, axes):
-    assert most_telling(np.array(away, float), np.array(way, float)) == axes
+    assert clearest_axes(np.array(away, float), np.array(way, float)) == axes
 
 
 def test_the_largest_deviation_is_told_with_its_line():

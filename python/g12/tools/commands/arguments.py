@@ -28,9 +28,9 @@ from g12.tools.units import UNITS, clock
 
 GOOD, FINDING, USAGE = 0, 1, 2
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
-NAMED = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
+COMMAND_NAME = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
 # Python's line of an exception, and LinuxCNC's of a HAL line that it cannot load.
-TELLING = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: ")
+SPECIFIC_LINE = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: ")
 
 
 class Parser(argparse.ArgumentParser):
@@ -53,7 +53,7 @@ class Parser(argparse.ArgumentParser):
 
 def typed(text: str) -> str:
     """Return a text with ``g12`` at the start of its lines as called on this system."""
-    return NAMED.sub(lambda name: name[1] + COMMAND, text)
+    return COMMAND_NAME.sub(lambda name: name[1] + COMMAND, text)
 
 
 def number_above(least: float) -> Callable[[str], float]:
@@ -71,14 +71,14 @@ def count_from(least: int) -> Callable[[str], int]:
     return _reader(int, lambda value: value >= least, f"a whole number from {least}")
 
 
-def _reader(kind: type, is_good: Callable[[float], bool], wanted: str) -> Callable:
+def _reader(kind: type, is_good: Callable[[float], bool], expected: str) -> Callable:
     def read(text: str) -> float:
         try:
             value = kind(text)
         except ValueError:
             value = math.nan
         if not is_good(value):
-            raise argparse.ArgumentTypeError(f"{text!r} is not {wanted}")
+            raise argparse.ArgumentTypeError(f"{text!r} is not {expected}")
         return value
 
     return read
@@ -138,7 +138,7 @@ def samples_of_run(
         return run_program(program, *files, override=options.override).samples
 
 
-def tell_whose_lines(name: str, opened: OpenedProgram) -> None:
+def report_line_numbers(name: str, opened: OpenedProgram) -> None:
     """Report if the lines of a command's output are not those of the user's file."""
     if opened.note:
         print(f"g12 {name}: {opened.note}", file=sys.stderr)
@@ -196,5 +196,5 @@ def _text(problem: Exception) -> str:
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
     if len(lines) < 2:
         return "".join(lines)
-    telling = [line for line in lines if TELLING.match(line)]
-    return f"{lines[0]} … {(telling or lines)[-1]}"
+    specific = [line for line in lines if SPECIFIC_LINE.match(line)]
+    return f"{lines[0]} … {(specific or lines)[-1]}"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.demo.report import shown_or_failed
-from g12.tools.demo.samples import PROGRAMS, SAMPLES, runs
+from g12.tools.demo.samples import PROGRAM_FOLDER, SAMPLES, runs
 from g12.tools.errors import UsageError
 from g12.tools.headless.namespaces import has_namespaces
 
@@ -24,8 +24,8 @@ def command_parser() -> Parser:
 def main(arguments: list[str]) -> int:
     """Run the command."""
     options = command_parser().parse_args(arguments)
-    if not PROGRAMS.is_dir():
-        raise UsageError(f"{PROGRAMS}: the sample programs are not there")
+    if not PROGRAM_FOLDER.is_dir():
+        raise UsageError(f"{PROGRAM_FOLDER}: the sample programs are not there")
     options.output.mkdir(parents=True, exist_ok=True)
     workers = (os.cpu_count() or 1) if has_namespaces() else 1
     print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)

@@ -42,8 +42,8 @@ def command_parser() -> Parser:
         epilog=EXAMPLES.format(features=listed),
     )
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
-    wanted: dict[str, Any] = {"dest": "wanted", "nargs": "+", "default": [], "metavar": "FEATURE"}
-    parser.add_argument("--with", **wanted, help="what to install (see below)")
+    words: dict[str, Any] = {"dest": "features", "nargs": "+", "default": [], "metavar": "FEATURE"}
+    parser.add_argument("--with", **words, help="what to install (see below)")
     parser.add_argument("--pins", type=Path, metavar="TOML", help="inputs of the drive: spindle-c")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     return parser
@@ -58,13 +58,13 @@ def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | Non
     return ini, list(dict.fromkeys(features_named))
 
 
-def wrong_words(ini: Path | None, wanted: Sequence[str]) -> str:
+def wrong_words(ini: Path | None, requested: Sequence[str]) -> str:
     """Return the fault of the command line's features, "" without one."""
     known = ", ".join(features.FEATURE_NAMES)
     unknown = [
-        f"{name!r} is none of {known}" for name in wanted if name not in features.FEATURE_NAMES
+        f"{name!r} is none of {known}" for name in requested if name not in features.FEATURE_NAMES
     ]
-    given = {"the INI": ini, "--with": wanted}
+    given = {"the INI": ini, "--with": requested}
     return ", ".join(unknown[:1] or [f"{name} is missing" for name in given if not given[name]])
 
 
@@ -73,15 +73,15 @@ def main(arguments: list[str]) -> int:
     """Run the command."""
     parser = command_parser()
     options = parser.parse_args(arguments)
-    ini, wanted = ini_and_features(options.ini, options.wanted)
-    wrong = wrong_words(ini, wanted)
+    ini, requested = ini_and_features(options.ini, options.features)
+    wrong = wrong_words(ini, requested)
     if wrong:
         parser.error(wrong)
-    for pair in excluding(wanted):
+    for pair in excluding(requested):
         raise UsageError(f"{pair} exclude each other: choose one")
     pins = read_pins(options.pins) if options.pins else None
     try:
-        print_all(install(read_config_text(ini), wanted, options.dry_run, pins))
+        print_all(install(read_config_text(ini), requested, options.dry_run, pins))
     except Refused as refused:
         for finding in refused.args:
             text = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"

@@ -13,7 +13,7 @@ from types import ModuleType
 from g12 import __version__
 from g12.tools.system import COMMAND
 
-FAILED = 1
+FAILURE = 1
 INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
 
 COMMANDS = {  # each a module of this folder
@@ -27,7 +27,7 @@ COMMANDS = {  # each a module of this folder
     "verify": (
         "prove that pockets, shapes and sections (polar, on a cylinder) come out as programmed"
     ),
-    "regress": "keep what programs do, and tell what changed",
+    "regress": "record what programs do, and report what changed",
     "demo": "run, draw and measure the manuals' programs",
     "trace": "list the moves of a program",
 }
@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> int:
     except BrokenPipeError as problem:
         if not nobody_reads():
             print(f"g12 {name}: {problem}", file=sys.stderr)
-            return FAILED
+            return FAILURE
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return UNREAD
 

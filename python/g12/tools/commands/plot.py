@@ -20,9 +20,9 @@ from g12.tools.commands.arguments import (
     checked_ini,
     cut_parser,
     one_line,
+    report_line_numbers,
     samples_of_run,
     stock_of,
-    tell_whose_lines,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import OpenedProgram, opened_program
@@ -78,7 +78,7 @@ def main(arguments: list[str]) -> int:
     if scene.refusal:
         text = ended_text(options.program, trace_in_source(scene.subject.trace, opened).error)
         print(f"g12 plot: {text}", file=sys.stderr)
-        tell_whose_lines("plot", opened)
+        report_line_numbers("plot", opened)
     return FINDING if scene.refusal else GOOD
 
 

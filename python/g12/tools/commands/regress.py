@@ -57,7 +57,7 @@ def command_parser() -> Parser:
 
 
 def _add_record(actions) -> None:
-    parser = actions.add_parser("record", help="keep what programs do", epilog=RECORD_EXAMPLES)
+    parser = actions.add_parser("record", help="record what programs do", epilog=RECORD_EXAMPLES)
     parser.set_defaults(run=run_record)
     parser.add_argument(
         "programs",
@@ -73,7 +73,7 @@ def _add_record(actions) -> None:
 
 
 def _add_check(actions) -> None:
-    parser = actions.add_parser("check", help="tell what changed", epilog=CHECK_EXAMPLES)
+    parser = actions.add_parser("check", help="report what changed", epilog=CHECK_EXAMPLES)
     parser.set_defaults(run=run_check)
     parser.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
     _add_file(parser, "--programs", "folder with other versions of the programs", "DIR")
@@ -107,16 +107,16 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 def main(arguments: list[str]) -> int:
     """Run the command."""
     options = command_parser().parse_args(arguments)
-    with working("") as tell, Recorders() as recorders:
-        found, notes, good = options.run(options, _terms(options, tell), recorders)
+    with working("") as report, Recorders() as recorders:
+        found, notes, good = options.run(options, _terms(options, report), recorders)
     _print(found, notes, options.json, good)
     return GOOD if good else FINDING
 
 
-def _terms(options: argparse.Namespace, tell: Report) -> Terms:
+def _terms(options: argparse.Namespace, report: Report) -> Terms:
     pictures = getattr(options, "picture", None)
     values = (options.tolerance, options.feed_tolerance, options.timeout, options.jobs, pictures)
-    return Terms(*values, tell)
+    return Terms(*values, report)
 
 
 def run_record(

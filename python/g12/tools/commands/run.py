@@ -21,8 +21,8 @@ from g12.tools.commands.arguments import (
     number_above,
     one_line,
     program_parser,
+    report_line_numbers,
     run_text,
-    tell_whose_lines,
 )
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
@@ -44,9 +44,9 @@ examples:
 
 exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 """
-DECIMALS = 6
-NAMED = re.compile(r"\bline \d")
-PATIENCE = 20.0  # s for an estimate of the run's time
+POSITION_DECIMALS = 6
+LINE_IN_TEXT = re.compile(r"\bline \d")
+PREVIEW_TIMEOUT = 20.0  # s for an estimate of the run's time
 USUAL_TIMEOUT = 600.0  # s
 
 
@@ -57,7 +57,9 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
     if result.error and not result.seconds:
         return
     axes = [(axis, AXIS_LETTERS.index(axis)) for axis in result.samples.axes]
-    ends = (f"{axis}{number_text(round(result.position[at], DECIMALS))}" for axis, at in axes)
+    ends = (
+        f"{axis}{number_text(round(result.position[at], POSITION_DECIMALS))}" for axis, at in axes
+    )
     unit = UNITS[name_of_unit(ini.mm)].name
     units = unit if all(IS_LENGTH[at] for _, at in axes) else f"{unit} and degrees"
     what = "stopped at" if result.error else "ends at"
@@ -68,12 +70,12 @@ def lines_of_run(result: Run, ini: Ini) -> Iterator[str]:
 def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -> Trace | None:
     """Return the trace of a program, None if the preview takes too long."""
     try:
-        return trace(program, ini, tools=tools, parameters=parameters, timeout=PATIENCE)
+        return trace(program, ini, tools=tools, parameters=parameters, timeout=PREVIEW_TIMEOUT)
     except TraceFailure:
         return None
 
 
-def patience(preview: Trace | None, ini: Ini, override: float) -> float:
+def default_timeout(preview: Trace | None, ini: Ini, override: float) -> float:
     """Return the default timeout of a run in seconds."""
     if preview is None or preview.error:
         return USUAL_TIMEOUT
@@ -85,12 +87,13 @@ def line_of_preview(error: Error, preview: Trace | None) -> int:
 
     LinuxCNC's task does not report the line, but a preview with the same error has it.
     """
-    met = preview and preview.error
-    return met.line if met and met.text == error.text and not NAMED.search(met.text) else 0
+    found = preview and preview.error
+    names_line = LINE_IN_TEXT.search(error.text)
+    return found.line if found and found.text == error.text and not names_line else 0
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = program_parser("run", __doc__, EXAMPLES)
     add_override(parser, "of the run")
     usual = f"{USUAL_TIMEOUT:g}, or twice what the program needs"
@@ -107,15 +110,15 @@ def main(arguments: list[str]) -> int:
     with opened_program(options.program, ini) as opened:
         files = (options.ini, options.tools, options.var)
         preview = preview_of(opened.path, *files)
-        timeout = options.timeout or patience(preview, ini, options.override)
+        timeout = options.timeout or default_timeout(preview, ini, options.override)
         with working(run_text(options.program, options.override, preview, ini), clock=True):
             result = run_anyhow(opened.path, *files, options.override, timeout=timeout)
     for text in lines_of_run(result, ini):
         print(text)
     if result.error:
         line = opened.source_line(line_of_preview(result.error, preview))
-        place = f"{options.program}:{line}" if line else options.program
+        location = f"{options.program}:{line}" if line else options.program
         text = opened.in_source(explained_text(result.error.text, options.ini))
-        print(f"g12 run: {place}: {text}", file=sys.stderr)
-        tell_whose_lines("run", opened)
+        print(f"g12 run: {location}: {text}", file=sys.stderr)
+        report_line_numbers("run", opened)
     return FINDING if result.error else GOOD

@@ -16,7 +16,7 @@ from g12.tools.commands.arguments import (
     count_from,
     one_line,
     program_parser,
-    tell_whose_lines,
+    report_line_numbers,
 )
 from g12.tools.machine.filter import opened_program
 from g12.tools.preview.ended import ended, explained
@@ -52,7 +52,7 @@ def _moves(move: Move, axis: str) -> bool:
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = program_parser("trace", __doc__, EXAMPLES)
     digits: dict[str, Any] = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
@@ -66,7 +66,7 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)
-    tell_whose_lines("trace", opened)
+    report_line_numbers("trace", opened)
     traced = explained(trace_in_source(found, opened), options.ini)
     for move in traced.moves:
         print(line_of(move, options.digits))

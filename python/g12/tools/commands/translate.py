@@ -41,9 +41,9 @@ examples:
 
 exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
 """
-USER_CODE = re.compile(r"M(1[0-9]{2})")
+USER_M_CODE = re.compile(r"M(1[0-9]{2})")
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
-UNITS = {"inch": "G20", "mm": "G21"}
+UNIT_CODES = {"inch": "G20", "mm": "G21"}
 POLAR_HANDLERS = ("polar_on", "polar_off")
 CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
@@ -53,27 +53,29 @@ OTHERS_NAMED = 4
 @one_line("translate")
 def main(arguments: list[str]) -> int:
     """Run the command."""
-    asked = parsed(arguments)
+    options = parsed(arguments)
     try:
-        if asked.list:
-            print(contents(asked), end="")
+        if options.list:
+            print(contents(options), end="")
             return GOOD
-        control = changed(read_control(asked.control), asked)
+        control = changed(read_control(options.control), options)
     except ControlError as problem:
         raise UsageError(str(problem)) from None
     sys.stdout.flush()
-    sys.stdout.buffer.write(translated(asked, control).encode())  # independent of the locale
+    sys.stdout.buffer.write(translated(options, control).encode())  # independent of the locale
     return GOOD
 
 
 def command_parser() -> Parser:
-    """Return what reads the command line."""
+    """Return the command's parser."""
     parser = Parser(prog="g12 translate", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("program", type=Path, nargs="?", help="program of the other control")
     parser.add_argument("--control", help="name, or a .toml file of your own")
     parser.add_argument("--list", action="store_true", help="print what controls understand")
     parser.add_argument("--ini", type=Path, help="INI of the machine (a filter knows it)")
-    parser.add_argument("--units", choices=UNITS, help="of a program that says neither G20 nor G21")
+    parser.add_argument(
+        "--units", choices=UNIT_CODES, help="of a program that says neither G20 nor G21"
+    )
     parser.add_argument(
         "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
     )
@@ -89,47 +91,49 @@ def command_parser() -> Parser:
 def parsed(arguments: list[str]) -> argparse.Namespace:
     """Return the command's arguments."""
     parser = command_parser()
-    asked = parser.parse_args(arguments)
-    if not asked.list and not (asked.control and asked.program):
+    options = parser.parse_args(arguments)
+    if not options.list and not (options.control and options.program):
         parser.error("--control and a program are needed, or --list")
-    return asked
+    return options
 
 
-def contents(asked: argparse.Namespace) -> str:
+def contents(options: argparse.Namespace) -> str:
     """Return the output of --list: the controls, or the codes of one of them."""
-    if asked.control:
-        return listing_of(read_control(asked.control))
+    if options.control:
+        return listing_of(read_control(options.control))
     controls = [read_control(name) for name in shipped_controls()]
     return "".join(f"{control.name:16} {control.title}\n" for control in controls)
 
 
-def changed(control: Control, asked: argparse.Namespace) -> Control:
+def changed(control: Control, options: argparse.Namespace) -> Control:
     """Return a control with the command line's settings instead of its file's."""
     tables = dict(control.tables)
-    if asked.polar_x:
-        tables["polar"] = {**tables.get("polar", {}), "x": asked.polar_x}
-    mill = {key: value for key in ("safe", "diameter") if (value := getattr(asked, key))}
+    if options.polar_x:
+        tables["polar"] = {**tables.get("polar", {}), "x": options.polar_x}
+    mill = {key: value for key in ("safe", "diameter") if (value := getattr(options, key))}
     if mill and not control.onto:
         raise UsageError(f"--{min(mill)} is for mill-on-face and mill-round-part")
     tables["mill"] = {**tables.get("mill", {}), **mill}
-    start = (*control.start, *([UNITS[asked.units]] if asked.units else []))
-    return replace(control, start=start, decimals=asked.decimals or control.decimals, tables=tables)
+    start = (*control.start, *([UNIT_CODES[options.units]] if options.units else []))
+    return replace(
+        control, start=start, decimals=options.decimals or control.decimals, tables=tables
+    )
 
 
-def translated(asked: argparse.Namespace, control: Control) -> str:
+def translated(options: argparse.Namespace, control: Control) -> str:
     """Return the LinuxCNC program, or raise ProgramError with the first refused block."""
-    text = program_text(existing(asked.program).read_bytes())
-    path = asked.ini or os.environ.get("INI_FILE_NAME")
+    text = program_text(existing(options.program).read_bytes())
+    path = options.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
     codes = machine_codes(ini) if ini else None
     control = with_facts_of(control, ini) if ini else control
-    if ini and not asked.units and not SAYS_UNITS.search(text):
+    if ini and not options.units and not SAYS_UNITS.search(text):
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, codes, progress())
     if result.refused:
         if result.missing:
-            print(paste_text(result.missing, asked.control), file=sys.stderr)
-        raise ProgramError(f"{asked.program}:{refusal_sentence(result.refused)}")
+            print(paste_text(result.missing, options.control), file=sys.stderr)
+        raise ProgramError(f"{options.program}:{refusal_sentence(result.refused)}")
     return result.text
 
 
@@ -196,7 +200,7 @@ def code_folders(ini: Ini) -> list[Path]:
 def codes_in(folder: Path) -> list[str]:
     """Return the M codes with an executable file in a folder."""
     files = folder.iterdir() if folder.is_dir() else ()
-    return [f.name for f in files if USER_CODE.fullmatch(f.name) and os.access(f, os.X_OK)]
+    return [f.name for f in files if USER_M_CODE.fullmatch(f.name) and os.access(f, os.X_OK)]
 
 
 def polar_pair(remaps: list[Remap]) -> tuple[str, str] | None:
@@ -212,10 +216,10 @@ def progress() -> Callable[[float], None]:
         return lambda share: None
     last = time.monotonic()
 
-    def tell(share: float) -> None:
+    def report(share: float) -> None:
         nonlocal last
         if time.monotonic() - last > PROGRESS_EVERY:
             last = time.monotonic()
             print(f"FILTER_PROGRESS={100 * share:.0f}", file=sys.stderr, flush=True)
 
-    return tell
+    return report

@@ -20,9 +20,9 @@ from g12.tools.commands.arguments import (
     cut_parser,
     number_above,
     one_line,
+    report_line_numbers,
     samples_of_run,
     stock_of,
-    tell_whose_lines,
 )
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
@@ -73,7 +73,7 @@ def main(arguments: list[str]) -> int:
         proof = proof_of(opened.path, ini, options)
         proof = replace(proof, opened=opened) if opened.is_filtered else proof
         judged = proof.judged  # while the filter's output exists
-    tell_whose_lines("verify", opened)
+    report_line_numbers("verify", opened)
     if not (any(proof.cuts) or proof.lines_with("not-measured") or proof.lines_with("not-cut")):
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)

@@ -10,8 +10,8 @@ from typing import NamedTuple
 from g12.tools.headless.run import run_program
 from g12.tools.install.config.features import ROOT
 
-PROGRAMS = ROOT / "tests" / "programs"
-MACHINES = ROOT / "configs" / "sim"
+PROGRAM_FOLDER = ROOT / "tests" / "programs"
+MACHINE_FOLDER = ROOT / "configs" / "sim"
 
 
 class Sample(NamedTuple):
@@ -29,12 +29,12 @@ class Sample(NamedTuple):
     @property
     def path(self) -> Path:
         """Return the program's file."""
-        return PROGRAMS / self.program
+        return PROGRAM_FOLDER / self.program
 
     @property
     def ini(self) -> Path:
         """Return the machine's INI file."""
-        return MACHINES / f"{self.machine}_headless.ini"
+        return MACHINE_FOLDER / f"{self.machine}_headless.ini"
 
     @property
     def tools(self) -> Mapping[int, float] | None:

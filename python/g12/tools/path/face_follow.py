@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a move on the kinematics' face asks of the slide and of C, as shares of their limits.
+"""What a move on the kinematics' face demands of the slide and of C, as shares of their limits.
 
-LinuxCNC holds X and Y of the face to their limits, and does not limit the slide and C there. For a
-tool at the complex place z, beside the X line by p, the slide stands at r with r**2 = |z|**2 - p**2
-and C at the angle of z / (r + i p). At the speed v and the acceleration a on the way s, an axis at
-q(s) is accelerated by v**2 q'' + a q'. The operator may stop the feed anywhere: then a is at least
-what X or Y alone has, less what an arc needs towards its centre. On an arc LinuxCNC is no faster
-than X and Y let it be.
+LinuxCNC keeps X and Y of the face within their limits, and does not limit the slide and C there.
+For a tool at the complex point z, beside the X line by p, the slide is at r with
+r**2 = |z|**2 - p**2 and C at the angle of z / (r + i p). At the speed v and the acceleration a
+along the path s, an axis at q(s) is accelerated by v**2 q'' + a q'. The operator may stop the feed
+anywhere: then a is at least that of X or Y alone, less the centripetal part on an arc. On an arc
+LinuxCNC limits the speed to what X and Y can accelerate.
 
 Lengths are millimetres, angles radians, times seconds.
 """
@@ -19,9 +19,9 @@ import numpy as np
 from g12.tools.path.part import C, X, Y
 from g12.tools.preview.moves import Move
 
-PLACES = 48  # samples of a move, beside those where a line's C is accelerated most
-SHORTEST = 4e-3  # mm: a shorter line is not sampled
-AT_CENTRE = 1e-6  # mm: there C has no angle, and a line that ends there needs none
+SAMPLES_OF_MOVE = 48  # samples of a move, beside those where a line's C is accelerated most
+SHORTEST_SAMPLED = 4e-3  # mm: a shorter line is not sampled
+POLE_RADIUS = 1e-6  # mm: there C has no angle, and a line that ends there needs none
 Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
 
 
@@ -36,9 +36,9 @@ class FollowLimits(NamedTuple):
 
 
 class FaceDemand(NamedTuple):
-    """How many times a limit a move asks for.
+    """The demand of a move, as multiples of the limits.
 
-    Accelerations of slide and C, their speeds, the acceleration of X and Y towards an arc's centre.
+    Accelerations of slide and C, their speeds, the centripetal acceleration of X and Y on an arc.
     """
 
     slide: float
@@ -49,38 +49,38 @@ class FaceDemand(NamedTuple):
 
 
 def crosses_face(move: Move) -> bool:
-    """Tell whether a move goes across the face, and is long enough to be sampled."""
-    way = [move.end[axis] - move.start[axis] for axis in (X, Y)]
-    across = move.kind == "arc" or (move.kind == "feed" and math.hypot(*way) > SHORTEST)
+    """Return whether a move crosses the face, and is long enough to be sampled."""
+    change = [move.end[axis] - move.start[axis] for axis in (X, Y)]
+    across = move.kind == "arc" or (move.kind == "feed" and math.hypot(*change) > SHORTEST_SAMPLED)
     return across and move.start[C] == move.end[C]
 
 
 def demand(
     move: Move, speed: float, centre: float, beside: float, limits: FollowLimits
 ) -> FaceDemand:
-    """Return what a move across the face asks for at a speed; the pole is at X ``centre``."""
+    """Return the demand of a move across the face at a speed; the pole is at X ``centre``."""
     bend = math.copysign(1.0 / move.radius, move.sweep) if move.kind == "arc" else 0.0
-    asked = speed * speed * abs(bend) / limits.plane
-    square = speed * speed / max(1.0, asked)
-    along = limits.plane * math.sqrt(1.0 - min(1.0, asked) ** 2)
+    centripetal = speed * speed * abs(bend) / limits.plane
+    square = speed * speed / max(1.0, centripetal)
+    along = limits.plane * math.sqrt(1.0 - min(1.0, centripetal) ** 2)
     (slide, slide_bent), (c, c_bent) = followed_along(move, bend, centre, beside)
     return FaceDemand(
         float(np.nanmax(square * abs(slide_bent) + along * abs(slide))) / limits.slide,
         float(np.nanmax(square * abs(c_bent) + along * abs(c))) / limits.c,
         math.sqrt(square) * float(np.nanmax(abs(slide))) / limits.slide_speed,
         math.sqrt(square) * float(np.nanmax(abs(c))) / limits.c_speed,
-        asked,
+        centripetal,
     )
 
 
 def followed_along(
     move: Move, bend: float, centre: float, beside: float
 ) -> tuple[Derivatives, Derivatives]:
-    """Return the derivatives of the slide's place and C's angle, per mm of a move."""
+    """Return the derivatives of the slide's position and C's angle, per mm of a move."""
     points, heading, flat = _sampled(move, centre)
     radius = np.maximum(np.abs(points), 1e-12)
-    seen = heading * points.conj() / radius
-    slide, c = axis_derivatives(radius, seen.real, seen.imag, bend, beside)
+    polar = heading * points.conj() / radius
+    slide, c = axis_derivatives(radius, polar.real, polar.imag, bend, beside)
     share = flat / move.length
     return (slide[0] * share, slide[1] * share**2), (c[0] * share, c[1] * share**2)
 
@@ -92,13 +92,13 @@ def axis_derivatives(
     bend: np.ndarray | float,
     beside: float = 0.0,
 ) -> tuple[Derivatives, Derivatives]:
-    """Return the derivatives of the slide's place and C's angle along a path of signed curvature.
+    """Return the derivatives of the slide's position and C's angle on a path of curvature ``bend``.
 
     ``along`` and ``around`` are its direction's components along the radius and around the pole.
     At the pole they are nan.
     """
     with np.errstate(invalid="ignore", divide="ignore"):
-        radius = np.where(radius < AT_CENTRE, np.nan, radius)
+        radius = np.where(radius < POLE_RADIUS, np.nan, radius)
         slide = np.sqrt(radius**2 - beside**2)
         turn, lift = around / radius, around * (around / radius - bend)
         first = radius * along / slide
@@ -111,17 +111,18 @@ def axis_derivatives(
 
 
 def _sampled(move: Move, centre: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return points (complex) of a move seen from the pole, headings there, the length across."""
-    start, end = (complex(place[X] - centre, place[Y]) for place in (move.start, move.end))
-    parts = np.linspace(0.0, 1.0, PLACES)
+    """Return points (complex) of a move relative to the pole, headings there, its plane length."""
+    ends = (move.start, move.end)
+    start, end = (complex(position[X] - centre, position[Y]) for position in ends)
+    parts = np.linspace(0.0, 1.0, SAMPLES_OF_MOVE)
     if move.kind == "arc":
         middle = complex(move.centre[X] - centre, move.centre[Y])
         arms = (start - middle) * np.exp(1j * move.sweep * parts)
         heading = math.copysign(1.0, move.sweep) * 1j * arms / abs(arms)
         return middle + arms, heading, abs(move.sweep) * abs(start - middle)
-    way = end - start
-    foot = -start * way.conjugate() / abs(way) ** 2
+    line = end - start
+    foot = -start * line.conjugate() / abs(line) ** 2
     most = abs(foot.imag) / math.sqrt(3.0)
     beside = np.clip(foot.real + most * np.array([-1.0, 0.0, 1.0]), 0.0, 1.0)
-    points = start + way * np.append(parts, beside)
-    return points, np.full(len(points), way / abs(way)), abs(way)
+    points = start + line * np.append(parts, beside)
+    return points, np.full(len(points), line / abs(line)), abs(line)

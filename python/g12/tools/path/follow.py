@@ -19,7 +19,7 @@ from g12.tools.path.samples import Samples
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import IS_LENGTH, Move
 
-SLACK = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
+LOOK_AHEAD = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
 
 
 @dataclass(frozen=True)
@@ -90,15 +90,15 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     moving = samples.moving()
     axes = _positions(samples, unit)[moving]
     axes[:, Y] += path.part.beside  # the tool is beside the joints' position
-    there = path.part.points(axes)
+    axis_points = path.part.points(axes)
     windows = windows_of(path, moves, samples.line[moving])
-    segment = _segments(path.axis_points, there, windows.on_its_line)
+    segment = _segments(path.axis_points, axis_points, windows.on_its_line)
     following = np.minimum(segment + 1, len(path.move) - 1)
-    positions = axes - _offsets(path, there, segment, following)
+    positions = axes - _offsets(path, axis_points, segment, following)
     points = path.part.points(positions)
     nearest = _programmed(path, moves, points, segment)
-    beside = _segments(path.axis_points, there, windows.with_neighbours)
-    other = _programmed(path, moves, points, beside)
+    adjacent = _segments(path.axis_points, axis_points, windows.with_neighbours)
+    other = _programmed(path, moves, points, adjacent)
     away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
     nearest = np.where((other_away < away)[:, None], other, nearest)
     deviation = np.minimum(away, other_away)
@@ -131,7 +131,7 @@ def is_plain_arc(move: Move) -> bool:
 def on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
     """Return the points of an arc next to points, given the nearest ones of its chords.
 
-    A nearest point that is an end of the arc stays.
+    A nearest point that is an end of the arc is not changed.
     """
     axes = plane_axes(move)
     local = (points - move.centre) @ axes.T
@@ -160,10 +160,10 @@ def _positions(samples: Samples, unit: float) -> np.ndarray:
     return positions
 
 
-def _offsets(path: Track, there: np.ndarray, segment: np.ndarray, following: np.ndarray):
-    """Return the tool length offsets (n, 9) of axis points: a move with G43 brings it in."""
+def _offsets(path: Track, points: np.ndarray, segment: np.ndarray, following: np.ndarray):
+    """Return the tool length offsets (n, 9) at axis points: they change along a move with G43."""
     start = path.axis_points[segment]
-    share = shares_along(there, start, path.axis_points[following] - start)[:, None]
+    share = shares_along(points, start, path.axis_points[following] - start)[:, None]
     return path.offsets[segment] * (1 - share) + path.offsets[following] * share
 
 
@@ -212,7 +212,7 @@ def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.nd
         if first < least:
             first, here = least, path[least]
         reached = along[first] + math.dist(here, path[first])
-        ahead = int(np.searchsorted(along, reached + 2 * math.dist(point, here) + SLACK))
+        ahead = int(np.searchsorted(along, reached + 2 * math.dist(point, here) + LOOK_AHEAD))
         starts = path[first : min(max(ahead, first + 1), most + 1)].copy()
         ends = path[first + 1 : first + 1 + len(starts)]
         if len(ends):

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-NO_LENGTH = 1e-30  # squared length: a shorter segment is a point
+POINT_LENGTH_SQUARED = 1e-30  # squared length: a shorter segment is a point
 
 
 def on_segments(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -17,5 +17,5 @@ def on_segments(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np
 
 def shares_along(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
     """Return the shares of segments, 0 to 1, at their nearest points; see ``on_segments``."""
-    squares = np.maximum(np.einsum("...i,...i->...", along, along), NO_LENGTH)
+    squares = np.maximum(np.einsum("...i,...i->...", along, along), POINT_LENGTH_SQUARED)
     return np.clip(np.einsum("...i,...i->...", points - starts, along) / squares, 0.0, 1.0)

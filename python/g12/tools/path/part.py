@@ -125,12 +125,12 @@ def _spiral_segments(move: Move, chord_error: float) -> int:
     The turn's own sagitta is left out. The second derivative of w exp(ic) has the further term
     2i w' c' exp(ic): a sagitta of distance times turn / 4.
     """
-    way = math.hypot(move.end[X] - move.start[X], move.end[Y] - move.start[Y])
+    length = math.hypot(move.end[X] - move.start[X], move.end[Y] - move.start[Y])
     turn = math.radians(abs(move.end[C] - move.start[C]))
-    return math.ceil(math.sqrt(way * turn / (4.0 * chord_error))) if turn else 1
+    return math.ceil(math.sqrt(length * turn / (4.0 * chord_error))) if turn else 1
 
 
-def slide_places(points: np.ndarray, beside: float) -> np.ndarray:
+def slide_positions(points: np.ndarray, beside: float) -> np.ndarray:
     """Return the X slide's positions for the tool's, as points (complex) of the plane that C turns.
 
     Off the face, where the tool is ``beside`` the X line, they are on the real axis.
@@ -148,7 +148,7 @@ def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np
     another is a switch of kinematics, during which C does not move. ``beside`` is the tool's
     distance from the X line.
     """
-    on_face = slide_places(points, beside)
+    on_face = slide_positions(points, beside)
     turned = np.degrees(np.angle(on_face[1:] * np.conj(on_face[:-1])))
     off_line = (on_face.imag[1:] != 0.0) | (on_face.imag[:-1] != 0.0)
     changed = np.diff(c)
@@ -176,13 +176,13 @@ def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
     angles, radius = move.sweep * fractions, math.hypot(*start[:2])
     growth = 1 + (math.hypot(*end[:2]) / radius - 1) * fractions
     cos, sin = np.cos(angles) * growth, np.sin(angles) * growth
-    points, seen = np.empty((len(fractions), 9)), np.empty((len(fractions), 3))
+    points, local = np.empty((len(fractions), 9)), np.empty((len(fractions), 3))
     points[:, 3:] = move.start[3:]
     if move.start[3:] != move.end[3:]:
         points[:, 3:] = np.outer(1 - fractions, move.start[3:]) + np.outer(fractions, move.end[3:])
-    seen[:, 0], seen[:, 1] = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
-    seen[:, 2] = start[2] + (end[2] - start[2]) * fractions
-    points[:, :3] = seen @ axes + centre
+    local[:, 0], local[:, 1] = start[0] * cos - start[1] * sin, start[0] * sin + start[1] * cos
+    local[:, 2] = start[2] + (end[2] - start[2]) * fractions
+    points[:, :3] = local @ axes + centre
     return points
 
 
@@ -235,7 +235,7 @@ def plane_axes(move: Move) -> np.ndarray:
 
 @lru_cache(maxsize=64)
 def axes_of_plane(plane: int, rotation: float) -> np.ndarray:
-    """Return the same of a plane by its number in a system turned by degrees."""
+    """Return the same of a plane by its number, in a system rotated about Z by degrees."""
     cos, sin = np.cos(np.radians(rotation)), np.sin(np.radians(rotation))
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
     axes = np.roll(turned, 2 - THIRD_AXIS[plane], axis=0)

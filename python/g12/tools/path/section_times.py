@@ -29,7 +29,7 @@ STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the
 STRAIGHT_ON = math.radians(5.0)  # a sharper corner is a stop
 SEGMENT_BULGE = 1.44  # of the tolerance
 STOPPED_IN = 0.4  # measured: the square of the speed by length times acceleration of a segment
-SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
+TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
 PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
 TINY = 1e-9
@@ -102,7 +102,7 @@ def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
     chorded = sum(_seconds(each, *how) for each, how in zip(stretches, segments))
     face = min(
         sum(_on_face(each, *how, machine, share) for each, how in zip(stretches, segments))
-        for share in SHARES
+        for share in TRIED_SHARES
     )
     least = sum(
         least_seconds(each.points, each.feed, machine.slide, machine.spindle) for each in stretches
@@ -134,8 +134,8 @@ def _drawn(run: Sequence[Leg]) -> _Stretch:
     heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
     bends = np.array([_bend(leg.curve) for leg in run])[owners]
     feeds = np.array([leg.feed for leg in run])[owners]
-    seen = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
-    return _Stretch(points, feeds, bends, seen.real, seen.imag)
+    polar = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
+    return _Stretch(points, feeds, bends, polar.real, polar.imag)
 
 
 def _bend(curve: Curve) -> float:
@@ -192,8 +192,8 @@ def _on_face(
 def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
     """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
     (speed, acceleration), (c_speed, c_acceleration) = machine.slide, machine.spindle
-    place = np.abs(stretch.points), stretch.along, stretch.around, stretch.bend
-    slide, c = axis_derivatives(*place)
+    radius = np.abs(stretch.points)
+    slide, c = axis_derivatives(radius, stretch.along, stretch.around, stretch.bend)
     square = np.minimum(speed / _size(slide[0]), c_speed / _size(c[0])) ** 2
     square = np.minimum(square, most / _size(stretch.bend))
     for (first, second), limit in ((c, c_acceleration), (slide, acceleration)):

@@ -71,12 +71,12 @@ def real_pace(
 def up_to_speed(cutting: np.ndarray, speed: np.ndarray, path: Track, real: Followed) -> list:
     """Return the indices of the samples of each stretch of cutting, without its ramps."""
     used, back = np.unique(real.move, return_inverse=True)
-    wanted = np.array([path.part_feed(index) for index in used])[back]
+    programmed = np.array([path.part_feed(index) for index in used])[back]
     edges = np.flatnonzero(np.diff(np.concatenate([[0], cutting.astype(int), [0]])))
     found = []
     for first, last in zip(edges[::2], edges[1::2]):
         stretch = np.arange(first, last)
-        fast = np.flatnonzero(speed[stretch] >= AT_SPEED * wanted[stretch])
+        fast = np.flatnonzero(speed[stretch] >= AT_SPEED * programmed[stretch])
         if len(fast):
             found.append(stretch[fast[0] : fast[-1] + 1])
     return found

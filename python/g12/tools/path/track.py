@@ -18,8 +18,8 @@ from g12.tools.path.part import CHORD_ERROR, Part
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 
 UNLIMITED = math.inf
-STILL = 1e-8  # mm or degrees: LinuxCNC ignores shorter moves (CART_FUZZ)
-DWELL = "dwell "  # prefix of an event; the seconds follow it
+CART_FUZZ = 1e-8  # mm or degrees: LinuxCNC ignores shorter moves (CART_FUZZ)
+DWELL_EVENT = "dwell "  # prefix of an event; the seconds follow it
 
 
 @dataclass(frozen=True)
@@ -128,8 +128,8 @@ def program_seconds(trace: Trace, ini: Ini, override: float = 100.0) -> float:
     """Return a program's estimated time, with its dwells, at a feed override in per cent."""
     limits, share = limits_of(ini), override / 100.0
     moves = (move._replace(feed=move.feed * share) for move in trace.moves)
-    dwells = (event.text for event in trace.events if event.text.startswith(DWELL))
-    waiting = sum(float(text.removeprefix(DWELL)) for text in dwells)
+    dwells = (event.text for event in trace.events if event.text.startswith(DWELL_EVENT))
+    waiting = sum(float(text.removeprefix(DWELL_EVENT)) for text in dwells)
     return waiting + sum(duration(move, limits, trace.modes.speed) for move in moves)
 
 
@@ -143,8 +143,8 @@ def duration(move: Move, limits: Limits, spindle_speed: float = 0.0) -> float:
         return move.length / min(rate(move, spindle_speed) or limits.path, limits.path)
     needed = max(change / limit for change, limit in zip(changes, limits.axes))
     needed = max(needed, move.length / limits.path)
-    wanted = rate(move, spindle_speed)
-    return max(needed, feed_length(move) / wanted) if wanted else needed
+    feed = rate(move, spindle_speed)
+    return max(needed, feed_length(move) / feed) if feed else needed
 
 
 def rate(move: Move, spindle_speed: float) -> float:
@@ -157,7 +157,7 @@ def feed_length(move: Move) -> float:
     """Return the length to which a move's feed refers: of X Y Z, else of U V W, else degrees."""
     change = np.subtract(move.end, move.start)
     lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
-    return next((length for length in lengths if length >= STILL), 0.0)
+    return next((length for length in lengths if length >= CART_FUZZ), 0.0)
 
 
 def track(

@@ -16,9 +16,9 @@ from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.units import Unit
 
-SIZE = 1.9  # inches: the detail view's sides
+DETAIL_SIZE = 1.9  # inches: the detail view's sides
 NEIGHBOURS = 3  # number of moves drawn before and after
-WINDOW = 6.0  # half the view's side, in deviations
+HALF_VIEW = 6.0  # half the view's side, in deviations
 LEAST_WINDOW = 1e-4  # mm
 
 
@@ -32,14 +32,14 @@ def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> No
     """Draw the detail view with its lower left corner at a point (inches)."""
     worst = worst_of(scene.real, scene.moves)
     if worst is not None:
-        _draw(style.add_axes(figure, *corner, SIZE, SIZE), scene, worst)
+        _draw(style.add_axes(figure, *corner, DETAIL_SIZE, DETAIL_SIZE), scene, worst)
 
 
 def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     real, moves, unit = scene.real, scene.moves, scene.unit
-    half = max(WINDOW * worst.deviation, LEAST_WINDOW)
+    half = max(HALF_VIEW * worst.deviation, LEAST_WINDOW)
     before, after = real.points[max(0, worst.sample - 1) : worst.sample + 2][[0, -1]]
-    pair = most_telling(worst.point - worst.nearest, after - before)
+    pair = clearest_axes(worst.point - worst.nearest, after - before)
     origin = worst.nearest[pair]
     around = moves[max(0, real.move[worst.sample] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
     programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
@@ -65,9 +65,9 @@ def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
         yield f"off the contour: {scene.unit.fine(scene.contour)} {scene.unit.name}"
 
 
-def most_telling(away: np.ndarray, way: np.ndarray) -> list[int]:
+def clearest_axes(deviation: np.ndarray, direction: np.ndarray) -> list[int]:
     """Return the two axes of the part, in order, that show a deviation and its path best."""
-    score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (away, way))
+    score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (deviation, direction))
     return sorted(np.argsort(-score, kind="stable")[:2].tolist())
 
 
@@ -86,9 +86,8 @@ def _scale_bar(axes: Axes, half: float, unit: Unit) -> None:
     shown = half / unit.mm
     length = 10.0 ** math.floor(math.log10(shown))
     length = max(step * length for step in (0.2, 0.5, 1.0) if step * length <= shown)
-    place = axes.transAxes
     share = length / shown / 2
-    bar = {"transform": place, "color": style.INK, "linewidth": 1.4, "zorder": 5}
+    bar = {"transform": axes.transAxes, "color": style.INK, "linewidth": 1.4, "zorder": 5}
     axes.plot([0.06, 0.06 + share], [0.06, 0.06], solid_capstyle="butt", **bar)
     text = f"{length:g} {unit.name}"
-    axes.text(0.06, 0.09, text, transform=place, size=7.5, color=style.INK)
+    axes.text(0.06, 0.09, text, transform=axes.transAxes, size=7.5, color=style.INK)

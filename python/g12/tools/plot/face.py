@@ -14,10 +14,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.part import C, X, Y, Z, slide_places, spindle_angles
+from g12.tools.path.part import C, X, Y, Z, slide_positions, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
-from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     Level,
@@ -34,7 +34,7 @@ from g12.tools.units import plain
 
 WIDTH, HEIGHT = 11.9, 8.0
 LETTERS_APART = 0.11  # of the panel of Z
-HIGHER = 1.25  # with the detail view of the largest deviation
+DETAIL_HEIGHT = 1.25  # with the detail view of the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
 FACE_SIZE = 5.0  # side of the face's view
 ROOM, ROOM_BESIDE_WINDOW = 14, 14  # entries of the legend: in two columns, in one
@@ -62,7 +62,7 @@ class History(NamedTuple):
 def draw_face(scene: Scene) -> Figure:
     """Return the picture of a lathe program with C."""
     levels = milled_levels(scene)
-    height = HEIGHT if scene.real is None else HEIGHT + HIGHER
+    height = HEIGHT if scene.real is None else HEIGHT + DETAIL_HEIGHT
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
     face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
     frame_face(face, scene, levels)
@@ -77,7 +77,7 @@ def draw_face(scene: Scene) -> Figure:
     draw_panels(figure, scene)
     if scene.real is not None:
         mark_worst(face, scene, [0, 1])
-        draw_window(figure, (LEFT + FACE_SIZE - SIZE, 0.55), scene)
+        draw_window(figure, (LEFT + FACE_SIZE - DETAIL_SIZE, 0.55), scene)
     return figure
 
 
@@ -147,7 +147,7 @@ def programmed_history(scene: Scene) -> History:
     step = np.insert(feed, 0, feed[0]) * 60
     programmed = np.where(rapid, np.nan, step)
     c_step = np.insert(c_speed, 0, c_speed[0])
-    slide = slide_places(on_face, path.part.beside)
+    slide = slide_positions(on_face, path.part.beside)
     x = np.where(slide.imag, np.abs(slide), slide.real)
     z = path.positions[:, Z]
     first = path.vertices(len(scene.moves) - len(shown_moves(scene))).start
@@ -180,8 +180,8 @@ def draw_depths(
     for depth, beside in zip(depths, spread_out(depths, apart)):
         axes.axhline(depth, color=style.RAPID, linewidth=0.6, linestyle=(0, (1, 2)))
         text = {"size": 6.5, "color": style.INK, "va": "center"}
-        place = axes.get_yaxis_transform()
-        axes.text(1.01, beside, plain(depth, unit.decimals), transform=place, **text)
+        transform = axes.get_yaxis_transform()
+        axes.text(1.01, beside, plain(depth, unit.decimals), transform=transform, **text)
 
 
 def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
@@ -199,9 +199,9 @@ def draw_limit(axes: Axes, limit: float, text: str) -> None:
     """Draw the upper limit of the values."""
     if np.isfinite(limit):
         axes.axhline(limit, color=style.LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
-        place = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}
+        anchor = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}
         offset = {"xytext": (0, 2), "textcoords": "offset points", "va": "bottom"}
-        axes.annotate(text, color=style.LIMIT, size=7.5, **place, **offset)
+        axes.annotate(text, color=style.LIMIT, size=7.5, **anchor, **offset)
         axes.set_ylim(0, 1.25 * limit)
 
 

@@ -17,7 +17,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.plot import style
-from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     SAME_DEPTH,
@@ -37,7 +37,7 @@ from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 from g12.tools.verify.result.finding import Finding
 
-PAGE = 11.0  # wide
+PAGE_WIDTH = 11.0  # wide
 WIDE = 2.0  # a plan wider than this times its height has the legend below
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
 LEGEND = 2.75  # width, with the Z levels beside the side view
@@ -49,7 +49,7 @@ PLAN, SIDE = [0, 1], [0, 2]  # axes
 HEIGHTS = 0.8  # width: the labels of the floors' levels, with their lines
 LETTER_HEIGHT = 0.11
 LEADER = 0.2  # the lines to the texts
-WINDOW = SIZE + 0.75  # the detail view of the largest deviation, with its texts
+DETAIL_ROOM = DETAIL_SIZE + 0.75  # the detail view of the largest deviation, with its texts
 
 
 class Layout:
@@ -59,17 +59,17 @@ class Layout:
         width, height, depth = size
         self.below = width > WIDE * height
         beside = HEIGHTS if self.below else LEGEND + RIGHT
-        room = PAGE - LEFT - beside
+        room = PAGE_WIDTH - LEFT - beside
         scale = min(room / width, MOST_PLAN / height)
         self.plan = (width * scale, max(LEAST_PLAN, height * scale))
         self.side = min(MOST_SIDE, max(LEAST_SIDE, depth * scale))
         self.stretch = self.side / (depth * scale)
         legend = ROW * (-(-rows // COLUMNS) if self.below else rows) + 0.2
-        window = WINDOW if with_window else 0.0
+        window = DETAIL_ROOM if with_window else 0.0
         foot = max(legend, window) if self.below else 0.0
         views = self.plan[1] + BETWEEN + self.side + BOTTOM
         self.height = TOP + max(views + foot, 0.0 if self.below else legend + window)
-        self.width = PAGE if self.below else LEFT + self.plan[0] + beside
+        self.width = PAGE_WIDTH if self.below else LEFT + self.plan[0] + beside
         self.under = self.height - TOP - views
 
     def axes(self, figure: Figure) -> tuple[Axes, Axes]:
@@ -88,7 +88,7 @@ class Layout:
     def window_corner(self) -> tuple[float, float]:
         """Return the lower left corner of the detail view of the largest deviation."""
         beside = (LEFT + self.plan[0] + HEIGHTS, BOTTOM)
-        return (self.width - RIGHT - SIZE, 0.4) if self.below else beside
+        return (self.width - RIGHT - DETAIL_SIZE, 0.4) if self.below else beside
 
 
 def draw_mill(scene: Scene) -> Figure:
@@ -115,7 +115,7 @@ def draw_mill(scene: Scene) -> Figure:
 
 
 def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float) -> None:
-    """Draw the view along Y: the material removed at each level, seen through the part."""
+    """Draw the view along Y: the material removed at each Z level, projected."""
     unit, top = scene.unit.mm, top_of(scene)
     draw_stock(axes, scene, block_from_the_side(scene))
     for order, level in enumerate(reversed(levels)):
@@ -157,7 +157,7 @@ def removed_at(level: Level, top: float) -> BaseGeometry:
 
 
 def spans_of(area: Polygon) -> list[tuple[float, float]]:
-    """Return from where to where along X an area reaches; round a boss, through its middle."""
+    """Return the spans of an area along X; of one around a boss, those through its middle."""
     low, bottom, high, up = area.bounds
     if not area.interiors:
         return [(low, high)]
@@ -165,7 +165,7 @@ def spans_of(area: Polygon) -> list[tuple[float, float]]:
 
 
 def spans_at(area: BaseGeometry, y: float) -> list[tuple[float, float]]:
-    """Return from where to where an area reaches along a line parallel to X."""
+    """Return the spans of an area along a line parallel to X."""
     low, high = area.bounds[::2]
     across = area.intersection(LineString([(low, y), (high, y)]))
     lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
@@ -174,9 +174,9 @@ def spans_at(area: BaseGeometry, y: float) -> list[tuple[float, float]]:
 
 def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
     """Label each floor with its level, without overlap, with lines to the floors."""
-    page, place = axes.get_figure().get_size_inches(), axes.get_position()
-    apart = LETTER_HEIGHT / page[1] / place.height
-    inch = 1 / page[0] / place.width
+    page, panel = axes.get_figure().get_size_inches(), axes.get_position()
+    apart = LETTER_HEIGHT / page[1] / panel.height
+    inch = 1 / page[0] / panel.width
     low, high = axes.get_ylim()
     shown = sorted(few(levels), key=lambda level: level.z)
     at = [(level.z / scene.unit.mm - low) / (high - low) for level in shown]

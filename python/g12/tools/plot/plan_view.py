@@ -28,15 +28,15 @@ from g12.tools.units import plain
 PICTURE_CHORD = 0.01
 SAME_DEPTH = 1e-3
 LEAST_LEVELS = 2  # entries in a short legend
-MOST_LEVELS = 10  # more depths or feeds than this are shown in bands
+MOST_SHOWN_LEVELS = 10  # more depths or feeds than this are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
 C = 5  # of a position
 FLAT, ROUND = 17, 181  # the plane whose arcs stay at one level; points of other arcs
-NEAR = 0.5  # of the view: rapids that end within this distance are shown whole
+NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
-MARGIN = 0.05  # of the view's greater side
+VIEW_MARGIN = 0.05  # of the view's greater side
 PLUNGE, CUTTER = 3.5, 8.0  # points
 
 
@@ -57,7 +57,7 @@ def milled_levels(scene: Scene) -> list[Level]:
         return []
     depth = floors(cutting)
     found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
-    if len(found) > MOST_LEVELS:
+    if len(found) > MOST_SHOWN_LEVELS:
         found = list(np.linspace(depth.max(), depth.min(), BANDS))
     nearest = np.abs(np.subtract.outer(depth, found)).argmin(axis=1)
     groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
@@ -81,8 +81,8 @@ def floors(moves: Sequence[Move]) -> np.ndarray:
 
 def is_helical(move: Move) -> bool:
     """Return whether a move is helical about the tool's axis, or about the spindle's on a face."""
-    about = (move.kind == "arc" and move.plane == FLAT) or move.end[C] != move.start[C]
-    return about and move.end[2] < move.start[2] - SAME_DEPTH
+    revolves = (move.kind == "arc" and move.plane == FLAT) or move.end[C] != move.start[C]
+    return revolves and move.end[2] < move.start[2] - SAME_DEPTH
 
 
 def lowest(move: Move) -> float:
@@ -133,7 +133,9 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
         high = np.maximum(high, (*bounds[2:], stock.top))
     low[:2], high[:2] = with_near_rapids(scene, low[:2], high[:2])
     size = high - low
-    margin = np.clip(MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD))
+    margin = np.clip(
+        VIEW_MARGIN * max(size[:2]), PICTURE_CHORD, np.maximum(0.15 * size, PICTURE_CHORD)
+    )
     margin[2] = max(0.12 * size[2], 0.2 * min(margin[:2]))
     return low - margin, high + margin
 
@@ -144,7 +146,7 @@ def with_near_rapids(
     """Return a view's corners, extended to the ends of near rapids."""
     ends = np.array([point for move in shown_moves(scene) for point in (move.start, move.end)])
     points = scene.path.part.points(ends)[:, :2]
-    away = NEAR * max(high - low)
+    away = NEAR_RAPIDS * max(high - low)
     near = points[np.all((points > low - away) & (points < high + away), axis=1)]
     return np.vstack([near, low]).min(axis=0), np.vstack([near, high]).max(axis=0)
 
@@ -278,8 +280,8 @@ def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
     """Return feeds along the part (mm/min), each with its colour and moves; many in bands."""
     feeds = {index: scene.path.part_feed(index) for index in at_feed(scene)}
     found = sorted({float(f"{feed:.3g}") for feed in feeds.values()})
-    if len(found) > MOST_LEVELS:
-        found = list(np.linspace(found[0], found[-1], MOST_LEVELS))
+    if len(found) > MOST_SHOWN_LEVELS:
+        found = list(np.linspace(found[0], found[-1], MOST_SHOWN_LEVELS))
     groups: list[list[Move]] = [[] for _ in found]
     for index, feed in feeds.items():
         groups[int(np.argmin(np.abs(np.subtract(found, feed))))].append(scene.moves[index])
@@ -314,9 +316,9 @@ def draw_arrows(axes: Axes, scene: Scene, pair: Sequence[int] = (0, 1)) -> None:
     least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0]) * scene.unit.mm
     lines = [line[:, list(pair)] for line in elements(scene)]
     long = [line for line in lines if np.linalg.norm(np.diff(line, axis=0), axis=1).sum() > least]
-    places = {tuple(np.round(line[len(line) // 2], 2)): line for line in long}
-    if len(places) <= MOST_ARROWS:
-        for line in places.values():
+    by_middle = {tuple(np.round(line[len(line) // 2], 2)): line for line in long}
+    if len(by_middle) <= MOST_ARROWS:
+        for line in by_middle.values():
             style.draw_arrow(axes, line / scene.unit.mm, style.INK)
 
 
@@ -339,8 +341,8 @@ def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = Non
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
     listed += motion_entries(scene)
-    left = MOST_LEVELS if room is None else max(room - len(feeds) - len(listed), LEAST_LEVELS)
-    return [*feeds, *level_entries(scene, levels, min(left, MOST_LEVELS)), *listed]
+    room = MOST_SHOWN_LEVELS if room is None else max(room - len(feeds) - len(listed), LEAST_LEVELS)
+    return [*feeds, *level_entries(scene, levels, min(room, MOST_SHOWN_LEVELS)), *listed]
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
@@ -355,8 +357,8 @@ def motion_entries(scene: Scene) -> list:
     """Return the legend's entries of the stock, of rapids and of the actual motion."""
     listed = []
     if scene.seen.stock:
-        said = scene.seen.stock.stock
-        text = f"{'bar' if said.diameter else 'stock'} {said.text}"
+        stock = scene.seen.stock.stock
+        text = f"{'bar' if stock.diameter else 'stock'} {stock.text}"
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
@@ -382,7 +384,7 @@ def warning_entries(scene: Scene) -> list:
     if scene.seen.rapids and (has_side_view(scene) or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.uncut:
-        listed.append(style.standing("material left standing"))
+        listed.append(style.uncut("uncut material"))
     lines = dict.fromkeys(finding.line for finding in scene.seen.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
@@ -407,7 +409,7 @@ def feed_entries(scene: Scene) -> list:
     ]
 
 
-def few(items: Sequence, most: int = MOST_LEVELS) -> list:
+def few(items: Sequence, most: int = MOST_SHOWN_LEVELS) -> list:
     """Return at most so many of the items, the first and the last among them."""
     if len(items) <= most:
         return list(items)

@@ -30,5 +30,5 @@ def section_up_to(line: int, moves: list[Move]) -> list[Move]:
     if at is None:
         return []
     before = list(takewhile(lambda move: move.remap == moves[at].remap, moves[at::-1]))
-    behind = list(takewhile(lambda move: move.block == line, moves[at + 1 :]))
-    return [*before[::-1], *behind]
+    after = list(takewhile(lambda move: move.block == line, moves[at + 1 :]))
+    return [*before[::-1], *after]

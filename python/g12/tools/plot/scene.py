@@ -21,10 +21,10 @@ from g12.tools.verify.seen import Seen, seen_of_proof
 from g12.tools.verify.subject import Subject
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
-MOTION = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
-MOST_LINES = 20
+AXIS_LETTER = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
+MOST_HEAD_LINES = 20
 LONGEST_HEADING = 72
-NOTHING = Seen()
+NOTHING_SEEN = Seen()
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Scene:
     unit: Unit
     feed_colours: bool = False
     override: float = 100.0
-    seen: Seen = NOTHING
+    seen: Seen = NOTHING_SEEN
     contour: float | None = None
 
     @property
@@ -105,8 +105,8 @@ def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
 
 def heading(program: Path) -> str:
     """Return the first comment on a line of its own before any motion, other than a licence."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_LINES]
-    still = takewhile(lambda line: not MOTION.search(COMMENTS.sub("", line)), lines)
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_HEAD_LINES]
+    still = takewhile(lambda line: not AXIS_LETTER.search(COMMENTS.sub("", line)), lines)
     found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))
     text = next((text.strip() for text in found if "SPDX" not in text), "")
     return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")

@@ -36,7 +36,7 @@ REAL = "#e8590c"
 WORST = "#c2255c"
 LIMIT = "#c2255c"
 CRASH = "#e03131"
-CONTOUR = "#1f2933"
+
 STOCK, STOCK_EDGE = "#f4eee3", "#b39a6b"
 STYLE = {
     "font.family": "DejaVu Sans",
@@ -68,13 +68,13 @@ DEPTHS = colors.LinearSegmentedColormap.from_list(
 FLOORS = colors.LinearSegmentedColormap.from_list(
     "floor", ["#e4f4f7", "#c3e1ef", "#a3cbe8", "#86aedd", "#93a9da"]
 )
-FEEDS = colors.LinearSegmentedColormap.from_list(
+FEED_COLOURS = colors.LinearSegmentedColormap.from_list(
     "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
 )
 SIGN = {"marker": "^", "color": CRASH}
 HIT = {"marker": "X", "color": CRASH, "markeredgecolor": "white"}
 DPI = 150
-LETTERS = 14.0  # characters of the subtitle to an inch
+LETTERS_PER_INCH = 14.0  # characters of the subtitle to an inch
 MARGIN = 0.75  # inches left of titles and axes
 CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorder": 1.9}
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
@@ -98,7 +98,7 @@ def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure
     figure = Figure(figsize=(width, height), facecolor="white")
     left, top = MARGIN / width, 1 - 0.16 / height
     figure.text(left, top, title, size=13, weight="bold", va="top")
-    lines = "\n".join(textwrap.wrap(subtitle, int((width - MARGIN - 0.3) * LETTERS)))
+    lines = "\n".join(textwrap.wrap(subtitle, int((width - MARGIN - 0.3) * LETTERS_PER_INCH)))
     figure.text(left, top - 0.28 / height, lines, size=8.5, color=MUTED, va="top")
     return figure
 
@@ -214,7 +214,11 @@ def shades(count: int) -> list[Shade]:
 
 def feed_colours(count: int) -> list[tuple]:
     """Return colours from the slowest to the fastest of some feeds."""
-    return [FEEDS(share) for share in np.linspace(0, 1, count)] if count > 1 else [FEEDS(0.0)]
+    return (
+        [FEED_COLOURS(share) for share in np.linspace(0, 1, count)]
+        if count > 1
+        else [FEED_COLOURS(0.0)]
+    )
 
 
 def grey(colour) -> tuple[float, float, float]:
@@ -243,7 +247,7 @@ def hit(text: str) -> Line2D:
     return Line2D([], [], ls="", **HIT, ms=8, label=text)
 
 
-def standing(text: str) -> Patch:
+def uncut(text: str) -> Patch:
     """Return the legend's entry of uncut material."""
     return Patch(facecolor="none", edgecolor=CRASH, linewidth=0.7, hatch="////", label=text)
 

@@ -13,7 +13,7 @@ from shapely.geometry import GeometryCollection
 
 from g12.tools.path.part import paths
 from g12.tools.plot import style
-from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.plan_view import (
     PICTURE_CHORD,
     Level,
@@ -40,7 +40,7 @@ def draw_turn(scene: Scene) -> Figure:
     width = WIDTH - LEFT - RIGHT - LEGEND
     across, up = high - low
     height = float(np.clip(width * up / across, LEAST, MOST))
-    beside = ROWS + SIZE if scene.real is not None else 0.0
+    beside = ROWS + DETAIL_SIZE if scene.real is not None else 0.0
     page = TOP + max(height, beside) + BOTTOM
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - height, width, height)

@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from g12.tools.path.part import Part
 from g12.tools.path.track import Track, Vertices
 from g12.tools.plot import style
-from g12.tools.plot.deviation import SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.face import draw_history
 from g12.tools.plot.plan_view import (
     bounds_of,
@@ -37,7 +37,7 @@ PANEL, GAP, ROWS = 1.0, 0.32, 3
 BETWEEN = 0.75  # the two columns of panels
 BOTTOM = 0.5
 NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
-HIGHER = 1.2  # with the detail view of the largest deviation
+DETAIL_HEIGHT = 1.2  # with the detail view of the largest deviation
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     size = high - low
     scale = min((WIDTH - LEFT - RIGHT) / size[0], MOST / size[1])
     across, up = size[0] * scale, max(LEAST, size[1] * scale)
-    more = HIGHER if scene.real is not None else 0.0
+    more = DETAIL_HEIGHT if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - up, across, up)
@@ -78,14 +78,14 @@ def draw_unrolled(scene: Scene) -> Figure:
     style.draw_legend(figure, entries, column - 0.1, top, 1 if more else 2)
     if scene.real is not None:
         mark_worst(axes, flat, [0, 1])
-        draw_window(figure, (WIDTH - RIGHT - SIZE, 0.55), flat)
+        draw_window(figure, (WIDTH - RIGHT - DETAIL_SIZE, 0.55), flat)
     return figure
 
 
 def panels_of(figure: Figure, top: float) -> list[Axes]:
     """Return the axes over time: X, Z and C in one column, the speeds in another."""
     width = (WIDTH - LEFT - RIGHT - BETWEEN) / 2
-    places = [(0, row) for row in range(ROWS)] + [(1, row) for row in range(ROWS - 1)]
+    cells = [(0, row) for row in range(ROWS)] + [(1, row) for row in range(ROWS - 1)]
     return [
         style.add_axes(
             figure,
@@ -94,7 +94,7 @@ def panels_of(figure: Figure, top: float) -> list[Axes]:
             width,
             PANEL,
         )
-        for column, row in places
+        for column, row in cells
     ]
 
 

@@ -13,7 +13,7 @@ from patiencediff import PatienceSequenceMatcher
 
 MOST_COMPARED = 250_000  # product of the lengths of a stretch
 
-Block = tuple[int, int, int]  # a run of equal items: its start in both sequences, its length
+EqualRun = tuple[int, int, int]  # a run of equal items: its start in both sequences, its length
 
 
 def pairs(one: Sequence[Hashable], other: Sequence[Hashable]) -> list[tuple[int, int]]:
@@ -23,8 +23,8 @@ def pairs(one: Sequence[Hashable], other: Sequence[Hashable]) -> list[tuple[int,
 
 
 def _filled(
-    one: Sequence[Hashable], other: Sequence[Hashable], blocks: Sequence[Block]
-) -> Iterator[Block]:
+    one: Sequence[Hashable], other: Sequence[Hashable], blocks: Sequence[EqualRun]
+) -> Iterator[EqualRun]:
     """Yield blocks, and before each those of the short stretch that it leaves out."""
     i = j = 0
     for block in blocks:

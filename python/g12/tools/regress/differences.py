@@ -16,12 +16,12 @@ from g12.tools.path.farthest_apart import gap_between
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Move
 from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
-from g12.tools.regress.recording_text import Recording, Step, number_text
+from g12.tools.regress.recording_text import RecordedStep, Recording, number_text
 from g12.tools.units import UNITS, counted_as
 
-DECIMALS = 6  # shown, if the two numbers differ in them
+SHOWN_DECIMALS = 6  # shown, if the two numbers differ in them
 LONG_RUN = 10  # edits; fewer are reported together even if they differ
-DIGITS = ".4g"
+SIZE_FORMAT = ".4g"
 MOVED = (*AXIS_LETTERS, "radius")
 
 
@@ -84,17 +84,16 @@ def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
 
 def _alike(run: list[Edit]) -> list[list[Edit]]:
     """Return the common edit of most of a run and the edits of the others, if there is one."""
-    said = Counter(map(_said, run))
-    same, count = said.most_common(1)[0]
+    common, count = Counter(map(_amounts, run)).most_common(1)[0]
     if len(run) < LONG_RUN or 2 * count <= len(run):
         return [run]
-    most = [edit for edit in run if _said(edit) == same]
-    others = [edit for edit in run if _said(edit) != same]
+    most = [edit for edit in run if _amounts(edit) == common]
+    others = [edit for edit in run if _amounts(edit) != common]
     return [most, others] if others else [most]
 
 
-def _said(edit: Edit) -> tuple:
-    return tuple((change.what, f"{change.by:{DIGITS}}") for change in edit.changes)
+def _amounts(edit: Edit) -> tuple:
+    return tuple((change.what, f"{change.by:{SIZE_FORMAT}}") for change in edit.changes)
 
 
 def _follows(before: Edit, edit: Edit) -> bool:
@@ -119,8 +118,8 @@ class Phrases:
         now = tuple(index for edit in run for index in edit.now)
         steps = [self._now[index] for index in now] or [self._was[index] for index in was]
         moves = sum(isinstance(step, Move) for step in steps)
-        made = self._of_pairs(run) if run[0].changes else self._of_others(was, now)
-        return replace(made, was=was, now=now, moves=moves)
+        found = self._of_pairs(run) if run[0].changes else self._of_others(was, now)
+        return replace(found, was=was, now=now, moves=moves)
 
     def _of_pairs(self, run: list[Edit]) -> Difference:
         changes = [change for edit in run for change in edit.changes]
@@ -147,13 +146,13 @@ class Phrases:
         most = max((change.by for change in group), key=abs)
         if "feed" in what:
             return f"F{was} → F{now}" if len(values) == 1 else f"feed by up to {most:+.3%}"
-        size = f"{most / scale:{DIGITS}} {self._unit_of(what)}"
+        size = f"{most / scale:{SIZE_FORMAT}} {self._unit_of(what)}"
         if what == "radius":
             off = f"middle of the arc {size} off"
             return f"radius {was} → {now} ({off})" if len(values) == 1 else f"{off} at most"
         if len(values) == 1:
             return f"{what}{was} → {what}{now} ({_signed(size)})"
-        same = len({f"{change.by:{DIGITS}}" for change in group}) == 1
+        same = len({f"{change.by:{SIZE_FORMAT}}" for change in group}) == 1
         return f"{what} by {_signed(size)}" if same else f"{what} by up to {_signed(size)}"
 
     def _of_others(self, was: tuple[int, ...], now: tuple[int, ...]) -> Difference:
@@ -167,20 +166,22 @@ class Phrases:
     def _of_moves(self, before: list[Move], after: list[Move]) -> list[str]:
         if before and after:
             apart = self._apart(before, after)
-            far = "" if apart is None else f", up to {apart:{DIGITS}} {self._name} apart"
+            far = "" if apart is None else f", up to {apart:{SIZE_FORMAT}} {self._name} apart"
             return [f"{counted_as(len(before), 'move')} became {len(after)}{far}"]
         if not before and not after:
             return []
-        there = "added" if after else "missing"
+        kind = "added" if after else "missing"
         count = counted_as(len(before or after), "move")
-        return [f"{count} {there}, {self._extent(before or after)}"]
+        return [f"{count} {kind}, {self._extent(before or after)}"]
 
     def _extent(self, moves: list[Move]) -> str:
         """Return the extent of moves on each axis that they move."""
         ends = np.array([position for move in moves for position in (move.start, move.end)])
         low, high = ends.min(axis=0), ends.max(axis=0)
         scales = [self._scale(axis) for axis in AXIS_LETTERS]
-        texts = [[number_text(round(v, DECIMALS)) for v in bound / scales] for bound in (low, high)]
+        texts = [
+            [number_text(round(v, SHOWN_DECIMALS)) for v in bound / scales] for bound in (low, high)
+        ]
         words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXIS_LETTERS, *texts) if a != b]
         return " ".join(words) or "standing still"
 
@@ -200,7 +201,7 @@ def _signed(size: str) -> str:
     return size if size.startswith("-") else f"+{size}"
 
 
-def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str:
+def _of_notes(steps: Sequence[RecordedStep], indices: tuple[int, ...], word: str) -> str:
     found = (steps[index] for index in indices)
     texts = [step.text for step in found if not isinstance(step, Move)]
     return f"{word}: {', '.join(texts)}" if texts else ""
@@ -208,7 +209,7 @@ def _of_notes(steps: Sequence[Step], indices: tuple[int, ...], word: str) -> str
 
 def distinguished(*values: float) -> tuple[str, ...]:
     """Return numbers as text, with as few digits as distinguish them."""
-    short = tuple(number_text(round(value, DECIMALS)) for value in values)
+    short = tuple(number_text(round(value, SHOWN_DECIMALS)) for value in values)
     return short if len(set(short)) == len(values) else tuple(map(number_text, values))
 
 
@@ -250,8 +251,8 @@ def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Differenc
 
 def _ends(was: str, now: str) -> list[Difference]:
     before, after = was.split(), now.split()
-    gone = " ".join(word for word in before if word not in after)
+    old = " ".join(word for word in before if word not in after)
     new = " ".join(word for word in after if word not in before)
-    if not gone and not new:
+    if not old and not new:
         return []
-    return [Difference("end", f"modal state at the end: {gone or 'nothing'} → {new or 'nothing'}")]
+    return [Difference("end", f"modal state at the end: {old or 'nothing'} → {new or 'nothing'}")]

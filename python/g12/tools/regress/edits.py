@@ -18,7 +18,7 @@ import numpy as np
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.alignment import pairs
-from g12.tools.regress.recording_text import Note, Step, turns_only
+from g12.tools.regress.recording_text import Note, RecordedStep, turns_only
 
 NO_CENTRE = (0.0, 0.0, 0.0)
 MOST_OF = 0.8
@@ -62,10 +62,12 @@ class Edit(NamedTuple):
     changes: tuple[Change, ...] = ()
 
 
-def edits_of(was: Sequence[Step], now: Sequence[Step], tolerance: Tolerance) -> list[Edit]:
+def edits_of(
+    was: Sequence[RecordedStep], now: Sequence[RecordedStep], tolerance: Tolerance
+) -> list[Edit]:
     """Return the edits between two recordings' steps, in order."""
     found: list[Edit] = []
-    paired = _paired(was, now, _place, tolerance)
+    paired = _paired(was, now, _end_and_centre, tolerance)
     for before, after, pair in _walk(paired, range(len(was)), range(len(now))):
         found += _gap(was, now, before, after, tolerance)
         found += _pair(was, now, pair, tolerance) if pair else []
@@ -78,7 +80,7 @@ def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
     return pairs(keys[: len(was)], keys[len(was) :])
 
 
-def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
+def _keys(steps: Sequence[RecordedStep], numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
     """Return a key for each step, equal for moves that are equal within the tolerance."""
     rows = [numbers(step) for step in steps if isinstance(step, Move)]
     columns = np.array(rows).reshape(-1, 12).T
@@ -90,15 +92,14 @@ def _keys(steps: Sequence[Step], numbers, tolerance: Tolerance) -> list[tuple[in
     ]
 
 
-def _place(move: Move) -> tuple[float, ...]:
-    """Return the end and the centre of a move."""
+def _end_and_centre(move: Move) -> tuple[float, ...]:
     return (*move.end, *(move.centre or NO_CENTRE))
 
 
-def _way(move: Move) -> tuple[float, ...]:
-    """Return a move's displacement."""
-    seen = (b - a for a, b in zip(move.start * 2, (*move.end, *(move.centre or move.start[:3]))))
-    return tuple(seen)
+def _displacement(move: Move) -> tuple[float, ...]:
+    """Return a move's end and its centre, relative to its start."""
+    points = zip(move.start * 2, (*move.end, *(move.centre or move.start[:3])))
+    return tuple(b - a for a, b in points)
 
 
 def _walk(paired, before: range, after: range) -> Iterator[tuple[range, range, tuple | None]]:
@@ -120,31 +121,31 @@ def _clusters(values: np.ndarray, tolerance: float) -> list[int]:
 
 def _gap(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
     """Yield the edits of the steps between two pairs."""
-    if _are_as_many(was, now, before, after):
-        return _as_many(was, now, before, after, tolerance)
+    if _same_number(was, now, before, after):
+        return _in_order(was, now, before, after, tolerance)
     some, others = was[before.start : before.stop], now[after.start : after.stop]
-    paired = _paired(some, others, _way, tolerance)
+    paired = _paired(some, others, _displacement, tolerance)
     if paired and len(paired) >= MOST_OF * min(len(some), len(others)):
         paired = [(before.start + i, after.start + j) for i, j in paired]
-        return _same_ways(was, now, paired, before, after, tolerance)
+        return _shifted(was, now, paired, before, after, tolerance)
     return iter([Edit(tuple(before), tuple(after))])
 
 
-def _same_ways(was, now, paired, before, after, tolerance: Tolerance) -> Iterator[Edit]:
+def _shifted(was, now, paired, before, after, tolerance: Tolerance) -> Iterator[Edit]:
     """Yield the edits of steps most of which have the same displacement from another position."""
     for some, others, pair in _walk(paired, before, after):
-        if _are_as_many(was, now, some, others):
-            yield from _as_many(was, now, some, others, tolerance)
+        if _same_number(was, now, some, others):
+            yield from _in_order(was, now, some, others, tolerance)
         else:
             yield Edit(tuple(some), tuple(others))
         yield from _pair(was, now, pair, tolerance) if pair else ()
 
 
-def _are_as_many(was, now, before: range, after: range) -> bool:
+def _same_number(was, now, before: range, after: range) -> bool:
     return len(_only(was, before, Move)) == len(_only(now, after, Move))
 
 
-def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
+def _in_order(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
     """Yield the edits between two pairs with an equal number of moves."""
     both = list(zip(_only(was, before, Move), _only(now, after, Move)))
     notes, other_notes = _only(was, before, Note), _only(now, after, Note)
@@ -156,7 +157,7 @@ def _as_many(was, now, before: range, after: range, tolerance: Tolerance) -> Ite
         yield from _pair(was, now, (i, j), tolerance)
 
 
-def _only(steps: Sequence[Step], indices: range, kind: type) -> tuple[int, ...]:
+def _only(steps: Sequence[RecordedStep], indices: range, kind: type) -> tuple[int, ...]:
     return tuple(index for index in indices if isinstance(steps[index], kind))
 
 
@@ -167,7 +168,7 @@ def _pair(was, now, pair: tuple[int, int], tolerance: Tolerance) -> Iterator[Edi
         yield Edit((i,), (j,), tuple(found))
 
 
-def changes(was: Step, now: Step, tolerance: Tolerance) -> list[Change]:
+def changes(was: RecordedStep, now: RecordedStep, tolerance: Tolerance) -> list[Change]:
     """Return the changes between two steps of the same kind."""
     if isinstance(was, Note) and isinstance(now, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []

@@ -21,19 +21,19 @@ from g12.tools.regress.differences import Difference
 from g12.tools.regress.recording_text import Recording
 from g12.tools.units import UNITS, Unit
 
-CHORD_ERROR = 0.005
+DRAWN_CHORD_ERROR = 0.005
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.3, 1.0, 0.65, 0.55
 PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
 LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
 SIDE = 1.5  # height of the side view
 LEGEND, ROWS = 2.9, 1.6
-WINDOW = 2.0  # sides of the detail view of the largest gap
+DETAIL_SIZE = 2.0  # sides of the detail view of the largest gap
 REACH, LEAST_REACH = 4.0, 1e-3  # half the view's side: in gaps, in mm
 VISIBLE = 0.08  # of the picture's size: a larger gap needs no detail view
-MARGIN = 0.05
-FLAT = 1e-6  # an axis with less motion is not shown
+MARGIN_SHARE = 0.05
+LEAST_EXTENT = 1e-6  # an axis with less motion is not shown
 LONGEST_SUBTITLE = 130
-LEAST_CHORD_ERROR = 1e-6
+FINEST_CHORD_ERROR = 1e-6
 STYLES = (  # colour, width, order: same, was, now
     (style.RAPID, 0.8, 2.5),
     (style.PATH, 3.0, 3.0),
@@ -49,7 +49,7 @@ class Paths(NamedTuple):
     now: list[np.ndarray]
 
 
-class Drawn(NamedTuple):
+class DrawnPaths(NamedTuple):
     """The paths of two recordings: moves at feed, rapids, the largest gap.
 
     ``around`` are the moves near that gap again, with a finer chord error.
@@ -75,10 +75,13 @@ class View:
         self.low, self.high = points.min(axis=0), points.max(axis=0)
         spread = self.high - self.low
         self.letters = ("towards C0", "towards C90", "Z") if turning else "XYZ"
-        profile = spread[1] < FLAT < spread[2]
-        self.pairs = [[2, 0]] if profile else [[0, 1]] + [[0, 2]] * bool(spread[2] > FLAT)
-        self.size = max(*spread, FLAT)
-        self.low, self.high = self.low - MARGIN * self.size, self.high + MARGIN * self.size
+        profile = spread[1] < LEAST_EXTENT < spread[2]
+        self.pairs = [[2, 0]] if profile else [[0, 1]] + [[0, 2]] * bool(spread[2] > LEAST_EXTENT)
+        self.size = max(*spread, LEAST_EXTENT)
+        self.low, self.high = (
+            self.low - MARGIN_SHARE * self.size,
+            self.high + MARGIN_SHARE * self.size,
+        )
         first, second = self.pairs[0]
         across, up = (self.high - self.low)[self.pairs[0]]
         scale = min(PLAN / across, MOST_HIGH / up)
@@ -86,7 +89,7 @@ class View:
         self._widen(second, LEAST_HIGH / scale)
         self.plan = tuple((self.high - self.low)[self.pairs[0]] * scale)
         views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
-        self.height = max(TOP + views + BOTTOM, TOP + ROWS + WINDOW + BOTTOM)
+        self.height = max(TOP + views + BOTTOM, TOP + ROWS + DETAIL_SIZE + BOTTOM)
         self.width = LEFT + self.plan[0] + LEGEND + RIGHT
 
     def _widen(self, axis: int, least: float) -> None:
@@ -135,23 +138,23 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     left, top = view.beside
     style.draw_legend(figure, entries(drawn, view.unit), left, top, borderaxespad=0.0)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
-        axes = style.add_axes(figure, left, top - ROWS - WINDOW, WINDOW, WINDOW)
+        axes = style.add_axes(figure, left, top - ROWS - DETAIL_SIZE, DETAIL_SIZE, DETAIL_SIZE)
         draw_change(axes, drawn, view)
     return figure
 
 
-def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Drawn:
+def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> DrawnPaths:
     """Return the paths to draw of two recordings."""
     old = {index for difference in found for index in difference.was}
     new = {index for difference in found for index in difference.now}
     moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
     feeds, rapids = (
-        Paths(*(paths(part, _rapid(some, fast), CHORD_ERROR) for some in moves))
+        Paths(*(paths(part, _rapid(some, fast), DRAWN_CHORD_ERROR) for some in moves))
         for fast in (False, True)
     )
     gap = gap_of(was, now, found, part)
     near = (_near(part, some, gap) if gap else [] for some in moves)
-    return Drawn(feeds, rapids, gap, Paths(*near))
+    return DrawnPaths(feeds, rapids, gap, Paths(*near))
 
 
 def _reach(gap: Gap) -> float:
@@ -160,10 +163,10 @@ def _reach(gap: Gap) -> float:
 
 def _near(part: Part, moves: Sequence[Move], gap: Gap) -> list[np.ndarray]:
     """Return moves near a gap as polylines, fine enough for its size."""
-    margin = 2 * _reach(gap) + CHORD_ERROR
-    lines = (part.polyline(move, CHORD_ERROR) for move in moves)
+    margin = 2 * _reach(gap) + DRAWN_CHORD_ERROR
+    lines = (part.polyline(move, DRAWN_CHORD_ERROR) for move in moves)
     near = [move for move, line in zip(moves, lines) if _is_near(line, gap.point, margin)]
-    return paths(part, near, max(_reach(gap) / 500, LEAST_CHORD_ERROR))
+    return paths(part, near, max(_reach(gap) / 500, FINEST_CHORD_ERROR))
 
 
 def _is_near(line: np.ndarray, point: np.ndarray, margin: float) -> bool:
@@ -198,7 +201,7 @@ def subtitle(found: Sequence[Difference]) -> str:
     return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
 
 
-def draw_both_paths(axes: Axes, drawn: Drawn, pair: list[int], unit: float) -> None:
+def draw_both_paths(axes: Axes, drawn: DrawnPaths, pair: list[int], unit: float) -> None:
     """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
     _draw_styled(axes, drawn.feeds, pair, unit)
     _draw_styled(axes, drawn.rapids, pair, unit, 0.6, linestyle=(0, (4, 3)), capstyle="butt")
@@ -210,7 +213,7 @@ def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **
         style.draw(axes, shown, colour, share * width, order, **line)
 
 
-def draw_change(axes: Axes, drawn: Drawn, view: View) -> None:
+def draw_change(axes: Axes, drawn: DrawnPaths, view: View) -> None:
     """Draw the detail view of the largest gap, in the axes that show most of it."""
     gap, unit = drawn.gap, view.unit
     half = _reach(gap)
@@ -223,7 +226,7 @@ def draw_change(axes: Axes, drawn: Drawn, view: View) -> None:
     style.frame_detail(axes, ends.mean(axis=0), half / unit.mm, title, text)
 
 
-def entries(drawn: Drawn, unit: Unit) -> list:
+def entries(drawn: DrawnPaths, unit: Unit) -> list:
     """Return the legend."""
     listed = [
         style.stroke(style.RAPID, "as recorded", 0.8),

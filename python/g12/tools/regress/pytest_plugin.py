@@ -36,7 +36,7 @@ def recorded_programs(directory: str | os.PathLike) -> list[str]:
 
 @pytest.fixture(scope="session")
 def gcode_recorders() -> Iterator[Recorders]:
-    """Keep the interpreters that have been started for the tests to come."""
+    """Yield the interpreters, which all tests of the session share."""
     with Recorders() as recorders:
         yield recorders
 

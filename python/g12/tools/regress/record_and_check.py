@@ -38,7 +38,7 @@ class Terms:
     """Tolerances, timeout and output of a check.
 
     ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
-    cent; ``timeout`` is in seconds a program. ``tell`` is called with the progress.
+    cent; ``timeout`` is in seconds a program. ``report`` is called with the progress.
     """
 
     ends: float = 1e-6
@@ -46,7 +46,7 @@ class Terms:
     timeout: float = 600.0
     jobs: int = 1
     pictures: Path | None = None
-    tell: Report = silent
+    report: Report = silent
 
     def tolerance(self, ini: Path) -> Tolerance:
         """Return the tolerance in mm on a machine."""
@@ -75,7 +75,7 @@ def record(
     tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
     machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
     job = Job(baseline, machine, baseline.programs, terms.tolerance(machine.ini), keep=True)
-    found = results(job, names, terms.jobs, terms.tell, recorders)
+    found = results(job, names, terms.jobs, terms.report, recorders)
     baseline.take_copies(tools, parameters)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
@@ -107,7 +107,7 @@ def check(
     present = [name for name in recorded if (folder / name).is_file()]
     tolerance = terms.tolerance(machine.ini)
     job = Job(baseline, machine, folder, tolerance, pictures=terms.pictures)
-    found = results(job, present, terms.jobs, terms.tell, recorders)
+    found = results(job, present, terms.jobs, terms.report, recorders)
     found += [Result(name, MISSING) for name in recorded if name not in present]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]
@@ -215,13 +215,13 @@ def _tools_and_parameters(
 
     One program more is recorded with the copies, as the others were.
     """
-    asked_for = (
+    files = (
         (request.tools, baseline.tool_table, baseline.tools),
         (request.var, baseline.var_file, baseline.parameters),
     )
     return tuple(
         source if source and (everything or given) and source.is_file() else copy
-        for given, source, copy in asked_for
+        for given, source, copy in files
     )
 
 
@@ -237,10 +237,10 @@ def _recorded(baseline: Baseline, name: str) -> str:
 
 def _dropped(baseline: Baseline) -> list[Result]:
     """Remove the recordings of missing programs."""
-    gone = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
-    for name in gone:
+    missing = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
+    for name in missing:
         baseline.drop(name)
-    return [Result(name, MISSING) for name in gone]
+    return [Result(name, MISSING) for name in missing]
 
 
 def _outdated(baseline: Baseline) -> list[str]:

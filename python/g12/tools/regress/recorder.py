@@ -35,7 +35,7 @@ from g12.tools.units import counted_as, name_of_unit
 
 SAME, CHANGED, NEW, ADDED, MISSING, FAILED = "same", "changed", "new", "added", "missing", "failed"
 HASH_DIGITS = 16
-TICK = 0.1  # s
+KILL_PERIOD = 0.1  # s
 
 
 @dataclass(frozen=True)
@@ -285,7 +285,7 @@ def _picture(
 
 
 def results(
-    job: Job, names: Sequence[str], workers: int, tell: Report, recorders: Recorders
+    job: Job, names: Sequence[str], workers: int, report: Report, recorders: Recorders
 ) -> list[Result]:
     """Return the results of programs in their order, with some interpreters in parallel."""
     largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)
@@ -296,7 +296,7 @@ def results(
             for done, future in enumerate(as_completed(futures), start=1):
                 result = future.result()
                 found[result.program] = result
-                tell(f"{done} of {len(names)}: {result.program}")
+                report(f"{done} of {len(names)}: {result.program}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             _kill_running(futures, recorders)
@@ -308,4 +308,4 @@ def _kill_running(futures: Sequence[Future], recorders: Recorders) -> None:
     """End unfinished jobs; an interpreter may just be starting."""
     while any(future.running() for future in futures):
         recorders.kill()
-        time.sleep(TICK)
+        time.sleep(KILL_PERIOD)

@@ -38,15 +38,15 @@ from g12.tools.units import UNITS
 HEAD = "g12 trace 1"
 FACTS = ("program", "machine", "linuxcnc", "units")
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
-BLOCK = re.compile(r"(\d+):(?: (.*))?")
-NO_G92 = "G92.2"  # recordings of earlier versions list it
+BLOCK_LINE = re.compile(r"(\d+):(?: (.*))?")
+G92_OFF = "G92.2"  # recordings of earlier versions list it
 ERROR = re.compile(r"error at (\d+): (.*)")
-NUMBER = r"[-\d.]{1,40}"  # longest number: above any machine, below infinite floats
-WORDS = rf"((?: [XYZABCUVW]{NUMBER})*)"
+NUMBER_TEXT = r"[-\d.]{1,40}"  # longest number: above any machine, below infinite floats
+AXIS_WORDS = rf"((?: [XYZABCUVW]{NUMBER_TEXT})*)"
 MOVE = re.compile(
-    rf"  (rapid|feed|arc|probe){WORDS}"
-    rf"(?: centre{WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ({NUMBER}))?)?)?"
-    rf"(?: F({NUMBER}))?(?: (G9[345]))?"
+    rf"  (rapid|feed|arc|probe){AXIS_WORDS}"
+    rf"(?: centre{AXIS_WORDS} turns (-?\d+)(?: G(18|19)(?: rotation ({NUMBER_TEXT}))?)?)?"
+    rf"(?: F({NUMBER_TEXT}))?(?: (G9[345]))?"
 )
 
 
@@ -61,7 +61,7 @@ class Note(NamedTuple):
     text: str
 
 
-Step = Move | Note
+RecordedStep = Move | Note
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Recording:
     """
 
     facts: dict[str, str]
-    steps: list[Step]
+    steps: list[RecordedStep]
     blocks: dict[int, str] = field(default_factory=dict)
     error: Error | None = None
     end: str = ""
@@ -102,7 +102,7 @@ def without_folders(text: str) -> str:
     return FOLDERS.sub("", " ".join(text.split()))
 
 
-def _steps(trace: Trace, unit: float) -> Iterator[Step]:
+def _steps(trace: Trace, unit: float) -> Iterator[RecordedStep]:
     events = iter(trace.events)
     event = next(events, None)
     offset = (0.0,) * 9
@@ -144,7 +144,7 @@ class RecordingWriter:
         self._texts_at = ["0"] * 9
         self._feed = ("", "G94")
 
-    def line(self, step: Step) -> str:
+    def line(self, step: RecordedStep) -> str:
         """Return the line of one step."""
         return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
 
@@ -214,7 +214,7 @@ class RecordingReader:
         self._at: Position = (0.0,) * 9
         self._feed, self._mode = 0.0, "G94"
 
-    def step(self, block: int, line: str) -> Step:
+    def step(self, block: int, line: str) -> RecordedStep:
         """Return the step of a line of the program's line ``block``."""
         if line.startswith("  * "):
             return Note(block, line[4:])
@@ -273,7 +273,7 @@ def read_recording(text: str) -> Recording:
     reader, block = RecordingReader(UNITS[facts["units"]].mm), 0
     lines = enumerate(body.split("\n"), start=len(FACTS) + 2)
     for number_of_line, line in lines:
-        start = BLOCK.fullmatch(line)
+        start = BLOCK_LINE.fullmatch(line)
         if start:
             block = int(start.group(1))
             blocks[block] = start.group(2) or ""
@@ -293,7 +293,7 @@ def _require_end(lines: Iterator[tuple[int, str]]) -> None:
             raise TraceTextError(f"line {number_of_line}: something after the end")
 
 
-def _step(reader: RecordingReader, block: int, line: str, number_of_line: int) -> Step:
+def _step(reader: RecordingReader, block: int, line: str, number_of_line: int) -> RecordedStep:
     try:
         return reader.step(block, line)
     except ValueError as problem:
@@ -307,4 +307,4 @@ def _finished(recording: Recording, line: str, number_of_line: int) -> Recording
     if not line.startswith("end: "):
         raise TraceTextError(f"line {number_of_line}: neither a line of the program nor its end")
     codes = line.split()[1:]
-    return replace(recording, end=" ".join(code for code in codes if code != NO_G92))
+    return replace(recording, end=" ".join(code for code in codes if code != G92_OFF))

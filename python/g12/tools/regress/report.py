@@ -18,16 +18,16 @@ from g12.tools.regress.recorder import (
 )
 from g12.tools.units import counted_as
 
-SAYS = {
+VERDICT_TEXT = {
     NEW: "new",
     SAME: "as recorded",
     CHANGED: "changed",
     ADDED: "added",
-    MISSING: "gone",
+    MISSING: "missing",
     FAILED: "failed",
 }
 MOST_FINDINGS = 20  # of a program, in text; JSON has every one
-MOST_LINES = 4
+MOST_NAMED_LINES = 4
 
 
 def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str]:
@@ -37,7 +37,9 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
     for result in results:
         yield from lines_of_result(result)
     counts = Counter(result.verdict for result in results)
-    said = ", ".join(f"{counts[verdict]} {say}" for verdict, say in SAYS.items() if counts[verdict])
+    said = ", ".join(
+        f"{counts[verdict]} {say}" for verdict, say in VERDICT_TEXT.items() if counts[verdict]
+    )
     yield f"{counted_as(len(results), 'program')}: {said}"
 
 
@@ -48,7 +50,7 @@ def lines_of_result(result: Result) -> Iterator[str]:
     if result.verdict == ADDED:
         yield f"{result.program}: added, it is not recorded"
     if result.verdict == MISSING:
-        yield f"{result.program}: gone, it was recorded"
+        yield f"{result.program}: missing, it was recorded"
     for finding in result.findings[:MOST_FINDINGS]:
         yield from _finding(result.program, finding)
     if len(result.findings) > MOST_FINDINGS:
@@ -70,8 +72,8 @@ def _where(finding: RegressFinding) -> str:
     if not finding.lines and not finding.recorded_lines:
         return ":"
     first, *others = finding.lines or finding.recorded_lines
-    shown = ", ".join(map(str, others[:MOST_LINES]))
-    more = f" and {len(others) - MOST_LINES} more" if len(others) > MOST_LINES else ""
+    shown = ", ".join(map(str, others[:MOST_NAMED_LINES]))
+    more = f" and {len(others) - MOST_NAMED_LINES} more" if len(others) > MOST_NAMED_LINES else ""
     also = f" (also {shown}{more})" if others else ""
     return f":{first}{'' if finding.lines else ' as recorded'}:{also}"
 

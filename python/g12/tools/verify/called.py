@@ -16,7 +16,7 @@ from g12.tools.path.follow import Followed
 from g12.tools.path.part import C
 from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.slowest import Pace
-from g12.tools.path.track import STILL
+from g12.tools.path.track import CART_FUZZ
 from g12.tools.preview.executed_blocks import CLAMP, Block
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.compare.path import Laid, Made, judge_path, lay
@@ -97,7 +97,9 @@ def measure_holes(
     """
     block, holes, own = call.block, holes_of(call), call.moves
     turns = (moves[i].end[C] - moves[i].start[C] for i in own)
-    expected = HolesPath(holes, next((turn for turn in turns if abs(turn) > STILL), 0.0)).toolpath()
+    expected = HolesPath(
+        holes, next((turn for turn in turns if abs(turn) > CART_FUZZ), 0.0)
+    ).toolpath()
     laid, run = lay(expected, _made_of_holes(holes, moves, own), tolerance), None
     if real and not laid.difference and not holes.pitch:
         run = _laid_run(holes, expected, real, own, tolerance)
@@ -154,7 +156,7 @@ def _made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[
     for index in own:
         move = moves[index]
         ends = [holes.point(move.start), holes.point(move.end)]
-        if max(abs(ends[0][0] - ends[1][0]), abs(ends[0][1] - ends[1][1])) > STILL:
+        if max(abs(ends[0][0] - ends[1][0]), abs(ends[0][1] - ends[1][1])) > CART_FUZZ:
             rapid = move.kind == "rapid"
             feed = None if rapid else move.feed
             curve = Line(ends[0][0], ends[1][0])
