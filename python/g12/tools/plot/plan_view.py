@@ -384,7 +384,7 @@ def warning_entries(scene: Scene) -> list:
     if scene.seen.rapids and (has_side_view(scene) or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.uncut:
-        listed.append(style.uncut("uncut material"))
+        listed.append(style.uncut_entry("uncut material"))
     lines = dict.fromkeys(finding.line for finding in scene.seen.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))

@@ -247,7 +247,7 @@ def hit(text: str) -> Line2D:
     return Line2D([], [], ls="", **HIT, ms=8, label=text)
 
 
-def uncut(text: str) -> Patch:
+def uncut_entry(text: str) -> Patch:
     """Return the legend's entry of uncut material."""
     return Patch(facecolor="none", edgecolor=CRASH, linewidth=0.7, hatch="////", label=text)
 
