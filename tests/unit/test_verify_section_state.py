@@ -17,7 +17,7 @@ STATE = {"_metric": 1.0, "_x": 20.0, "_z": 2.0, "_c": 30.0, "_feed": 500.0, "_mo
 
 def section(told=(), **options):
     events = tuple(Event(at, 0, text) for at, text in told)
-    return SectionContour(5, 12, 1, 4, "G12.1", 20.0, ELEMENTS, told=events, **options)
+    return SectionContour(5, 12, 1, 4, "G12.1", 20.0, ELEMENTS, events=events, **options)
 
 
 @pytest.mark.parametrize(
@@ -57,5 +57,5 @@ def test_an_element_that_made_no_move_is_no_place():
     ],
 )
 def test_what_a_section_leaves_is_compared(left, texts):
-    found = judge_section_state(section(leaves=STATE, left={**STATE, **left}), MOVES)
+    found = judge_section_state(section(expected_state=STATE, state_after={**STATE, **left}), MOVES)
     assert [each.text() for each in found] == [f"it leaves {text}" for text in texts]

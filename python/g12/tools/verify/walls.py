@@ -236,7 +236,7 @@ def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:
 
     Nothing where the tool works inside of a closed contour, or without compensation.
     """
-    if not outline.side or not outline.curves:
+    if not outline.side:
         return Polygon()
     points = plane.on_part(outline.points)
     if outline.is_closed:

@@ -121,10 +121,10 @@ def judge_section_state(section: SectionContour, moves: Sequence[Move]) -> Itera
     yield from judge_acts(section, moves)
     place = WALL / section.unit
     allowed = {"_x": place, "_z": place, "_c": ANGLE}
-    differences = state_differences(section.left, section.leaves, allowed)
+    differences = state_differences(section.state_after, section.expected_state, allowed)
     yield from judge_state(differences, (), section.last)
-    if len(set(section.paths)) > 1:
-        found, expected = section.paths
+    if len(set(section.paths_after)) > 1:
+        found, expected = section.paths_after
         yield Finding("state", section.last, {"found": found, "expected": expected})
 
 
@@ -132,7 +132,7 @@ def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Findi
     """Yield the first act of a section that is missing, in another place or not in the words."""
     actual = [
         Done(event.text, moves[event.at - 1].line if event.at > section.at else 0)
-        for event in section.told
+        for event in section.events
         if ACTS.match(event.text)
     ]
     cut = {moves[index].line for index in range(section.at, section.end)}

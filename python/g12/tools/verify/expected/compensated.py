@@ -33,11 +33,11 @@ LENGTHLESS = 1e-6  # mm
 BACK = math.pi - 1e-6  # radians: the contour goes back on itself
 COINCIDENT = 0.005  # mm: ends of parallels so near to each other meet in the middle
 ON_CURVE = 1e-5  # mm, of a crossing
-MOST_POINTS = 100  # that one line stands for
+MOST_POINTS = 100  # that one line replaces
 
 
 class Corner(NamedTuple):
-    """Where one curve of the tool's centre is left and the next is met, about which corner."""
+    """Where one curve of the tool's centre ends and the next begins, about which corner."""
 
     leave: complex
     meet: complex
@@ -193,19 +193,19 @@ def joint_of(moves: tuple[Element, Element], curves: tuple[Curve, Curve]) -> Cor
 
 
 def trimmed_by(before: Curve, after: Curve, place: complex) -> float:
-    """Return the length of two curves that is not followed if one is left for the other."""
-    left, met = last_share(before, place), first_share(after, place)
-    return (1.0 - left) * before.length + met * after.length
+    """Return the length of two curves that is not followed if they are joined at a place."""
+    last, first = last_share(before, place), first_share(after, place)
+    return (1.0 - last) * before.length + first * after.length
 
 
 def first_share(curve: Curve, place: complex) -> float:
-    """Return the share of a curve at which it is met, near its start; of a circle both are."""
+    """Return the share of a curve at which it begins, near its start; of a circle both are."""
     share = curve.share_of(place)
     return share if share < 0.5 or not _is_full_circle(curve) else 0.0
 
 
 def last_share(curve: Curve, place: complex) -> float:
-    """Return the share of a curve at which it is left, near its end."""
+    """Return the share of a curve at which it ends, near its end."""
     share = curve.share_of(place)
     return share if share > 0.5 or not _is_full_circle(curve) else 1.0
 
@@ -216,13 +216,13 @@ def _is_full_circle(curve: Curve) -> bool:
 
 
 def followed_part(
-    curve: Curve, before: Corner | None, behind: Corner | None, element: Element
+    curve: Curve, before: Corner | None, after: Corner | None, element: Element
 ) -> list[Curve] | None:
     """Return what is followed of a curve between two joints, with the arc of the first one.
 
     None if nothing is: the second joint comes before the first.
     """
-    start, end = before.meet if before else curve.start, behind.leave if behind else curve.end
+    start, end = before.meet if before else curve.start, after.leave if after else curve.end
     if not is_cut(element):
         return [Line(start, end)] if element.centre is None else [curve]
     first, last = first_share(curve, start), last_share(curve, end)

@@ -18,7 +18,7 @@ from g12.tools.preview.moves import Event
 NO_LENGTH = 1e-6  # mm
 ACTS = re.compile(
     r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+: ))"
-)  # of what a trace tells: what a section does
+)  # of the events of a trace: what a section does
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ class Element:
 class ZeroLine(NamedTuple):
     """What has become of C since the section before, or since the program began.
 
-    ``commanded`` says that the program has put it where it stands. ``turned`` is by how many
-    degrees the zero line is turned against that of the section before, which ended in line
-    ``line``; 0 and 0 for the first.
+    ``commanded`` says that the program moved it there. ``turned`` is by how many degrees the zero
+    line is turned against that of the section before, which ended in line ``line``; 0 and 0 for
+    the first.
     """
 
     commanded: bool
@@ -72,7 +72,7 @@ BEGUN = ZeroLine(True)
 
 
 class Act(NamedTuple):
-    """Something that a section does besides moving, as a trace tells it, and its block's line.
+    """Something that a section does besides moving, as a trace reports it, and its block's line.
 
     ``drawn`` is how many elements of the contour come before it.
     """
@@ -88,17 +88,16 @@ class SectionContour:
 
     ``file`` is the name of a sub's own, "" for the program.
 
-    ``start`` in the contour's plane, ``height`` above it and ``c`` (degrees) are where it begins,
-    ``left_c`` is where C stands behind it, in program coordinates; ``zero_line`` tells how C came
-    there. ``doubt`` tells why the contour could not be read from the words, if it could not.
-    ``diameters`` says that X words are. ``surface`` is the radius of the cylinder whose unrolled
-    surface the plane is, 0 of a polar section.
+    ``start`` in the contour's plane, ``height`` above it and ``c`` (degrees) are its first point in
+    program coordinates; ``zero_line`` says how C came there. ``doubt`` says why the contour could
+    not be read from the words, if it could not. ``diameters`` says that X words are. ``surface`` is
+    the radius of the cylinder whose unrolled surface the plane is, 0 of a polar section.
 
-    ``acts`` are what it is to do besides moving, ``told`` what a trace tells of the section.
-    ``leaves`` is the state behind it that the words ask for, as ``Block.state_after`` has it, and
-    ``left`` the one that was found; ``paths`` are G61 or G64 as found and as asked, if known.
-    ``path`` is G61 or G64 as in force where it begins, "" if that is not known, and ``asked_paths``
-    are it and those that the words ask for on the way.
+    ``acts`` are what its words command besides moving, ``events`` those of the trace.
+    ``expected_state`` is the state after it by the words, ``state_after`` the actual one, both as
+    ``Block.state_after`` has it; ``paths_after`` are G61 or G64, actual and expected, if known.
+    ``commanded_paths`` are G61 or G64 as in force where it begins, "" if that is not known, and
+    those that the words command on the way.
     """
 
     line: int
@@ -112,15 +111,13 @@ class SectionContour:
     height: float = 0.0
     diameters: bool = False
     c: float = 0.0
-    left_c: float = 0.0
     zero_line: ZeroLine = BEGUN
     acts: tuple[Act, ...] = ()
-    told: tuple[Event, ...] = ()
-    leaves: Mapping[str, float] = field(default_factory=dict)
-    left: Mapping[str, float] = field(default_factory=dict)
-    paths: tuple[str, ...] = ()
-    path: str = ""
-    asked_paths: tuple[str, ...] = ()
+    events: tuple[Event, ...] = ()
+    expected_state: Mapping[str, float] = field(default_factory=dict)
+    state_after: Mapping[str, float] = field(default_factory=dict)
+    paths_after: tuple[str, ...] = ()
+    commanded_paths: tuple[str, ...] = ("",)
     surface: float = 0.0
     file: str = ""
 
@@ -131,6 +128,11 @@ class SectionContour:
         return sorted({each.side for each in cut})
 
     @property
+    def path(self) -> str:
+        """G61 or G64 as in force where it begins, "" if that is not known."""
+        return self.commanded_paths[0]
+
+    @property
     def exact(self) -> bool:
         """Tell whether G61 or G61.1 is in force where it begins."""
         return self.path.startswith("G61")
@@ -138,7 +140,7 @@ class SectionContour:
     @property
     def unit(self) -> float:
         """Return the program's unit in mm."""
-        return 1.0 if self.leaves.get("_metric", True) else MM_PER_INCH
+        return 1.0 if self.expected_state.get("_metric", True) else MM_PER_INCH
 
     @property
     def third(self) -> int:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a section on a cylinder, read once more apart from the planner.
 
-The contour is drawn on the unrolled surface as one sees it from outside: to the right the way round
-it, as long as the radius of G7.1 has it for C's angle, and Z upwards. So G2 is clockwise there, and
+The contour is drawn on the unrolled surface as seen from outside: to the right the length around
+it, by the radius of G7.1 and C's angle, and Z upwards. So G2 is clockwise there, and
 G41 has the tool on the left. X is at right angles to it; X and U are diameters where G7 is on. An
 arc's centre is I or J along C and K along Z, both lengths.
 """

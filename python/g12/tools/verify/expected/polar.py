@@ -77,18 +77,18 @@ class Pen:
             self.at = self.tool = end
 
     def leaves(self, state: Mapping[str, float]) -> dict[str, float]:
-        """Return the state behind the section, of which ``state`` is the one before it.
+        """Return the state after the section, of which ``state`` is the one before it.
 
         Not a feed that is not known.
         """
-        left = {
+        found = {
             "_metric": state["_metric"],
             "_absolute": float(self.absolute),
             "_units_per_rev": float(self.per_revolution),
             "_motion_mode": 10 * self.motion,
             **self._position(state["_c"]),
         }
-        return left if self.feed is None else {**left, "_feed": self.feed / self.unit}
+        return found if self.feed is None else {**found, "_feed": self.feed / self.unit}
 
     def _height(self, words: dict) -> float:
         """Return how high above the plane a block ends."""
@@ -102,7 +102,7 @@ class Pen:
         )
 
     def _arm(self, words: dict) -> complex | None:
-        """Return the way from an arc's start to its centre, if the words say it."""
+        """Return the vector from an arc's start to its centre, if the words say it."""
         if "I" in words or "J" in words:
             return complex(words.get("I", 0.0), words.get("J", 0.0)) * self.unit
         return None
@@ -112,8 +112,8 @@ class Pen:
         radius, angle = cmath.polar(self.tool)
         slide = math.sqrt(max(0.0, radius**2 - self.beside**2))
         angle -= math.atan2(self.beside, slide)
-        left = {"_x": slide / self.unit, "_z": self.depth / self.unit}
-        return {**left, "_c": c + math.degrees(angle)} if radius > AT_CENTRE else left
+        found = {"_x": slide / self.unit, "_z": self.depth / self.unit}
+        return {**found, "_c": c + math.degrees(angle)} if radius > AT_CENTRE else found
 
     def _feed(self) -> float | None:
         """Return the feed in mm per minute."""

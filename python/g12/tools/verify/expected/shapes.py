@@ -50,7 +50,7 @@ class ShapePath:
         return equal_steps(0.0, -depth, most, ROUNDING)
 
     def approach(self, x: float, first: complex) -> None:
-        """Write the rapids to X on the zero line and down, and the way to the first point."""
+        """Write the rapids to X on the zero line and down, and the line to the first point."""
         turn = math.radians(self.call.turn_to(self._zero_line))
         parts = max(1, math.ceil(abs(turn) / math.pi))
         for _ in range(parts):

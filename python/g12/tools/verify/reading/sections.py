@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The sections that a program runs, and what their words draw, apart from the planner.
 
-A copy of the program is traced in which the section's motion is left out and every block tells
-its words instead; expressions, loops, calls and conditions are LinuxCNC's own doing.
+A copy of the program is traced without the sections' motion: every block there reports its words
+instead. LinuxCNC itself evaluates expressions, loops, calls and conditions.
 
-C stays turned behind a polar section. The next one is turned on the part with it, unless the
-program commands C in between, or gives it another zero.
+C stays turned after a polar section. The next one is turned on the part with it, unless the program
+commands C in between, or gives it another zero.
 """
 
 import math
@@ -186,14 +186,13 @@ def sections(
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_differ(program)
     doubts = doubts_of(lines, codes, bodies)
-    left, asked = paths_in_force(blocks), paths_in_force(copied)
+    actual, expected = paths_in_force(blocks), paths_in_force(copied)
     return [
         replace(
             section_of(own, group, codes, pens),
             doubt=doubts.get(own[0].text, ""),
-            paths=() if restores(group) else (left[id(own[-1])], asked[id(group[-1])]),
-            path=asked[id(group[0])],
-            asked_paths=(asked[id(group[0])], *paths_told(group)),
+            paths_after=() if restores(group) else (actual[id(own[-1])], expected[id(group[-1])]),
+            commanded_paths=(expected[id(group[0])], *paths_in(group)),
         )
         for own, group in zip(found, groups)
     ]
@@ -202,9 +201,9 @@ def sections(
 def flattened(
     lines: Sequence[SectionLine], codes: Codes, drawn: Mapping[str, str], sub: str = ""
 ) -> list[list[str]]:
-    """Return the lines that stand for each line in the copy without the sections' motion.
+    """Return the lines that replace each line in the copy without the sections' motion.
 
-    What a line does besides moving stays: LinuxCNC itself tells of it. ``drawn`` are the subs that
+    What a line does besides moving stays: LinuxCNC itself reports it. ``drawn`` are the subs that
     sections call: their copies, of which ``sub`` is one, are in a section from the first line on.
     """
     found = []
@@ -261,19 +260,19 @@ def switched(block: Block, codes: Codes, inside: bool) -> str:
 def paths_in_force(blocks: Sequence[Block]) -> dict[int, str]:
     """Return G61 or G64 as in force after each block, by its id, "" where that is not known.
 
-    In the copy a section's events come behind its first block.
+    In the copy a section's events come after its first block.
     """
-    paths = accumulate(blocks, lambda path, block: (path, *paths_told([block]))[-1], initial="")
+    paths = accumulate(blocks, lambda path, block: (path, *paths_in([block]))[-1], initial="")
     return dict(zip(map(id, blocks), islice(paths, 1, None)))
 
 
-def paths_told(blocks: Sequence[Block]) -> list[str]:
-    """Return each G61 or G64 that a trace tells of in some blocks."""
+def paths_in(blocks: Sequence[Block]) -> list[str]:
+    """Return each G61 or G64 that a trace reports in some blocks."""
     return [event.text for block in blocks for event in block.events if event.text.startswith("G6")]
 
 
 def restores(group: Sequence[Block]) -> bool:
-    """Tell whether a section gives saved modes back, of which its copy knows nothing."""
+    """Tell whether a section restores saved modes, of which its copy knows nothing."""
     return any(code in (RESTORE, SAVE_FOR_SUB) for block in group for code in block.m_codes)
 
 
@@ -282,7 +281,6 @@ def section_of(
 ) -> SectionContour:
     """Return the section that executed blocks describe; ``own`` are the program's own of it."""
     first, last = own[0], own[-1]
-    told = tuple(event for block in own[1:] for event in block.events)
     kind = codes.section(first.text)
     pen = pens[kind.dialect](first)
     start, height, diameters = pen.at, pen.depth, pen.x_unit < pen.unit
@@ -305,11 +303,10 @@ def section_of(
         height=height,
         diameters=diameters,
         c=first.state["_c"],
-        left_c=last.state_after.get("_c", math.nan),
         acts=tuple(acts),
-        told=told,
-        leaves={**pen.leaves(first.state), **({} if restores(group) else kept)},
-        left=last.state_after,
+        events=tuple(event for block in own[1:] for event in block.events),
+        expected_state={**pen.leaves(first.state), **({} if restores(group) else kept)},
+        state_after=last.state_after,
         surface=pen.surface,
         file=first.text.file,
     )
@@ -348,6 +345,9 @@ def zero_line(
         return ZeroLine(commanded)
     angle, other = (moves[each.at].start[C] for each in (section, previous))
     turned = (angle - other + 180.0) % 360.0 - 180.0
-    offsets = angle - section.c, moves[previous.end - 1].end[C] - previous.left_c
+    offsets = (
+        angle - section.c,
+        moves[previous.end - 1].end[C] - previous.state_after.get("_c", math.nan),
+    )
     commanded = commanded or abs(offsets[0] - offsets[1]) > SAME_ANGLE
     return ZeroLine(commanded, turned if abs(turned) > SAME_ANGLE else 0.0, previous.last)

@@ -4,9 +4,9 @@
 Where its end meets its beginning it is closed, and what sticks out there is a lead. Points are
 complex, lengths mm.
 
-A tool that comes from outside of a closed contour is meant to stay outside of it; one that comes
-to an open contour is meant to stay on the side from which it comes, unless it goes over a face to
-the side away from the spindle's centre.
+A tool that comes from outside of a closed contour is to stay outside of it; one that comes to an
+open contour is to stay on the side from which it comes, unless it goes over a face to the side away
+from the spindle's centre.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,7 +16,7 @@ from itertools import groupby, permutations, product
 import numpy as np
 from shapely.geometry import LineString, Polygon
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import nearest_points
+from shapely.ops import nearest_points, substring
 
 from g12.geometry.curve import Curve, Line
 from g12.tools.verify.expected.compensated import ContourStep
@@ -37,27 +37,28 @@ LENGTHLESS = 1e-6
 class Outline:
     """A stretch of elements with the tool on one ``side``: +1 is left, 0 on the contour.
 
-    ``curves`` are the shape's, ``leads`` what sticks out of a closed one, ``depth`` is the lowest.
+    ``line`` is the shape, ``leads`` what sticks out of a closed one, ``depth`` is the lowest.
     """
 
     def __init__(self, stretch: Sequence[Element]) -> None:
-        whole = [element.curve for element in stretch]
         self.side = stretch[0].side
         self.depth = min(element.depth for element in stretch)
-        kept = shares_kept(whole) if self.side else [(0.0, 1.0)] * len(whole)
-        self.curves = curve_portions(whole, kept)
-        self.leads = curve_portions(whole, [(0.0, first) for first, _ in kept])
-        self.leads += curve_portions(whole, [(last, 1.0) for _, last in kept])
+        lines = [drawn(element.curve) for element in stretch]
+        whole = joined(lines)
+        first, last = closing(lines) if self.side else (0.0, whole.length)
+        self.line = substring(whole, first, last)
+        ends = substring(whole, 0.0, first), substring(whole, last, whole.length)
+        self.leads = [lead for lead in ends if lead.length > LENGTHLESS]
 
     @cached_property
     def points(self) -> np.ndarray:
         """Points (complex) along the shape."""
-        return np.concatenate([np.zeros(0), *map(drawn_points, self.curves)])
+        return complex_points(self.line)
 
     @property
     def is_closed(self) -> bool:
         """Tell whether the shape ends where it begins."""
-        return abs(self.curves[0].start - self.curves[-1].end) < 2 * MEETS
+        return abs(self.points[0] - self.points[-1]) < 2 * MEETS
 
     @property
     def tool_is_inside(self) -> bool:
@@ -70,13 +71,11 @@ class Outline:
 
         All within a closed shape is part where the tool is outside.
         """
-        if not self.side or not self.curves:
+        if not self.side:
             return Polygon()
-        points = vectors(self.points)
         if not self.is_closed:
-            line = LineString(points)
-            return line.buffer(-self.side * width, single_sided=True, join_style=MITRE)
-        area = Polygon(points).buffer(0)
+            return self.line.buffer(-self.side * width, single_sided=True, join_style=MITRE)
+        area = Polygon(self.line.coords).buffer(0)
         return area.buffer(width).difference(area) if self.tool_is_inside else area
 
 
@@ -91,49 +90,40 @@ def outlines_of(section: SectionContour) -> list[Outline]:
     return [Outline(stretch) for stretch in stretches_of(section) if not stretch[0].ramp]
 
 
-def curve_portions(curves: Sequence[Curve], shares: Sequence[tuple[float, float]]) -> list[Curve]:
-    """Return the portions of curves between shares that have a length."""
-    found = (curve.portion(*ends) for curve, ends in zip(curves, shares))
-    return [portion for portion in found if portion.length > LENGTHLESS]
+def closing(lines: Sequence[LineString]) -> tuple[float, float]:
+    """Return the lengths along lines in a row between which they are closed; else the whole length.
 
-
-def shares_kept(curves: Sequence[Curve]) -> list[tuple[float, float]]:
-    """Return between which shares each curve is part of the shape."""
-    ends = np.cumsum([0.0, *(curve.length for curve in curves)])
-    closed = np.array(closing(curves, ends))
-    return [
-        tuple((np.clip(closed, start, end) - start) / (end - start))
-        for start, end in zip(ends, ends[1:])
-    ]
-
-
-def closing(curves: Sequence[Curve], ends: np.ndarray) -> tuple[float, float]:
-    """Return the lengths along curves between which they are closed; else the whole length."""
-    count = len(curves)
+    The first of them meets one of the last ones where they join: of neighbours the later half of
+    the second counts.
+    """
+    ends, count = np.cumsum([0.0, *(line.length for line in lines)]), len(lines)
     for i, j in product(range(min(count, LEADS)), range(count - 1, count - 1 - LEADS, -1)):
         if j > i:
-            # Neighbours meet where they join: the later half of the second is looked at.
-            skipped = 0.5 if j == i + 1 else 0.0
-            one, other = as_line(curves[i]), as_line(curves[j].portion(skipped, 1.0))
-            if one.distance(other) < MEETS:
-                here, there = nearest_points(one, other)
-                passed = ends[j] + skipped * curves[j].length
-                return ends[i] + one.project(here), passed + other.project(there)
+            skipped = lines[j].length / 2 if j == i + 1 else 0.0
+            other = substring(lines[j], skipped, lines[j].length)
+            if lines[i].distance(other) < MEETS:
+                here, there = nearest_points(lines[i], other)
+                return ends[i] + lines[i].project(here), ends[j] + skipped + other.project(there)
     return 0.0, ends[-1]
 
 
-def as_line(curve: Curve) -> LineString:
-    """Return a curve as a polyline."""
-    return LineString(vectors(drawn_points(curve)))
-
-
-def drawn_points(curve: Curve) -> np.ndarray:
-    """Return points along a curve, its ends included."""
+def drawn(curve: Curve) -> LineString:
+    """Return a curve as a polyline, its ends included."""
     count = 1 if isinstance(curve, Line) else max(1, int(curve.length / STEP))
-    return np.array([curve.point(index / count) for index in range(count + 1)])
+    return LineString(vectors([curve.point(index / count) for index in range(count + 1)]))
 
 
-def vectors(points: np.ndarray) -> list[tuple[float, float]]:
+def joined(lines: Sequence[LineString]) -> LineString:
+    """Return polylines in a row as one."""
+    return LineString([point for line in lines for point in line.coords])
+
+
+def complex_points(line: LineString) -> np.ndarray:
+    """Return the points (complex) of a polyline."""
+    return np.array(line.coords) @ (1, 1j)
+
+
+def vectors(points: Sequence[complex] | np.ndarray) -> list[tuple[float, float]]:
     """Return complex points as pairs."""
     return [(point.real, point.imag) for point in points]
 
@@ -166,7 +156,7 @@ def open_side(
     section: SectionContour, ramp: Element, outline: Outline, tool: float
 ) -> Iterator[Finding]:
     """Yield that the tool crosses an open contour; on a face it may go over the part."""
-    beside = outline.curves[0].start + 1j * outline.curves[0].direction() * ramp.side * tool
+    beside = Line(*outline.points[:2]).offset(ramp.side * tool).start
     over = not section.surface and ramp.depth > outline.depth + NEAR
     over = over and crosses(0j, beside, outline.points)
     if crosses(ramp.start, beside, outline.points) and not over:
@@ -182,59 +172,46 @@ def crosses(start: complex, end: complex, points: np.ndarray) -> bool:
     return len(getattr(met, "geoms", [met] * (not met.is_empty))) % 2 == 1
 
 
-class _Side:
-    """A compensated contour: what is cut, and where the tool's centre goes."""
+class CutContour:
+    """A compensated contour that is cut: its ``line``, the ``path`` of the tool's centre."""
 
-    def __init__(self, steps: Sequence[ContourStep], tool: float) -> None:
+    def __init__(self, steps: Sequence[ContourStep]) -> None:
         self.moves = [step.move for step in steps if step.move.curve.length > LENGTHLESS]
         elements = {id(step.element): step.element for step in steps}
-        longer = (each for each in elements.values() if each.length > LENGTHLESS)
-        self.elements, self._tool = list(longer), tool
+        self.elements = [each for each in elements.values() if each.length > LENGTHLESS]
         levels = [level for move in self.moves for level in (move.start_level, move.end_level)]
-        self.lowest, self.highest = min(levels, default=0.0), max(levels, default=0.0)
-
-    @cached_property
-    def contour(self) -> LineString:
-        """The contour as a polyline."""
-        return line_through([drawn_points(each.curve) for each in self.elements])
-
-    @cached_property
-    def path(self) -> LineString:
-        """The path of the tool's centre as a polyline."""
-        return line_through([drawn_points(move.curve) for move in self.moves])
-
-    @cached_property
-    def part(self) -> BaseGeometry:
-        """The part beside the contour, as far as the tool reaches."""
-        return Outline(self.elements).part(2 * self._tool)
+        self.lowest, self.highest = min(levels), max(levels)
+        self.line = joined([drawn(each.curve) for each in self.elements])
+        self.path = joined([drawn(move.curve) for move in self.moves])
 
 
 def neighbour_cuts(
     steps: Sequence[ContourStep], tool: float, tolerance: float
 ) -> Iterator[Finding]:
-    """Yield the deepest cut of each contour into each other one that is not meant."""
+    """Yield the deepest cut of each contour into each other one that is not commanded."""
     runs = groupby(steps, key=lambda step: (step.element.side, step.element.ramp))
-    sides = [_Side(list(run), tool) for (side, ramp), run in runs if side and not ramp]
-    told: set[tuple[int, int]] = set()
-    for one, other in permutations([each for each in sides if each.moves], 2):
-        if other.lowest <= one.highest + LEVEL and one.contour.distance(other.path) < tool:
+    contours = [CutContour(list(run)) for (side, ramp), run in runs if side and not ramp]
+    reported: set[tuple[int, int]] = set()
+    for one, other in permutations(contours, 2):
+        if other.lowest <= one.highest + LEVEL and one.line.distance(other.path) < tool:
             size, line, cut = max(cuts_into(one, other, tool, tolerance), default=(0.0, 0, 0))
-            if size and (line, cut) not in told:
-                told.add((line, cut))
+            if size and (line, cut) not in reported:
+                reported.add((line, cut))
                 yield Finding("cuts-contour", line, {"size": size, "line": cut})
 
 
 def cuts_into(
-    one: _Side, other: _Side, tool: float, tolerance: float
+    one: CutContour, other: CutContour, tool: float, tolerance: float
 ) -> Iterator[tuple[float, int, int]]:
     """Yield where the tool cuts one contour's part along another contour that does not enter it.
 
-    How deep, the line on whose way it does, and the line of the contour that is cut.
+    How deep, the line along which it does, and the line of the contour that is cut.
     """
-    swept = other.path.buffer(tool - tolerance).intersection(one.part)
-    entering = other.contour.intersection(one.part.buffer(-ENTERED * tolerance))
+    part = Outline(one.elements).part(2 * tool)
+    swept = other.path.buffer(tool - tolerance).intersection(part)
+    entering = other.line.intersection(part.buffer(-ENTERED * tolerance))
     for region in getattr(swept, "geoms", [swept]):
-        wall = one.contour.intersection(region.buffer(tolerance / 2))
+        wall = one.line.intersection(region.buffer(tolerance / 2))
         if wall.is_empty or region.area < tolerance**2:
             continue
         if not entering.is_empty and entering.distance(region) < 2.0 * tolerance:
@@ -244,9 +221,3 @@ def cuts_into(
         line = min(other.moves, key=lambda move: move.curve.distance(at)).line
         cut = min(one.elements, key=lambda each: each.curve.distance(at)).line
         yield size, line, cut
-
-
-def line_through(points: Sequence[np.ndarray]) -> LineString:
-    """Return a polyline through complex points."""
-    every = np.concatenate(points)
-    return LineString(np.column_stack([every.real, every.imag]))

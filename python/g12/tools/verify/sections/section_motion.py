@@ -5,7 +5,7 @@ LinuxCNC blends two moves by starting the second while the first slows down, eac
 acceleration, a and b. At the time s of the t = 2 v / a that the first takes from the speed v, it is
 a (t - s)**2 / 4 before the corner and the second b s**2 / 4 after it. Where the path turns by the
 angle d, the tool is sin(d / 2) times the sum inside, or farther: v**2 b / (a (a + b)) at least.
-With a C axis in motion G64 P limits it only where X turns back or stands: LinuxCNC takes the angle
+With a C axis in motion G64 P limits it only where X turns back or rests: LinuxCNC takes the angle
 of X, Y and Z alone. X20 C0, X16 C20, X12 C0 at F3000 misses its corner by 1.41 mm on 2.9.0, by 0.31
 on 2.10, with P0.5 as with P0.001; X14 C0, X20 C20, X14 C40 by 0.51 and 0.12 mm with P0.5, and by
 about P or less below. So only an exact path or stop counts. The speeds are those that F and the
@@ -34,7 +34,7 @@ from g12.tools.verify.result.tolerances import LEVEL
 from g12.tools.verify.sections.view import G64_P, SectionView
 
 STILL = 1e-7  # mm: C turns in place
-NO_LENGTH = 1e-4  # mm, of what is left of a move
+NO_LENGTH = 1e-4  # mm, of what remains of a move
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 FOLLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
@@ -113,15 +113,15 @@ def _is_corner(one: Expected, other: Expected) -> bool:
 def _blended(view: SectionView, joints: list[Joint]) -> Iterator[Finding]:
     """Yield the corners that blending rounds by more than the tolerance, the section's end first.
 
-    On the kinematics' face, and where it is gone to or left, there is other motion than C's.
+    On the kinematics' face, and where that begins or ends, there is other motion than C's.
     """
     moves, end = view.moves, view.own.stop - 1
-    stands = view.on_face and not turns(moves[end])
-    if view.own.stop < len(moves) and not (moves[end].exact or stands):
+    c_rests = view.on_face and not turns(moves[end])
+    if view.own.stop < len(moves) and not (moves[end].exact or c_rests):
         yield Finding("blended-out", moves[end].line)
     for joint in joints:
         one = moves[joint.index]
-        if one.exact or joint.half_sine < math.sin(SMOOTH / 2) or _is_on_face(view, joint):
+        if one.exact or joint.half_sine < math.sin(SMOOTH / 2) or _is_kept_on_face(view, joint):
             continue
         if not joint.goes_on:
             yield Finding("blended-turn", one.line)
@@ -132,31 +132,21 @@ def _blended(view: SectionView, joints: list[Joint]) -> Iterator[Finding]:
                 yield Finding("blended-corner", one.line, {"off": off})
 
 
-def _is_on_face(view: SectionView, joint: Joint) -> bool:
-    """Tell whether a joint is on the kinematics' face with G64 P, or where that is left."""
+def _is_kept_on_face(view: SectionView, joint: Joint) -> bool:
+    """Tell whether a joint is on the kinematics' face with G64 P, or where that begins or ends."""
     one, other = view.moves[joint.index], view.moves[joint.index + 1]
-    left = turns(one) != turns(other) or one.end != other.start
-    return view.on_face and (left or (not turns(one) and is_limited(view, joint.index)))
+    switched = turns(one) != turns(other) or one.end != other.start
+    return view.on_face and (switched or (not turns(one) and keeps_corners(view, joint.index)))
 
 
-def is_limited(view: SectionView, index: int) -> bool:
-    """Tell whether what is cut of the corner after a move is limited, where C does not move.
-
-    What is in force at a move is told when the next one begins, perhaps.
-    """
+def keeps_corners(view: SectionView, index: int) -> bool:
+    """Tell whether G61, or G64 with the P of the words or a tolerance, holds after a move."""
     section = view.section
-    told = [event for event in section.told if event.text.startswith("G6")]
-    before = [section.path, *(event.text for event in told if event.at <= index)]
-    paths = [before[-1], *(event.text for event in told if event.at == index + 1)]
-    return any(keeps_corners(view, path) for path in paths)
-
-
-def keeps_corners(view: SectionView, path: str) -> bool:
-    """Tell whether a path control keeps to corners: its P is as asked for, or a tolerance."""
+    paths = [event.text for event in section.events if event.at <= index and event.text[:2] == "G6"]
+    path = paths[-1] if paths else section.path
     given = G64_P.match(path)
-    if not given or path in view.section.asked_paths:
-        return not given or float(given[1]) > 0.0
-    return 0.0 < float(given[1]) * view.section.unit <= view.tolerance
+    most = math.inf if path in section.commanded_paths else view.tolerance / section.unit
+    return not given or 0.0 < float(given[1]) <= most
 
 
 def rounding(view: SectionView, joint: Joint) -> float:
@@ -165,7 +155,7 @@ def rounding(view: SectionView, joint: Joint) -> float:
     A line too short to reach its feed is as fast as its length allows.
     """
     index, surface = joint.index, view.plane.surface
-    into, out = (view.axes.along(way, joint.place, surface) for way in (joint.into, joint.out))
+    into, out = (view.axes.along(each, joint.place, surface) for each in (joint.into, joint.out))
     speed = min(view.path.part_feed(index), view.path.part_feed(index + 1)) / 60.0
     lengths = (view.expected[at].length for at in (joint.before, joint.after))
     square = min(speed * speed, *(a * length for a, length in zip((into, out), lengths)))

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from shapely.geometry import LineString, Point
 
 from g12.geometry.curve import Curve, Line
 from g12.tools.verify.expected.contour import Element
@@ -47,9 +48,12 @@ def contour_size(view: SectionView) -> SectionSize:
     return SectionSize(programmed, reached, sorted(flats, reverse=True))
 
 
-def on_shape(wall: CutWall, leads: Sequence[Curve]) -> CutWall:
+def on_shape(wall: CutWall, leads: Sequence[LineString]) -> CutWall:
     """Return what of a wall is no lead."""
-    on = [all(lead.distance(place) > MEETS for lead in leads) for place in wall.programmed]
+    if not leads:
+        return wall
+    places = [Point(place.real, place.imag) for place in wall.programmed]
+    on = [all(lead.distance(place) > MEETS for lead in leads) for place in places]
     return CutWall(wall.element, wall.programmed[on], wall.reached[on])
 
 
@@ -70,7 +74,7 @@ def walls_along(view: SectionView) -> Iterator[CutWall]:
 
 
 def beside(curve: Curve, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the points next to others of the line or circle of a curve, its left normals there."""
+    """Return the nearest points of a curve's line or circle, and its left normals there."""
     if isinstance(curve, Line):
         along = curve.direction()
         return curve.start + ((points - curve.start) / along).real * along, 1j * along

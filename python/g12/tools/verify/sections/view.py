@@ -101,5 +101,5 @@ def view_of(
 
 def blending_commanded(section: SectionContour) -> float:
     """Return the greatest P of G64 in the words, mm: on the face it holds at corners."""
-    given = (G64_P.match(path) for path in section.asked_paths)
+    given = (G64_P.match(path) for path in section.commanded_paths)
     return max((float(each[1]) * section.unit for each in given if each), default=0.0)
