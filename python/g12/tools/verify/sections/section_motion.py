@@ -142,7 +142,9 @@ def _is_kept_on_face(view: SectionView, joint: Joint) -> bool:
 def keeps_corners(view: SectionView, index: int) -> bool:
     """Tell whether G61, or G64 with the P of the words or a tolerance, holds after a move."""
     section = view.section
-    paths = [event.text for event in section.events if event.at <= index and event.text[:2] == "G6"]
+    paths = [
+        event.text for event in section.events if event.at <= index + 1 and event.text[:2] == "G6"
+    ]
     path = paths[-1] if paths else section.path
     given = G64_P.match(path)
     most = math.inf if path in section.commanded_paths else view.tolerance / section.unit
