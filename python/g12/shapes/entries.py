@@ -115,13 +115,19 @@ def levels_of(entries: ShapeEntries, context: Context) -> Levels:
     return Levels(levels, depth / levels)
 
 
-def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> Feeds:
-    """Return the feeds: feed and plunge_feed."""
+def feed_of(entries: ShapeEntries, context: Context) -> float:
+    """Return the entry feed, by default the active F."""
     feed = entries.positive("feed", context.feed)
     if not feed > 0:
         raise entries.refuse("feed is missing, and no F is active")
     if context.per_revolution and not context.speed:
         raise entries.refuse("feed per revolution (G95) needs the spindle speed S")
+    return feed
+
+
+def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> Feeds:
+    """Return the feeds: feed and plunge_feed."""
+    feed = feed_of(entries, context)
     return Feeds(feed, entries.positive("plunge_feed", feed * machine.plunge_share))
 
 

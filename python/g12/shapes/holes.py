@@ -22,7 +22,7 @@ from typing import NamedTuple
 from g12.errors import number
 from g12.lengths import DEGREES_PER_TURN, ROUNDING_MM
 from g12.request.context import Context
-from g12.shapes.entries import Extent, ShapeEntries, check_moves
+from g12.shapes.entries import Extent, ShapeEntries, check_moves, feed_of
 
 HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 FACE_HOLES = ("count", "circle_diameter", "first_angle", "step_angle", *HOLE)
@@ -222,7 +222,7 @@ def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Ho
     retract = entries.require_positive("retract", "the height at which the tool is clear")
     kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)
     tap = kind in TAP_SPINDLE_CODES
-    feed = hole_feed(entries, context, tap)
+    feed = entries.require_positive("feed", "a tap's pitch") if tap else feed_of(entries, context)
     peck = entries.take("peck") or 0.0
     if peck and kind != DRILL:
         rule = f"is for drilling (kind {DRILL}), not for kind {kind}"
@@ -236,18 +236,6 @@ def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Ho
     return Hole(
         depth, retract, feed, max(1, pecks), abs(peck) or depth, int(peck > 0), clear, dwell, kind
     )
-
-
-def hole_feed(entries: ShapeEntries, context: Context, tap: bool) -> float:
-    """Return the feed, by default the active F; for a tap the pitch, which has no default."""
-    if tap:
-        return entries.require_positive("feed", "a tap's pitch")
-    feed = entries.positive("feed", context.feed)
-    if not feed > 0:
-        raise entries.refuse("feed is missing, and no F is active")
-    if context.per_revolution and not context.speed:
-        raise entries.refuse("feed per revolution (G95) needs the spindle speed S")
-    return feed
 
 
 def check_tapping(entries: ShapeEntries, machine: HoleMachine, kind: int) -> None:
