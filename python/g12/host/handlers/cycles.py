@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
@@ -13,6 +15,8 @@ from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, other_cutter
 from g12.request.words import Words
+
+ARCS = CLOCKWISE, COUNTERCLOCKWISE  # of G12 and G13
 
 
 def check_at_start() -> None:
@@ -37,18 +41,6 @@ def prepare_haas(interp: Interp, arc: int) -> int:
     return INTERP_OK
 
 
-@messages.handler
-def g12_haas(self, **words):
-    """Prolog of G12, clockwise circular pocket."""
-    return prepare_haas(self, CLOCKWISE)
-
-
-@messages.handler
-def g13_haas(self, **words):
-    """Prolog of G13, counterclockwise circular pocket."""
-    return prepare_haas(self, COUNTERCLOCKWISE)
-
-
 def prepare_yasnac(interp: Interp, arc: int) -> int:
     """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
@@ -67,18 +59,6 @@ def prepare_yasnac(interp: Interp, arc: int) -> int:
     return INTERP_OK
 
 
-@messages.handler
-def g12_yasnac(self, **words):
-    """Prolog of G12, clockwise circle cutting."""
-    return prepare_yasnac(self, CLOCKWISE)
-
-
-@messages.handler
-def g13_yasnac(self, **words):
-    """Prolog of G13, counterclockwise circle cutting."""
-    return prepare_yasnac(self, COUNTERCLOCKWISE)
-
-
 def prepare_mitsubishi(interp: Interp, arc: int) -> int:
     """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
@@ -88,18 +68,6 @@ def prepare_mitsubishi(interp: Interp, arc: int) -> int:
     cycle_state.report_other_cutter(interp, context, other)
     cycle_state.hand_over(interp, **circle._asdict(), arc=arc)
     return INTERP_OK
-
-
-@messages.handler
-def g12_mitsubishi(self, **words):
-    """Prolog of G12, clockwise circular cutting."""
-    return prepare_mitsubishi(self, CLOCKWISE)
-
-
-@messages.handler
-def g13_mitsubishi(self, **words):
-    """Prolog of G13, counterclockwise circular cutting."""
-    return prepare_mitsubishi(self, COUNTERCLOCKWISE)
 
 
 def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
@@ -127,16 +95,22 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     return INTERP_OK
 
 
-@messages.handler
-def circle_mill_perimeter(self, **words):
-    """Prolog of G12.2, and of the event's subroutine form."""
-    return prepare_circle_mill(self, pocket=False)
+def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
+    """Return the prolog of a code: ``prepare`` for its arc code, or its kind of event."""
+
+    @messages.handler
+    def prolog_of_code(self, **words):
+        return prepare(self, argument)
+
+    return prolog_of_code
 
 
-@messages.handler
-def circle_mill_pocket(self, **words):
-    """Prolog of G13.2."""
-    return prepare_circle_mill(self, pocket=True)
+g12_haas, g13_haas = (prolog(prepare_haas, arc) for arc in ARCS)
+g12_yasnac, g13_yasnac = (prolog(prepare_yasnac, arc) for arc in ARCS)
+g12_mitsubishi, g13_mitsubishi = (prolog(prepare_mitsubishi, arc) for arc in ARCS)
+circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, G13.2
+    prolog(prepare_circle_mill, pocket) for pocket in (False, True)
+)
 
 
 @messages.handler
