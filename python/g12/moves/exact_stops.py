@@ -63,8 +63,8 @@ def _blending_distance(
     """Return the distance at which blending would pass the corner between two elements.
 
     ``stopping``: the tool stops at the end of ``b``. Then ``b`` counts with all of its
-    acceleration, which it has into a G61. Into a G4 P0, as most stops are, it has half of it, so
-    the rounding there is less than this estimate.
+    acceleration, which it has into a G61. Into a G4 P0, by which blended segments stop, it has
+    half of it, so the rounding there is less than this estimate.
     """
     point = _corner_point(a, b)
     from_direction, to_direction = _direction(a, 1.0), _direction(b, 0.0)

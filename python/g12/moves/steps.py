@@ -9,8 +9,9 @@ from g12.moves.feed import Segment, Split, has_short_slide_move
 from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, TooManySegments
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
-STOP_SHARE = 0.7  # of the tolerance, before a stop: into a G61 a segment cuts its corner deeper,
-# and a stop may be one. Most are a G4 P0, which would allow CHORD_SHARE.
+# STOP_SHARE is for a stop by G61, into which LinuxCNC cuts the corner before it deeper. Blended
+# segments end in a G4 P0 (`SectionOutput`), for which CHORD_SHARE would do.
+STOP_SHARE = 0.7  # of the tolerance, before a stop
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
 REMAINDER_SHARE = 1e-3  # of the least step of a slide: a smaller remainder is rounding
 

@@ -29,7 +29,7 @@ from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
-LINUXCNC_M_CODES, USER_M_CODES = range(3, 10), range(100, 200)  # M codes without a REMAP line
+UNREMAPPED_M_CODES = (*range(3, 10), *range(100, 200))  # those of LinuxCNC and of M1xx files
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block outside any sub
 REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
@@ -111,11 +111,7 @@ def report_turns(interp: Interp, turned: float) -> None:
 def clamp_codes(refuse: Callable[[str], Refusal], codes: Sequence[int]) -> Sequence[int]:
     """Return M codes of C's clamp; refuse those that this LinuxCNC cannot know."""
     for code in codes:
-        if (
-            f"M{code}" not in MACHINE.remaps
-            and code not in LINUXCNC_M_CODES
-            and code not in USER_M_CODES
-        ):
+        if f"M{code}" not in MACHINE.remaps and code not in UNREMAPPED_M_CODES:
             raise refuse(f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?")
     if codes and not MACHINE.settings.c_clamp:
         raise refuse("[G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp")

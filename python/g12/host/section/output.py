@@ -134,7 +134,7 @@ class PathControl:
         self.set(self._commanded)
 
     def set(self, path: str) -> None:
-        """Set a path control; `give_back` undoes it."""
+        """Set a path control; `restore` undoes it."""
         if path != self._in_force:
             self.interp.execute(path)
             self._in_force = path
