@@ -37,7 +37,7 @@ from g12.errors import Refusal, number
 from g12.geometry.boxes import BoxTree
 from g12.geometry.crossing import common_points
 
-SAME_WAY = 0.9  # cosine: passes in the same direction differ by less than this angle
+SAME_DIRECTION_COSINE = 0.9  # cosine: passes in the same direction differ by less than this angle
 CROSSED = 0.02  # of the tool's radius: a contour that goes farther to both sides crosses itself
 # of the tool's radius: distances from the crossing at which that is checked
 BESIDE_CROSSING = (0.125, 0.25, 0.5, 1.0)
@@ -164,8 +164,8 @@ class _Sweep:
         clearance = (turned * beside).imag * (1.0 if own.offset > 0.0 else -1.0)
         if clearance >= -own.tolerance:
             return FACING
-        same_way = (turned * move.curve.direction(share)).real > SAME_WAY
-        return REPEATED if same_way else DEEPER
+        same_direction = (turned * move.curve.direction(share)).real > SAME_DIRECTION_COSINE
+        return REPEATED if same_direction else DEEPER
 
     def _gouge(self, point: WallPoint, k: int, kind: str) -> _Gouge:
         """Return the gouge of a pass at a point."""

@@ -24,25 +24,25 @@ def without_short_moves(
 
     Also returns the greatest shift of the contour by that, at most ``limit``. Program units.
     """
-    kept: list[PathElement] = []
-    last, shift = None, 0.0  # ``last``: the index of the last move in ``kept``
+    remaining: list[PathElement] = []
+    last, shift = None, 0.0  # ``last``: the index of the last move in ``remaining``
     for element in elements:
         if not isinstance(element, PlaneMove):
-            kept.append(element)
+            remaining.append(element)
             continue
-        before = None if last is None else kept[last]
+        before = None if last is None else remaining[last]
         away = 0.0 if before is None else abs(element.end - before.end)
         if before and _is_short(before, element, limit) and away <= limit:
             shift = max(shift, away)
             if element.z0 != element.z1:
-                kept.append(Plunge(element.line, element.feed, element.z0, element.z1))
+                remaining.append(Plunge(element.line, element.feed, element.z0, element.z1))
             continue
         if before and abs(element.start - before.end) > SAME_POINT:
-            kept[last], *between, element = _connected(before, element)
-            kept.extend(between)
-        last = len(kept)
-        kept.append(element)
-    return kept, shift
+            remaining[last], *between, element = _connected(before, element)
+            remaining.extend(between)
+        last = len(remaining)
+        remaining.append(element)
+    return remaining, shift
 
 
 def _connected(before: PlaneMove, move: PlaneMove) -> list[PlaneMove]:
@@ -63,7 +63,7 @@ def without_rounding_points(
     all points between stay within ``limit`` of it. Also returns the greatest shift of the contour
     by that. Program units.
     """
-    kept: list[PathElement] = []
+    remaining: list[PathElement] = []
     shift = offset = 0.0
     at = 0
     while at < len(elements):
@@ -75,9 +75,9 @@ def without_rounding_points(
         if last > at and isinstance(element, PlaneMove) and isinstance(end, PlaneMove):
             shift = max(shift, away)
             element = element._replace(curve=Line(element.start, end.end))
-        kept.append(element)
+        remaining.append(element)
         at = last + 1
-    return kept, shift
+    return remaining, shift
 
 
 def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> tuple[int, float]:

@@ -27,7 +27,7 @@ ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL 
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
 ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
-INPUT_FOUND, TIMED_OUT = 5399, -1.0  # parameter
+INPUT_RESULT, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET = 1e-4  # program units
 IJK_MODES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 ON_THE_FACE = "G17G91.1M52P1"
@@ -50,7 +50,7 @@ def face_in_force() -> bool:
     return bool(status.din[FACE_INPUT])
 
 
-def modes_found(interp: Interp) -> str:
+def modes_before_face(interp: Interp) -> str:
     """Return the block that restores the modes that `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(IJK_MODES[code] for code in active if code in IJK_MODES)
@@ -143,7 +143,7 @@ def _request(interp: Interp, request: FaceRequest) -> None:
 
 def has_switched(interp: Interp) -> bool:
     """Return, after the wait, whether the machine has switched."""
-    return not interp.task or interp.params[INPUT_FOUND] != TIMED_OUT
+    return not interp.task or interp.params[INPUT_RESULT] != TIMED_OUT
 
 
 def not_switched() -> str:

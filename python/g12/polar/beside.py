@@ -12,8 +12,9 @@ from the pole the slide has to be at s, and C at less than the angle of the poin
     pole +---------------+---> e
                  s
 
-No point nearer to the pole than ``beside`` can be reached, and none is commanded: `check_reach`
-refuses a path within the tolerance of that circle, and segments deviate by less.
+No point nearer to the pole than ``beside`` can be reached, and none is commanded:
+`check_pole_distance` refuses a path within the tolerance of that circle, and segments deviate by
+less.
 
 Where the path makes the angle p with e, a straight move of X and C has the curvature
 
@@ -51,7 +52,7 @@ def along_and_around(direction: complex, slide_direction: complex) -> tuple[floa
     return turned.real, turned.imag
 
 
-def check_reach(
+def check_pole_distance(
     contour: Contour, path: Sequence[PathElement], beside: float, tolerance: float
 ) -> None:
     """Refuse a path that comes nearer to the pole than the tool can."""

@@ -13,7 +13,7 @@ from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Plun
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, StepMaker
-from g12.polar.beside import along_and_around, check_reach, slide_at, split_beside
+from g12.polar.beside import along_and_around, check_pole_distance, slide_at, split_beside
 from g12.polar.face import FaceMove, FaceSwitch, in_face, positions_along
 from g12.polar.follow import FaceLimits
 from g12.polar.pole import POLE, through_pole
@@ -48,7 +48,7 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
     tolerance = settings.tolerance - moved
     settings = settings._replace(tolerance=tolerance)
     if settings.beside:
-        check_reach(contour, path, settings.beside, tolerance)
+        check_pole_distance(contour, path, settings.beside, tolerance)
     else:
         path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
     quick = partial(

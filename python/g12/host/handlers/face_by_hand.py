@@ -44,7 +44,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
     code = start.location.code
     if kinematics_switch.y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
-    interp.g12_found = kinematics_switch.modes_found(interp)
+    interp.g12_modes_before = kinematics_switch.modes_before_face(interp)
     blocks = kinematics_switch.to_face(
         interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
     )
@@ -64,7 +64,7 @@ def switch_off(interp: Interp) -> Iterator[int]:
     if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
-    restore_modes_found(interp)
+    restore_modes_before_face(interp)
     if by_hand or kinematics_switch.face_in_force():
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
@@ -93,7 +93,7 @@ def abort(interp: Interp) -> None:
         messages.message(
             f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed"
         )
-    restore_modes_found(interp)
+    restore_modes_before_face(interp)
     interp.toolchange_flag = True
 
 
@@ -116,9 +116,9 @@ def _unlock(interp: Interp) -> ByHand | None:
     return by_hand
 
 
-def restore_modes_found(interp: Interp) -> None:
+def restore_modes_before_face(interp: Interp) -> None:
     """Restore the modes before `switch_on` or a section."""
-    found, interp.g12_found = getattr(interp, "g12_found", None), None
+    found, interp.g12_modes_before = getattr(interp, "g12_modes_before", None), None
     if found:
         interp.execute(found)
 

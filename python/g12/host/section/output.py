@@ -259,9 +259,9 @@ class SectionOutput:
         """Switch to the face or back; the result of the program's last M66 is restored."""
         interp = self.interp
         interp.sequence_number = step.line
-        found = interp.params[kinematics_switch.INPUT_FOUND]
+        found = interp.params[kinematics_switch.INPUT_RESULT]
         if step.on:
-            interp.g12_found = kinematics_switch.modes_found(interp)
+            interp.g12_modes_before = kinematics_switch.modes_before_face(interp)
             most = step.share, step.override
             yield from kinematics_switch.to_face(
                 interp, self.machine_unit, kinematics_switch.FaceRequest.BY_PROGRAM, *most
@@ -269,16 +269,18 @@ class SectionOutput:
             interp.execute(kinematics_switch.ON_THE_FACE)
             self.path.renew()
         else:
-            interp.execute(interp.g12_found)
+            interp.execute(interp.g12_modes_before)
             yield from kinematics_switch.to_axes(interp)
-            interp.g12_found = None  # only now: an abort during the wait drops the block before it
+            interp.g12_modes_before = (
+                None  # only now: an abort during the wait drops the block before it
+            )
         if not kinematics_switch.has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(kinematics_switch.not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""
         if wrong:
             yield from kinematics_switch.to_axes(interp)
             raise BlockLocation(self.code, step.line).refuse(wrong)
-        interp.params[kinematics_switch.INPUT_FOUND] = found
+        interp.params[kinematics_switch.INPUT_RESULT] = found
         interp.current_x, interp.CC_current, interp.current_z = step.position
         interp.current_y = step.on * self.beside - kinematics_switch.y_offset(interp)
         if not interp.task:

@@ -127,7 +127,7 @@ class SectionReader:
         """Note the machine's position and modes from the interpreter's state."""
         interp = self.interp
         self._machine = interp.current_x, interp.current_z, interp.CC_current
-        self._modes_found = self.modes
+        self._modes_of_machine = self.modes
 
     def show_machine(self) -> None:
         """Set the interpreter's position to the machine's."""
@@ -137,7 +137,7 @@ class SectionReader:
     def restore(self) -> None:
         """Restore the interpreter's state as of the machine's last motion."""
         self.show_machine()
-        self.set_modes(self._modes_found)
+        self.set_modes(self._modes_of_machine)
 
     def deletes(self, line: TextLine) -> bool:
         """Return whether a line is skipped with block delete."""
