@@ -222,7 +222,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "M19 R1. P2", "M19 with R and P"),
         (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
         (HAAS, "G65 P5 X1", "X1 has no decimal point: write X1."),
-        (HAAS, "IF[1 EQ 1] WHILE[#1 LT 2]DO1", "behind IF […] only GOTO, #… = … and words"),
+        (HAAS, "IF[1 EQ 1] WHILE[#1 LT 2]DO1", "after IF […] only GOTO, #… = … and words"),
         (HAAS, "WHILE[1 EQ 1]", "WHILE […] needs DO"),
         (HAAS, "DO1", "DO without WHILE"),
         (HAAS, "END1", "END1 without WHILE"),

@@ -40,12 +40,12 @@ REQUIRED = "XYZRC"
 MODAL = "WF"
 INCREMENTAL = "XYZL"
 POSITIVE = "RKJPFV"
-CHOICES = {
+ALLOWED_VALUES = {
     "G": (PERIMETER_CYCLE, POCKET_CYCLE),
     "D": range(len(ROUGH_FINISH_ARCS)),
     "C": range(len(TOOL_SIDES[CLOCKWISE])),
 }
-UNIT_CODES = {"inch": "G20 ", "mm": "G21 ", None: ""}
+UNIT_PREFIXES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 
 
 def program_from_events(text: str, units: str | None = None) -> str:
@@ -56,7 +56,7 @@ def program_from_events(text: str, units: str | None = None) -> str:
     calls = list(calls_of_events(text))
     if not calls:
         raise Refusal("there is no event in the file")
-    return "\n".join([f"{UNIT_CODES[units]}G17 G40 G90 G94", *calls, "M2", ""])
+    return "\n".join([f"{UNIT_PREFIXES[units]}G17 G40 G90 G94", *calls, "M2", ""])
 
 
 def calls_of_events(text: str) -> Iterator[str]:
@@ -139,8 +139,8 @@ def broken_rule(letter: str, entry: WrittenEntry) -> str | None:
     written = f"{entry.letter}{number(float(entry.value))}"
     if entry.incremental and letter not in INCREMENTAL:
         return f"{entry.letter}/ cannot be incremental"
-    if letter in CHOICES and entry.value not in CHOICES[letter]:
-        return f"{written} must be one of {', '.join(map(str, CHOICES[letter]))}"
+    if letter in ALLOWED_VALUES and entry.value not in ALLOWED_VALUES[letter]:
+        return f"{written} must be one of {', '.join(map(str, ALLOWED_VALUES[letter]))}"
     if letter in POSITIVE and not float(entry.value) > 0:
         return f"{written} must be greater than 0"
     if letter == "L" and entry.value < 0:

@@ -31,7 +31,7 @@ Progress = Callable[[int], None]
 class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
-    ``falls_off`` are the blocks behind which a program is over without an end of its own,
+    ``falls_off`` are the blocks after which a program is over without an end of its own,
     ``has_end``: an end is reached, ``kinds`` how each program is called.
     """
 
@@ -55,7 +55,7 @@ class FollowedProgram:
         self._blocks_of: dict[int, list[tuple[int, ForeignBlock]]] = {}
         for at, number in enumerate(self._inside):
             self._blocks_of.setdefault(number, []).append((at, structure.blocks[at]))
-        self._behind: dict[int, set[int]] = {}
+        self._calls: dict[int, set[int]] = {}
         self._exits: dict[int, ModalState] = {}
         self._pending: list[tuple[int, ModalState]] = []
 
@@ -70,7 +70,7 @@ class FollowedProgram:
     @property
     def callers(self) -> dict[int, set[int]]:
         """The numbers of the programs that call each program."""
-        return {n: {self._inside[index] for index in behind} for n, behind in self._behind.items()}
+        return {n: {self._inside[index] for index in calls} for n, calls in self._calls.items()}
 
     def calls_of(self, numbers: Collection[int]) -> Iterator[tuple[int, int]]:
         """Yield each block between some programs that calls one of them, and the called number."""
@@ -81,7 +81,7 @@ class FollowedProgram:
 
     def callers_of(self, number: int) -> list[int]:
         """Return the blocks that call a program, in order."""
-        return sorted(self._behind.get(number, ()))
+        return sorted(self._calls.get(number, ()))
 
     def program_of(self, index: int) -> int:
         """Return the number of the program that a block is in."""
@@ -166,13 +166,13 @@ class FollowedProgram:
         )
 
     def ends_of_macros(self) -> dict[int, str]:
-        """Return the end that a macro needs behind its last block, if that is no return."""
+        """Return the end that a macro needs after its last block, if that is no return."""
         ends = {}
         for number in (n for n, kind in self.kinds.items() if kind == "macro"):
             last = self.structure.last_returns.get(number, -1)
             if self._parted(last):
-                behind = self.structure.end_of(self.structure.entries[number])
-                ends[behind - 1] = f"o<macro_{number}> endsub"
+                following = self.structure.end_of(self.structure.entries[number])
+                ends[following - 1] = f"o<macro_{number}> endsub"
         return ends
 
     def _leave(self, index: int, draft: Draft) -> None:
@@ -189,8 +189,8 @@ class FollowedProgram:
             self._go_on(index, draft.state)
 
     def _go_on(self, index: int, state: ModalState) -> None:
-        for behind, following in ways_from(self.structure, index):
-            self._arrive(behind, following, state)
+        for last, following in ways_from(self.structure, index):
+            self._arrive(last, following, state)
 
     def _arrive(self, index: int, following: int, state: ModalState) -> None:
         if following == index + 1 and self.structure.is_over(following):
@@ -208,7 +208,7 @@ class FollowedProgram:
             return
         if self.kinds.setdefault(call.number, call.kind) == call.kind:
             self.calls.setdefault(call.number, []).append(draft)
-        self._behind.setdefault(call.number, set()).add(index)
+        self._calls.setdefault(call.number, set()).add(index)
         self._pending.append((entry, draft.state))
         if call.number in self._exits:
             self._go_on(index, self._exits[call.number])
@@ -238,7 +238,7 @@ class FollowedProgram:
         state = merged(known, state) if known else state
         if state != known:
             self._exits[number] = state
-            for index in self._behind.get(number, ()):
+            for index in self._calls.get(number, ()):
                 self._go_on(index, state)
 
 
@@ -253,7 +253,7 @@ def _start_state(control: Control) -> ModalState:
     return ModalState(**known)
 
 
-DEEPEST = 8  # calls within calls, each of which can need a round
+DEEPEST_CALLS = 8  # calls within calls, each of which can need a round
 MOST_COPIES = 100
 MOST_BLOCKS = 200_000  # with the copies
 
@@ -270,7 +270,7 @@ def followed_program(
         return FollowedProgram(structure, control, machine_codes, progress).run()
 
     followed = follow()
-    for _ in range(DEEPEST):
+    for _ in range(DEEPEST_CALLS):
         if not _add_copies(followed):
             break
         find_ends(structure, control)
@@ -298,12 +298,12 @@ def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list
         for draft in followed.drafts
         if draft and draft.unsure
     ]
-    seen = {(MAIN, modes) for _, modes in pending}
+    visited = {(MAIN, modes) for _, modes in pending}
     while pending:
         number, modes = pending.pop()
-        if (number, modes) in seen:
+        if (number, modes) in visited:
             continue
-        seen.add((number, modes))
+        visited.add((number, modes))
         groups: dict[tuple, list[int]] = {}
         for index in followed.callers_of(number):
             values = tuple(getattr(followed.drafts[index].state, mode) for mode in modes)

@@ -41,7 +41,7 @@ class Jumps:
     problems: dict[int, str] = field(default_factory=dict)
     spans: list[tuple[int, int]] = field(default_factory=list)  # first and last divided block
     before: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
-    behind: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
+    after: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))
     at: dict[int, list[str]] = field(default_factory=lambda: defaultdict(list))  # of the jump
 
 
@@ -117,11 +117,11 @@ def _numbered(
     return found
 
 
-def _found(places: Sequence[int], index: int) -> int | None:
+def _found(numbered: Sequence[int], index: int) -> int | None:
     """Return where a jump arrives: controls look onwards first, then from the top."""
-    if not places:
+    if not numbered:
         return None
-    return places[bisect_left(places, index + 1) % len(places)]
+    return numbered[bisect_left(numbered, index + 1) % len(numbered)]
 
 
 def _part(jumps: Jumps, body: Sequence[tuple[int, tuple[int, int]]]) -> None:
@@ -143,7 +143,7 @@ def _part(jumps: Jumps, body: Sequence[tuple[int, tuple[int, int]]]) -> None:
     if cuts[-1] > last:
         jumps.before[cuts[-1]] += ends
     else:
-        jumps.behind[last] += [f"o<{name}_{len(cuts) - 1}> endif", *ends]
+        jumps.after[last] += [f"o<{name}_{len(cuts) - 1}> endif", *ends]
     for index, _ in body:
         part = parts[jumps.targets[index]]
         jumps.at[index] += [f"#<{name}>={part}", f"o<{name}> continue"]

@@ -8,7 +8,7 @@ from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS
 from g12.tools.translate.blocks.lexer import ForeignBlock
 
-REFUSED = "refuse: "
+REFUSE_PREFIX = "refuse: "
 HEADINGS = {
     "same": "as on LinuxCNC",
     "comment": "nothing to do, kept as comments",
@@ -35,8 +35,8 @@ def _head(control: Control) -> Iterator[str]:
 def _codes(meanings: Mapping[str, str]) -> Iterator[str]:
     for meaning in sorted(set(meanings.values()), key=_order):
         codes = " ".join(sorted((c for c in meanings if meanings[c] == meaning), key=_number))
-        if meaning.startswith(REFUSED):
-            yield f"refused {codes}: {meaning.removeprefix(REFUSED)}"
+        if meaning.startswith(REFUSE_PREFIX):
+            yield f"refused {codes}: {meaning.removeprefix(REFUSE_PREFIX)}"
         else:
             yield from _wrapped(f"{_heading(meaning)}:", codes.split())
 
@@ -50,7 +50,7 @@ def _heading(meaning: str) -> str:
 def _order(meaning: str) -> tuple[int, str]:
     kind = "comment" if meaning.startswith("comment") else meaning
     first = [*HEADINGS].index(kind) if kind in HEADINGS else len(HEADINGS)
-    return first + meaning.startswith(REFUSED), meaning
+    return first + meaning.startswith(REFUSE_PREFIX), meaning
 
 
 def _number(code: str) -> tuple[str, float, str]:

@@ -41,11 +41,11 @@ class WrittenOrder(NamedTuple):
 def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
     """Return the order of the ``count`` lines of a file."""
     parts = [*_file_parts(followed.structure, count), *_copied_parts(followed.structure)]
-    place = {number: at for at, part in enumerate(parts) for number in part.numbers}
+    part_of = {number: at for at, part in enumerate(parts) for number in part.numbers}
     below: dict[int, set[int]] = {at: set() for at in range(len(parts))}
     for number, callers in followed.callers.items():
         for caller in callers:
-            below[place[caller]].add(place[number])
+            below[part_of[caller]].add(part_of[number])
     done = _sorted_parts(below)
     unsorted = below.keys() - set(done)
     circular = frozenset(

@@ -13,13 +13,13 @@ from g12.tools.translate.order import WrittenRow
 LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
-OBEYED = re.compile(r"\((MSG|ABORT), ")
+ACTIVE_COMMENT = re.compile(r"\((MSG|ABORT), ")
 NUMBERED = re.compile("(N[0-9]+ )?")
-BLOCK_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments behind it
+LEADING_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments after it
 
 
 def lines_of(draft: Draft) -> list[str]:
-    """Return the lines of one block, with its comments behind the first."""
+    """Return the lines of one block, with its comments after the first."""
     own = draft.written()
     lines = [draft.head] if draft.head else []
     lines += [*draft.before, *([own] if own else []), *draft.after]
@@ -33,7 +33,7 @@ def lines_of(draft: Draft) -> list[str]:
 
 
 def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
-    """Return lines with comments behind the first; those without room get lines of their own."""
+    """Return lines with comments after the first; those without room get lines of their own."""
     whole = "".join(f"({comment})" for comment in comments)
     first = f"{lines[0]} {whole}".rstrip() if lines else whole
     if size(first) <= LONGEST_LINE - LONGEST_MARK:
@@ -54,7 +54,7 @@ def size(text: str) -> int:
 
 def _with_mark(text: str, line: int) -> str:
     """Add the file's line number; LinuxCNC obeys only the last comment of a block."""
-    if not OBEYED.search(text):
+    if not ACTIVE_COMMENT.search(text):
         return f"{text} (line {line})"
     number = NUMBERED.match(text)[0]
     return f"{number}(line {line}) {text[len(number) :]}"
@@ -77,11 +77,11 @@ def output_lines(
     start = " ".join(followed.control.start)
     ends = followed.ends_of_macros()
     in_place = True
-    for place, (line, indices) in enumerate(order, 1):
+    for number, (line, indices) in enumerate(order, 1):
         lines = _lines_of_row(rows[line - 1], indices, followed, ends)
-        if place == 1 and start:
+        if number == 1 and start:
             lines = _with_start_codes(start, lines)
-        in_place = in_place and place == line
+        in_place = in_place and number == line
         yield from lines[:in_place]
         yield from (_with_mark(text, line) for text in lines[in_place:])
 
@@ -100,7 +100,7 @@ def _lines_of_row(
             is_written = True
         heads = 1 if draft and draft.head else 0
         lines += [*own[:heads], *jumps.before.get(index, ()), *own[heads:]]
-        lines += jumps.behind.get(index, ())
+        lines += jumps.after.get(index, ())
         lines += [ends[index]] if index in ends else []
         if index in followed.falls_off:
             lines.append("M2")
@@ -118,7 +118,7 @@ def _unreached(block: ForeignBlock) -> list[str] | None:
 def _with_start_codes(start: str, lines: list[str]) -> list[str]:
     """Add the codes that hold at the start to the first line."""
     first = lines[0] if lines else ""
-    number = BLOCK_NUMBER.match(first)
+    number = LEADING_NUMBER.match(first)
     if number:
         return [f"{number[1]}{start} {first[number.end(1) :]}".rstrip(), *lines[1:]]
     return [start, *lines]

@@ -3,7 +3,7 @@
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.expressions import NUMBER
+from g12.tools.translate.blocks.expressions import UNSIGNED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.structure import Structure
 
@@ -19,7 +19,7 @@ def _assign(draft: Draft, structure: Structure) -> None:
 
 def _assignment_text(block: ForeignBlock) -> str:
     text = block.expression.text
-    return f"#{block.variable}={text if NUMBER.fullmatch(text) else f'[{text}]'}"
+    return f"#{block.variable}={text if UNSIGNED.fullmatch(text) else f'[{text}]'}"
 
 
 def _while_loop(draft: Draft, structure: Structure) -> None:

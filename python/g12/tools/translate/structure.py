@@ -12,20 +12,20 @@ from g12.tools.translate.jumps import OPENING, Jumps, find_jumps
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
-LOCAL = "local subprogram"
+LOCAL_SUBPROGRAM = "local subprogram"
 CALLS = frozenset(("subprogram", "macro call"))
 COPIES = 10_000_000  # the first copy of O100 is O10000100
 
 
 @dataclass
 class Structure:
-    """The blocks of a file up to its end, by index; the blocks of copies are behind its ``own``.
+    """The blocks of a file up to its end, by index; the blocks of copies are after its ``own``.
 
     A copy is a program that is called in different modes, once for each.
     """
 
     blocks: list[ForeignBlock]
-    tail: Sequence[ForeignBlock]  # the blocks behind the closing ``%``
+    tail: Sequence[ForeignBlock]  # the blocks after the closing ``%``
     main: int = 0  # the block that is reached first
     entries: dict[int, int] = field(default_factory=dict)  # first block of each other program
     starts: dict[int, int] = field(default_factory=dict)  # the numbers of programs, by block
@@ -66,13 +66,13 @@ class Structure:
         self.called_as.update(dict.fromkeys(calls, copy))
 
     def end_of(self, start: int) -> int:
-        """Return the index behind the last block of the program that begins at a block."""
+        """Return the index after the last block of the program that begins at a block."""
         end = min((index for index in self.starts if index > start), default=len(self.blocks))
         tape = end == self.own and self.blocks[end - 1].kind == "tape"
         return end - tape
 
     def is_over(self, index: int) -> bool:
-        """Whether a program is over before a block: behind its last one."""
+        """Whether a program is over before a block: after its last one."""
         return index >= len(self.blocks) or index in self.starts
 
     def name_of(self, number: int) -> str:
@@ -122,8 +122,11 @@ def _carried_on(starts: Mapping[int, int], count: int, value: int) -> list[int]:
 
 def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int, int]]:
     """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
-    returns, calls = _codes_meaning(control, "return"), _codes_meaning(control, *CALLS, LOCAL)
-    places = _numbers_of_returns(structure, returns)
+    returns, calls = (
+        _codes_meaning(control, "return"),
+        _codes_meaning(control, *CALLS, LOCAL_SUBPROGRAM),
+    )
+    targets = _numbers_of_returns(structure, returns)
     for index, block in enumerate(structure.blocks):
         if block.kind == "goto":
             yield index, int(block.label)
@@ -131,13 +134,13 @@ def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int,
             yield from ((index, number) for number in block.numbers("P"))
         elif block.has_code(calls):
             called = structure.called_as.get(index) or _called_by(block, control, structure.entries)
-            yield from ((index, number) for number in places.get(called, ()))
+            yield from ((index, number) for number in targets.get(called, ()))
 
 
 def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
     """Yield the ways on from a block that neither calls nor ends: the last block on it, the next.
 
-    A WHILE leads behind its END, too, and an END to where its WHILE leads: what is written before
+    A WHILE leads after its END, too, and an END to where its WHILE leads: what is written before
     a loop's head is run once. A condition leads to its end, too.
     """
     kind, partner = structure.blocks[index].kind, structure.partners.get(index)
@@ -157,20 +160,20 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
 
 def _numbers_of_returns(structure: Structure, returns: frozenset[str]) -> dict[int, set[int]]:
     """Return the N numbers to which each program returns by M99 P."""
-    places: dict[int, set[int]] = {}
+    targets: dict[int, set[int]] = {}
     for index, block in enumerate(structure.blocks):
         number = structure.programs[index]
         if number != MAIN and block.has_code(returns):
             named = block.numbers("P")
-            if places.setdefault(number, named) != named:
+            if targets.setdefault(number, named) != named:
                 structure.problems[index] = "M99 with and without P in one program, or two P"
-    return places
+    return targets
 
 
 def _called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
     """Return the program that a block calls, as far as its number is plain."""
     own = block.numbers("P")
-    if own and not block.has_code(_codes_meaning(control, LOCAL)):
+    if own and not block.has_code(_codes_meaning(control, LOCAL_SUBPROGRAM)):
         return called_program(min(own), control, numbers)[0]
     return LOCAL_BLOCKS + min(own or block.numbers("Q"), default=0)
 
@@ -230,8 +233,8 @@ def _called_and_ended(
 
 
 def _add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
-    """Note the blocks that M97 or M98 Q calls, each in the program that the call stands in."""
-    local, calls = _codes_meaning(control, LOCAL), _codes_meaning(control, "subprogram")
+    """Note the blocks that M97 or M98 Q calls, each in the program that the call is in."""
+    local, calls = _codes_meaning(control, LOCAL_SUBPROGRAM), _codes_meaning(control, "subprogram")
     starts = _carried_on({at: at for at in heads}, len(structure.blocks), -1)
     numbered: dict[tuple[int, int], int] = {}
     called: set[tuple[int, int]] = set()
@@ -242,8 +245,8 @@ def _add_local_programs(structure: Structure, heads: dict[int, int], control: Co
             called |= {(head, number) for number in block.numbers("P")}
         elif block.has_code(calls):
             called |= {(head, number) for number in block.numbers("Q")}
-    for place in sorted(called & numbered.keys()):
-        structure.add_entry(LOCAL_BLOCKS + place[1], numbered[place])
+    for local_call in sorted(called & numbered.keys()):
+        structure.add_entry(LOCAL_BLOCKS + local_call[1], numbered[local_call])
 
 
 def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:

@@ -16,14 +16,14 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import partial
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.expressions import CLOCK, LOCAL, SHARED
+from g12.tools.translate.blocks.expressions import CLOCK, LOCAL_VARIABLES, SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 from g12.tools.translate.structure import MAIN, ways_from
 
-LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
+ARGUMENT_LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
 
 def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
@@ -35,9 +35,9 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     for index, block in enumerate(followed.structure.blocks):
         number = followed.program_of(index)
         if index in given:
-            for variable in sorted(block.read.intersection(LOCAL) - given[index]):
+            for variable in sorted(block.read.intersection(LOCAL_VARIABLES) - given[index]):
                 yield block.line, _unset_sentence(number, variable)
-            for variable in sorted(block.compared - LETTERS.keys()):
+            for variable in sorted(block.compared - ARGUMENT_LETTERS.keys()):
                 yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
         elif number not in macros and followed.drafts[index] and block.compared:
             yield block.line, "#0, the empty variable, is translated in a program of G65 only"
@@ -71,7 +71,11 @@ def _reads_never_set(
         block = followed.structure.blocks[index]
         for word in block.words:
             number = min(word.read, default=0)
-            if number in LOCAL and number not in values and word.value.lstrip("-") == f"#{number}":
+            if (
+                number in LOCAL_VARIABLES
+                and number not in values
+                and word.value.lstrip("-") == f"#{number}"
+            ):
                 yield block.line, f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
 
 
@@ -121,13 +125,13 @@ def _given_by_all(calls: list[Draft]) -> frozenset[int]:
 
 
 def _set_by(block: ForeignBlock) -> frozenset[int]:
-    """Return the variables that surely have a value behind a block because of it."""
+    """Return the variables that surely have a value after a block because of it."""
     sets = block.kind == "assign" and not block.skipped
     return frozenset((block.variable,)) if sets else frozenset()
 
 
 def _unset_sentence(number: int, variable: int) -> str:
-    letter = LETTERS.get(variable)
+    letter = ARGUMENT_LETTERS.get(variable)
     name = f"#{variable} ({letter} of the call)" if letter else f"#{variable}"
     return f"O{number} reads {name}, which not every G65 P{number} gives: it would be 0 on LinuxCNC"
 
@@ -144,7 +148,7 @@ def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
 
 def _used_by(block: ForeignBlock) -> Iterable[int]:
     """Return the local variables that a block reads, compares with #0 or sets."""
-    return {*block.read.intersection(LOCAL), *block.compared, block.variable}
+    return {*block.read.intersection(LOCAL_VARIABLES), *block.compared, block.variable}
 
 
 def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:

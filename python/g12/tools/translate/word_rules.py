@@ -7,7 +7,7 @@ meaning runs where a code of the block has that meaning, and takes the code, too
 
 from collections.abc import Callable
 
-from g12.tools.translate.blocks import places
+from g12.tools.translate.blocks import positions
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.milling import drilling_cycles, rigid_tapping, rotation
@@ -52,7 +52,7 @@ WORD_RULES = (
     modes.zero_of_missing_axis,
     of_meaning("dwell", decimals.dwell),
     decimals.whole_units,
-    places.follow_places,
+    positions.follow_positions,
     tools.tool_and_offsets,
     spindle.speed_limit,
     spindle.live_tool,

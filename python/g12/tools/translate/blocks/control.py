@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A control as data: its TOML file, checked, over that of the control that it is based on.
 
-Every key is known, every value legal, no code has two meanings: whatever else stands in a file is
+Every key is known, every value legal, no code has two meanings: whatever else is in a file is
 refused with its line. What a code does is one of
 
 - ``same``: LinuxCNC's own code of that number does the same
@@ -24,8 +24,8 @@ from typing import Any
 
 from g12.tools.translate.blocks.expressions import CLOCK, OWN
 
-CONTROLS = Path(__file__).parents[1] / "controls"
-HOLES = (  # cycles of a lathe
+CONTROL_FOLDER = Path(__file__).parents[1] / "controls"
+HOLE_MEANINGS = (  # cycles of a lathe
     "hole", "bore", "face tap right", "face tap left",
     *(f"{where} {what}" for where in ("face", "side")
       for what in ("hole", "bore", "tap", "live tap right", "live tap left")),
@@ -38,7 +38,7 @@ MEANINGS = {
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
         "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
-        *HOLES,
+        *HOLE_MEANINGS,
         "radius or diameter",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
@@ -165,12 +165,12 @@ class Control:
         found: dict[int, str] = {}
         for key, value in self.tables.get("variables", {}).items():
             first, _, last = key.partition("-")
-            for place, number in enumerate(range(int(first), int(last or first) + 1)):
+            for offset, number in enumerate(range(int(first), int(last or first) + 1)):
                 if value == "clock":
                     found[number] = f"#{OWN}{CLOCK}"
                 elif value != "own":
                     text = str(value)
-                    named = f"#{OWN}{int(text[1:]) + place}" if text.startswith("#") else text
+                    named = f"#{OWN}{int(text[1:]) + offset}" if text.startswith("#") else text
                     found[number] = named
         return found
 
@@ -181,7 +181,7 @@ class Control:
 
 def shipped_controls() -> list[str]:
     """Return the names of the controls that come with the package."""
-    return sorted(path.stem for path in CONTROLS.glob("*.toml"))
+    return sorted(path.stem for path in CONTROL_FOLDER.glob("*.toml"))
 
 
 def read_control(name: str) -> Control:
@@ -215,7 +215,7 @@ def _path_of(name: str) -> Path:
     if name not in shipped_controls():
         known = ", ".join(shipped_controls())
         raise ControlError(f"no control {name}: there are {known}, or give a .toml file")
-    return CONTROLS / f"{name}.toml"
+    return CONTROL_FOLDER / f"{name}.toml"
 
 
 def _with_base(path: Path, above: tuple[Path, ...]) -> dict:
@@ -354,8 +354,8 @@ class _Checked:
         return value
 
     def _refuse(self, key: str, rule: str) -> None:
-        """Raise the error of a key, with the line that it stands in."""
+        """Raise the error of a key, with the line that it is in."""
         pattern = re.compile(rf'\s*\[?"?{re.escape(key)}"?(\.|\s*(=|\]|$))')
         rows = [number for number, row in enumerate(self._rows, 1) if pattern.match(row)]
-        place = f":{rows[0]}" if rows else ""
-        raise ControlError(f"{self._path}{place}: {rule}")
+        location = f":{rows[0]}" if rows else ""
+        raise ControlError(f"{self._path}{location}: {rule}")

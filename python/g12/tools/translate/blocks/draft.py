@@ -46,7 +46,7 @@ class Draft:
     head: str = ""  # the line that begins a program
     before: list[str] = field(default_factory=list)  # further lines
     after: list[str] = field(default_factory=list)
-    around: tuple[str, str] | None = None  # lines before and behind all others
+    around: tuple[str, str] | None = None  # lines before and after all others
     meanings: dict[str, ForeignWord] = field(default_factory=dict)  # codes that rules still own
     call: SubprogramCall | None = None
     returns: bool = False  # a subprogram ends here, by ``return_text``
@@ -65,7 +65,7 @@ class Draft:
         self.comments: list[str] = list(self.block.comments)
 
     def change(self, **modes: Any) -> None:
-        """Set modes for the blocks behind this one."""
+        """Set modes for the blocks after this one."""
         self.state = self.state._replace(**modes)
 
     def codes(self) -> list[str]:
@@ -105,7 +105,7 @@ class Draft:
         self.words = [word for word in self.words if word not in words]
 
     def write(self, lines: Iterable[str]) -> None:
-        """Write lines behind the block's words; the first is its own where no words are left."""
+        """Write lines after the block's words; the first is its own where no words are left."""
         lines = [*lines]
         if lines and self.is_empty():
             self.words.append(line_as_word(lines.pop(0)))
@@ -128,7 +128,7 @@ class Draft:
         return [word.code for word in taken]
 
     def replace(self, old: ForeignWord, *new: ForeignWord) -> None:
-        """Put words in the place of one."""
+        """Put words in place of one."""
         at = next(index for index, word in enumerate(self.words) if word is old)
         self.words[at : at + 1] = new
 
@@ -173,5 +173,5 @@ def word_of(text: str) -> ForeignWord:
 
 
 def line_as_word(text: str) -> ForeignWord:
-    """Return a whole line of LinuxCNC's in the place of a word."""
+    """Return a whole line of LinuxCNC's in place of a word."""
     return ForeignWord(text[0], text[1:], "text")

@@ -14,14 +14,14 @@ from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 
-NUMBER = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 OPERATOR = re.compile(r"EQ|NE|GT|GE|LT|LE|AND|XOR|OR|MOD|[-+*/]")
 FUNCTION = re.compile(r"(SIN|COS|TAN|ASIN|ACOS|ATAN|SQRT|SQR|ABS|ROUND|FIX|FUP|LN|EXP)(?=\[)")
 LONGER_NAMES = {"SQR": "SQRT"}
 COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
 JOINING = frozenset(("AND", "OR", "XOR"))
-DEEPEST = 8  # brackets within brackets
-LOCAL = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
+DEEPEST_BRACKETS = 8  # brackets within brackets
+LOCAL_VARIABLES = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
 SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
 EMPTY = "-9999999"  # passed to a macro for an empty variable that it compares with #0
 EMPTY_VARIABLE = re.compile(r"#0+(?![0-9.])")
@@ -32,7 +32,7 @@ CLOCK = 0  # the number that a variable of the control's clock has
 OTHER_MEANING = (
     "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
 )
-POSITION = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
+POSITION_VARIABLES = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
 
 
 class Expression(NamedTuple):
@@ -41,14 +41,14 @@ class Expression(NamedTuple):
     text: str
     read: frozenset[int]  # variables in it
     is_condition: bool
-    end: int  # index behind it in the text
+    end: int  # index after it in the text
     compared: frozenset[int] = frozenset()  # local variables that it compares with #0
     set_if_true: frozenset[int] = frozenset()  # those of them that then have a value
     set_if_false: frozenset[int] = frozenset()
 
 
 def value_from(text: str, start: int) -> Expression:
-    """Return the value that stands at ``start``: a number, a variable or brackets, with a sign."""
+    """Return the value that is at ``start``: a number, a variable or brackets, with a sign."""
     return _operand(text, start, 0)
 
 
@@ -60,7 +60,7 @@ def bracketed_from(text: str, start: int) -> Expression:
 
 
 def whole_expression(text: str) -> Expression:
-    """Return what stands on the right of ``=``, which needs no brackets there."""
+    """Return what is on the right of ``=``, which needs no brackets there."""
     found = expression_from(text, 0)
     if found.end < len(text):
         raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
@@ -84,7 +84,7 @@ def _operand(text: str, start: int, depth: int) -> Expression:
 
 
 def _unsigned(text: str, at: int, depth: int) -> Expression:
-    number = NUMBER.match(text, at)
+    number = UNSIGNED.match(text, at)
     if number:
         return Expression(number[0], frozenset(), False, number.end())
     if text.startswith("#", at):
@@ -100,7 +100,7 @@ def _unsigned(text: str, at: int, depth: int) -> Expression:
 def _variable(text: str, at: int, depth: int) -> Expression:
     if text.startswith("[", at + 1):
         index = _brackets(text, at + 1, depth)
-        for number in NUMBER.findall(index.text):
+        for number in UNSIGNED.findall(index.text):
             if float(number) > MOST_PLACES and not _is_kept(float(number)):
                 rule = f"{number} {OTHER_MEANING}; write the value in its place"
                 raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
@@ -119,8 +119,8 @@ def variable_number(digits: str) -> int:
     number = int(digits[:9])
     if _is_kept(number):
         return number
-    if number in POSITION:
-        return POSITION[number]
+    if number in POSITION_VARIABLES:
+        return POSITION_VARIABLES[number]
     if number == 0:
         raise NotTranslated(
             "#0, the empty variable, is translated in #… EQ #0 and #… NE #0 only, for #1 to #33"
@@ -131,12 +131,12 @@ def variable_number(digits: str) -> int:
 
 def _is_kept(number: float) -> bool:
     """Whether a variable has its number on LinuxCNC, too, and no other meaning there."""
-    return any(number in numbers for numbers in (LOCAL, *COMMON))
+    return any(number in numbers for numbers in (LOCAL_VARIABLES, *COMMON))
 
 
 def _brackets(text: str, start: int, depth: int) -> Expression:
-    if depth >= DEEPEST:
-        raise NotTranslated(f"more than {DEEPEST} brackets within brackets")
+    if depth >= DEEPEST_BRACKETS:
+        raise NotTranslated(f"more than {DEEPEST_BRACKETS} brackets within brackets")
     inner = _chain(text, start + 1, depth + 1)
     if text[inner.end : inner.end + 1] != "]":
         raise NotTranslated(f"] is missing before {excerpt(text[inner.end :]) or 'the end'}")
@@ -182,7 +182,7 @@ def _empty_question(first: Expression, text: str) -> Expression | None:
     """Return the question whether a local variable is empty, None if it is no such question."""
     operator = re.compile("EQ|NE").match(text, first.end)
     empty = operator and EMPTY_VARIABLE.match(text, operator.end())
-    if not empty or first.text not in {f"#{n}" for n in first.read.intersection(LOCAL)}:
+    if not empty or first.text not in {f"#{n}" for n in first.read.intersection(LOCAL_VARIABLES)}:
         return None
     variable, is_equal = first.read, operator[0] == "EQ"
     return Expression(

@@ -42,17 +42,19 @@ CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1
 NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
 ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
 VARIABLE = re.compile("#([0-9]{1,9})")
-STOPS = ("3000", "3006")  # an alarm, a stop with a message
-OBEYED = re.compile(r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I)
+STOP_MACROS = ("3000", "3006")  # an alarm, a stop with a message
+OBEYED_COMMENT = re.compile(
+    r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I
+)
 BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
 MINUS = "\N{MINUS SIGN}"
 EMPTY_CHARACTERS = "\ufeff\u200b\0"
-LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+DIGITS_AND_LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
-PLANE_CODES = frozenset(("G17", "G18", "G19"))
+ALL_PLANES = frozenset(("G17", "G18", "G19"))
 
 
-REMARKS = "if what stands behind ; is a remark there, say remarks = true in a control of your own"
+REMARKS = "if what is after ; is a remark there, say remarks = true in a control of your own"
 
 
 @lru_cache(maxsize=1024)
@@ -119,7 +121,7 @@ class ForeignBlock(NamedTuple):
     expression: Expression | None = None  # the condition, or the value of ``assign``
     variable: int = 0  # that ``assign`` sets
     label: str = ""  # the number of DO, END and GOTO
-    ruled: tuple[ForeignBlock, ...] = ()  # after a condition, until `blocks_of` puts them behind it
+    ruled: tuple[ForeignBlock, ...] = ()  # after a condition, until `blocks_of` puts them after it
     problem: str | None = None  # why it could not be read
 
     @property
@@ -144,7 +146,7 @@ class ForeignBlock(NamedTuple):
         return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in self.words)
 
     def numbers(self, letter: str) -> set[int]:
-        """Return the whole numbers behind a letter."""
+        """Return the whole numbers after a letter."""
         return {int(w.value) for w in self.words if w.letter == letter and w.value.isdigit()}
 
 
@@ -166,7 +168,7 @@ def blocks_of(
 ) -> Iterator[ForeignBlock]:
     """Yield the blocks of one line, at least one.
 
-    With ``remarks`` what stands behind ``;`` is a remark, else it is the next block. ``variables``
+    With ``remarks`` what is after ``;`` is a remark, else it is the next block. ``variables``
     has what is written for variables of the control's own.
     """
     comments: tuple[str, ...] = ()
@@ -202,9 +204,9 @@ def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, .
         code, comments = _split_comments(text)
     else:
         code, comments = text, []
-    code, *behind = code.split(";")
-    blocks = [] if remarks else [part for part in behind if MAYBE_WORDS.match(part)]
-    comments += [part.strip() for part in behind if part.strip() and part not in blocks]
+    code, *rest = code.split(";")
+    blocks = [] if remarks else [part for part in rest if MAYBE_WORDS.match(part)]
+    comments += [part.strip() for part in rest if part.strip() and part not in blocks]
     code = ";".join([code, *blocks])
     code = (
         "".join(code.upper().split())
@@ -241,7 +243,7 @@ def printable(comment: str) -> str:
     comment = unicodedata.normalize("NFC", comment).encode("utf-8", "replace").decode("utf-8")
     comment = comment.replace("(", "[").replace(")", "]").replace(";", ",")
     comment = "".join(c if c.isprintable() else " " for c in comment)
-    return f"- {comment.strip()}" if OBEYED.match(comment) else comment
+    return f"- {comment.strip()}" if OBEYED_COMMENT.match(comment) else comment
 
 
 def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
@@ -292,7 +294,7 @@ def _statement(line: int, text: str) -> ForeignBlock:
         return _parsed(line, rest[1:])._replace(skipped=True)
     statement = STATEMENT.match(rest)
     if statement:
-        block = READERS[statement[0]](line, rest[statement.end() :])
+        block = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
     elif NAMED_PROGRAM.match(rest):
         word = ForeignWord("O", program_number(rest[1:]))
         block = ForeignBlock(line, words=(word,), comments=(rest,))
@@ -305,7 +307,7 @@ def _statement(line: int, text: str) -> ForeignBlock:
 
 def _assignment(line: int, text: str) -> ForeignBlock:
     match = ASSIGNMENT.match(text)
-    if match[1] in STOPS:
+    if match[1] in STOP_MACROS:
         return ForeignBlock(line, "stop", label=match[1])
     variable = variable_number(match[1])
     return ForeignBlock(
@@ -323,9 +325,9 @@ def _if(line: int, text: str) -> ForeignBlock:
 
 
 def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
-    """Yield the blocks behind a condition: an assignment, words, or both."""
+    """Yield the blocks after a condition: an assignment, words, or both."""
     match = ASSIGNMENT.match(text)
-    if match and match[1] not in STOPS:
+    if match and match[1] not in STOP_MACROS:
         value = expression_from(text, match.end())
         variable = variable_number(match[1])
         yield ForeignBlock(line, "assign", variable=variable, expression=value)
@@ -333,7 +335,7 @@ def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     if text:
         block = _parsed(line, text)
         if block.kind not in ("words", "stop") or block.skipped:
-            raise NotTranslated("behind IF […] only GOTO, #… = … and words are translated")
+            raise NotTranslated("after IF […] only GOTO, #… = … and words are translated")
         yield block
 
 
@@ -341,7 +343,7 @@ def _while(line: int, text: str) -> ForeignBlock:
     condition = bracketed_from(text, 0)
     rest = re.fullmatch(r"DO([0-9]+)", text[condition.end :])
     if not rest:
-        raise NotTranslated("WHILE […] needs DO and a number behind it")
+        raise NotTranslated("WHILE […] needs DO and a number after it")
     return ForeignBlock(line, "while", expression=condition, label=rest[1])
 
 
@@ -385,12 +387,12 @@ def program_name(number: int) -> str:
     """Return a program's number as a sentence says it, with the name that it may stand for."""
     digits, rest = "", number - NAMED_PROGRAMS
     while rest > 0:
-        digits, rest = LETTERS[rest % 36] + digits, rest // 36
+        digits, rest = DIGITS_AND_LETTERS[rest % 36] + digits, rest // 36
     named = NAMED_PROGRAM.match(f"O{digits}")
     return f"O{number} (O{digits})" if named else f"O{number}"
 
 
-READERS = {
+STATEMENT_READERS = {
     "IF": _if,
     "WHILE": _while,
     "DO": _do,
@@ -448,7 +450,7 @@ def _plain_word(pair: tuple[str, str]) -> ForeignWord:
 
 def _check_bare(words: list[ForeignWord]) -> None:
     """Refuse a letter without a value, but for the axes of a plane."""
-    plane = any(w.letter == "G" and w.kind == "number" and w.code in PLANE_CODES for w in words)
+    plane = any(w.letter == "G" and w.kind == "number" and w.code in ALL_PLANES for w in words)
     for word in words:
         if word.kind == "bare" and not (plane and word.letter in "XYZUVWCH"):
             raise NotTranslated(f"{word.letter} has no value")

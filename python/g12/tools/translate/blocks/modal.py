@@ -2,7 +2,7 @@
 """The modal state that a block is reached in: the foreign control's, and LinuxCNC's where apart.
 
 A line can be reached by several ways (a subprogram by its calls, a loop by its end, the block
-behind a skipped one). Where the ways differ in a mode, that mode is UNSURE, and a rule that needs
+after a skipped one). Where the ways differ in a mode, that mode is UNSURE, and a rule that needs
 it refuses the block.
 """
 
@@ -78,7 +78,7 @@ class ModalState(NamedTuple):
     tap_top: float | str = UNKNOWN  # the Z level to which it returns
     sizes: tuple = ()  # diameters that G10 L12 has set, by tool
     corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
-    at_x: float | str = UNKNOWN  # the program's point (`places`)
+    at_x: float | str = UNKNOWN  # the program's point (`positions`)
     at_y: float | str = UNKNOWN
     at_z: float | str = UNKNOWN
     at_a: float | str = UNKNOWN

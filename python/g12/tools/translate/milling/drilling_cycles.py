@@ -22,7 +22,7 @@ from g12.tools.translate.blocks.draft import Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.blocks.positions import known_position, value_text
 from g12.tools.translate.rules.decimals import time_in_seconds
 
 KEPT = "ZRQP"
@@ -104,7 +104,7 @@ def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
 
 
 def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
-    """Write the places of holes under G91 as absolute ones: the levels were given under G90."""
+    """Write the positions of holes under G91 as absolute ones: the levels were given under G90."""
     if under != "G90" or given.keys() & {"Z", "R"}:
         raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
     for word in draft.axis_words():
@@ -199,14 +199,14 @@ PATTERN_WORDS = {"circle of holes": "IJL", "arc of holes": "IJKL", "row of holes
 
 
 def hole_pattern(draft: Draft) -> None:
-    """Write the places of a pattern; the cycle's own rule completes the first of them."""
+    """Write the positions of a pattern; the cycle's own rule completes the first of them."""
     meaning = next((name for name in PATTERN_WORDS if name in draft.meanings), "")
     if not meaning:
         return
     code = draft.meanings.pop(meaning).code
     if not draft.state.cycle and "drilling cycle" not in draft.meanings:
         raise NotTranslated(f"{code} needs a drilling cycle before it, as G81 Z R F L0")
-    x, y = known_place(draft.state, "X"), known_place(draft.state, "Y")
+    x, y = known_position(draft.state, "X"), known_position(draft.state, "Y")
     if x is None or y is None or draft.state.distance != "G90":
         raise NotTranslated(
             f"{code} is laid about where the tool stands, which is not known here: write X and Y "

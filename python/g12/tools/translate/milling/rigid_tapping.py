@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""M29 and G84 or G74 behind it: rigid tapping as G33.1, which follows the spindle.
+"""M29 and G84 or G74 after it: rigid tapping as G33.1, which follows the spindle.
 
 LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
 
@@ -11,9 +11,9 @@ LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import value_text
+from g12.tools.translate.blocks.positions import value_text
 
-SPINDLE = {"G84": "M3", "G74": "M4"}
+SPINDLE_OF_TAP = {"G84": "M3", "G74": "M4"}
 
 
 def rigid_tap(draft: Draft) -> None:
@@ -35,7 +35,7 @@ def tap(draft: Draft) -> None:
     """Write a block of G84 or G74, or one that repeats it."""
     code = draft.meanings.get("drilling cycle")
     name = code.code if code else draft.state.cycle
-    if name not in SPINDLE:
+    if name not in SPINDLE_OF_TAP:
         return
     speed = draft.sure("rigid", f"{name} may be rigid")
     if draft.state.distance != "G90" or draft.letters() & {"L", "K"}:
@@ -45,7 +45,7 @@ def tap(draft: Draft) -> None:
         raise NotTranslated(f"rigid tapping by {name} needs Z and R")
     if code:
         draft.meanings.pop("drilling cycle")
-        draft.before.append(f"{SPINDLE[name]} S{speed}")
+        draft.before.append(f"{SPINDLE_OF_TAP[name]} S{speed}")
         draft.change(tap_top=draft.start.at_z, cycle=name)
     if code or draft.letters() & set("XYZR"):
         _write_hole(draft, values, _pitch_by_speed(draft, speed))
@@ -60,12 +60,12 @@ def _pitch_by_speed(draft: Draft, speed: str) -> str:
 
 
 def _write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
-    place = [word.text for word in draft.words if word.letter in "XY"]
+    position = [word.text for word in draft.words if word.letter in "XY"]
     dwell = draft.take("P")
     draft.comments += [f"{dwell.text}: no dwell in a rigid tap"] if dwell else []
     draft.take_codes(MOVES)
     draft.words = [word for word in draft.words if word.letter not in "XYZR"]
-    lines = [" ".join(["G0", *place])] if place else []
+    lines = [" ".join(["G0", *position])] if position else []
     lines += [f"G0 Z{values['R']}", f"G33.1 Z{values['Z']} K{pitch}"]
     if draft.state.retract != "G99":
         top = draft.state.tap_top

@@ -10,10 +10,10 @@ the centre, g the local offset and R the turn, the origin goes on by (1 - R)(c +
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, position
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.expressions import NUMBER
+from g12.tools.translate.blocks.expressions import UNSIGNED
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import LOST
+from g12.tools.translate.blocks.positions import LOST
 from g12.tools.translate.rules.offsets import (
     G54_PARAMETER,
     OWN_SYSTEMS,
@@ -60,7 +60,7 @@ def _follow_local_offset(draft: Draft) -> None:
 def _constant_of(word: ForeignWord) -> float | str:
     """Return the value of a word, UNSURE where only the machine knows it."""
     value = word.value.strip("[]")
-    return float(value) if NUMBER.fullmatch(value.removeprefix("-")) else UNSURE
+    return float(value) if UNSIGNED.fullmatch(value.removeprefix("-")) else UNSURE
 
 
 def rotation(draft: Draft, word: ForeignWord) -> None:

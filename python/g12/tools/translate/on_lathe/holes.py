@@ -17,7 +17,7 @@ from g12.tools.translate.on_lathe.sections import milled_surface
 from g12.tools.translate.on_lathe.surfaces import DrilledHole, is_plain_number, times
 
 DRILLED = frozenset(("G73", "G81", "G82", "G83"))
-LETTERS = "XYZRQPF"
+HOLE_LETTERS = "XYZRQPF"
 
 
 def whole_cycle(draft: Draft) -> None:
@@ -35,13 +35,13 @@ def hole_call(draft: Draft) -> None:
         return
     if cycle not in DRILLED:
         raise NotTranslated(f"{cycle}: on a lathe G73 and G81 to G83 are translated")
-    words = {letter: draft.take(letter) for letter in LETTERS}
+    words = {letter: draft.take(letter) for letter in HOLE_LETTERS}
     given = {letter: word.value for letter, word in words.items() if word}
     if "L" in draft.letters():
         raise NotTranslated(f"{cycle} with L: write each hole with its X and Y")
     draft.take_codes({cycle, "G90", "G94"})
-    behind, draft.after = draft.after, []
-    draft.write([milled_surface(draft).call(draft, _hole_from_cycle(draft, cycle, given)), *behind])
+    after, draft.after = draft.after, []
+    draft.write([milled_surface(draft).call(draft, _hole_from_cycle(draft, cycle, given)), *after])
     level = start_height(draft)
     at_z = UNKNOWN if level is None else level
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=at_z)

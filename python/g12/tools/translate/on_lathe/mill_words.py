@@ -10,10 +10,10 @@ from typing import Any
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, ModalState
-from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.blocks.positions import known_position, value_text
 
 SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
-PLANES = frozenset(("G18", "G19"))
+OTHER_PLANES = frozenset(("G18", "G19"))
 NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
 OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
 
@@ -29,8 +29,8 @@ def refuse_foreign(draft: Draft) -> None:
     for word in draft.words:
         if word.letter in "ABC" and not draft.call:
             raise NotTranslated(f"{word.text}: a program for {draft.control.name} has X, Y and Z")
-    if codes & PLANES:
-        code = min(codes & PLANES)
+    if codes & OTHER_PLANES:
+        code = min(codes & OTHER_PLANES)
         raise NotTranslated(f"{code}: arcs lie in X and Y here (G17): no vertical leads in CAM")
     for code in codes & OTHER_FEEDS.keys():
         raise NotTranslated(f"{code}, {OTHER_FEEDS[code]}: write G94 and F per minute")
@@ -57,20 +57,20 @@ def waiting_point(draft: Draft) -> dict[str, str]:
 def point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:
     """Return where the program is along X or Y; ``why`` is said if that is not known."""
     waiting = waiting_point(draft).get(axis)
-    place = known_place(state, axis)
-    if waiting is None and place is None:
+    position = known_position(state, axis)
+    if waiting is None and position is None:
         raise NotTranslated(why)
-    return waiting or value_text(place)
+    return waiting or value_text(position)
 
 
 def start_height(draft: Draft) -> float | None:
-    """Return where Z stands before the block, None if that is not known."""
-    return known_place(draft.start, "Z")
+    """Return where Z is before the block, None if that is not known."""
+    return known_position(draft.start, "Z")
 
 
 def _end_height(draft: Draft) -> float | None:
     if draft.word("Z"):
-        return known_place(draft.state, "Z")
+        return known_position(draft.state, "Z")
     return start_height(draft)
 
 

@@ -11,7 +11,7 @@
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import known_place
+from g12.tools.translate.blocks.positions import known_position
 from g12.tools.translate.on_lathe.mill_words import (
     check_rapid,
     is_on_lathe,
@@ -135,7 +135,7 @@ def _begin_section(draft: Draft) -> None:
     lines = milled_surface(draft).begin(draft, (x, y), feed)
     absolute = draft.start.distance == "G90"
     draft.before += lines if absolute else [f"G90 {lines[0]}", *lines[1:], "G91"]
-    at_y = known_place(draft.state, "Y")
+    at_y = known_position(draft.state, "Y")
     draft.change(
         polar=milled_surface(draft).section,
         section=_program_begun_in(draft),
@@ -151,7 +151,7 @@ def _end_section(draft: Draft) -> None:
         raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
     draft.before += milled_surface(draft).end(draft)
     own = drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
-    y = known_place(draft.state, "Y" if own else milled_surface(draft).y_in)
+    y = known_position(draft.state, "Y" if own else milled_surface(draft).y_in)
     draft.change(
         polar="off",
         section=UNKNOWN,

@@ -16,7 +16,7 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSaid
 from g12.tools.translate.blocks.lexer import ForeignWord
 
-NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+SIGNED_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 
 
 class DrilledHole(NamedTuple):
@@ -35,7 +35,7 @@ class MilledSurface(NamedTuple):
     """Where a mill's program goes on a lathe.
 
     ``home`` is the axis along which the tool leaves the part, ``section`` the state's name for a
-    section, ``y_in`` the axis whose place is followed for Y in it. ``inside`` and ``outside``
+    section, ``y_in`` the axis whose position is followed for Y in it. ``inside`` and ``outside``
     rewrite the words of a block, ``begin`` and ``end`` return the lines of a section's ends,
     ``call`` that of a hole.
     """
@@ -52,7 +52,7 @@ class MilledSurface(NamedTuple):
 
 def is_plain_number(value: str) -> bool:
     """Whether a value is a plain number."""
-    return bool(NUMBER.fullmatch(value))
+    return bool(SIGNED_NUMBER.fullmatch(value))
 
 
 def times(value: str, factor: float, plus: float = 0.0) -> str:
@@ -64,7 +64,7 @@ def times(value: str, factor: float, plus: float = 0.0) -> str:
     return f"[{value}] * {factor:.10g}{added}"
 
 
-LEAST_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
+LEAST_SURFACE_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
 
 
 def _without_y(draft: Draft) -> None:
@@ -78,7 +78,7 @@ def _same_words(draft: Draft) -> None:
 
 def _begin_on_face(draft: Draft, point: tuple[str, str], feed: float) -> list[str]:
     x, y = point
-    least = LEAST_RADIUS[draft.state.units]
+    least = LEAST_SURFACE_RADIUS[draft.state.units]
     start = f"[2 * SQRT[[{x}] ** 2 + [{y}] ** 2 + {least:g} ** 2]]"
     if is_plain_number(x) and is_plain_number(y):
         start = f"{2 * max(abs(complex(float(x), float(y))), least):.4f}"
@@ -170,8 +170,8 @@ def _side_hole(draft: Draft, hole: DrilledHole) -> str:
         angle = times(str(fmod(float(angle), TURN)), 1.0)
     surface = f"{diameter(draft):g}"
     entries = (hole.depth, hole.retract, hole.feed, hole.peck, hole.dwell)
-    place = f"[1] [{hole.x}] [{angle}] [-9999] [{surface}]"
-    return f"o<side_holes> call {place} {' '.join(f'[{entry}]' for entry in entries)} [0]"
+    position = f"[1] [{hole.x}] [{angle}] [-9999] [{surface}]"
+    return f"o<side_holes> call {position} {' '.join(f'[{entry}]' for entry in entries)} [0]"
 
 
 ROUND = MilledSurface(

@@ -13,8 +13,8 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.rules.polar import own_block, own_feed_ended
 
-ANGLES = {"Y": "C", "V": "H"}
-SIZES = {"R": 1, "Q": 2}  # radius and diameter
+ANGLE_LETTERS = {"Y": "C", "V": "H"}
+RADIUS_SCALES = {"R": 1, "Q": 2}  # radius and diameter
 
 
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
@@ -44,7 +44,9 @@ def _named_radius(draft: Draft, code: str) -> str:
 
 def _mapped_radius(draft: Draft, code: str) -> str:
     """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
-    sizes = [(word, SIZES[letter]) for letter in SIZES if (word := draft.take(letter))]
+    sizes = [
+        (word, RADIUS_SCALES[letter]) for letter in RADIUS_SCALES if (word := draft.take(letter))
+    ]
     axes = [word for letter in "YC" if (word := draft.take(letter))]
     if not sizes and not axes:
         return ""
@@ -62,8 +64,10 @@ def on_the_surface(draft: Draft) -> None:
     if draft.letters() & {"C", "H"}:
         raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
     draft.words = [
-        ForeignWord(ANGLES[w.letter], f"[[{w.value}] * {degrees(1):.12f} / {radius}]", "expression")
-        if w.letter in ANGLES
+        ForeignWord(
+            ANGLE_LETTERS[w.letter], f"[[{w.value}] * {degrees(1):.12f} / {radius}]", "expression"
+        )
+        if w.letter in ANGLE_LETTERS
         else w
         for w in draft.words
     ]

@@ -3,19 +3,19 @@
 
 from decimal import Decimal
 
-from g12.tools.translate.blocks.control import HOLES
+from g12.tools.translate.blocks.control import HOLE_MEANINGS
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
-LENGTHS = frozenset((*"XYZUVWIJKRQE", ",C", ",R"))
-ANGLES = frozenset((*"ABC", ",A"))
+LENGTH_WORDS = frozenset((*"XYZUVWIJKRQE", ",C", ",R"))
+ANGLE_WORDS = frozenset((*"ABC", ",A"))
 COUNTING = {  # words of turning cycles that count or name, or are read with their cycle
     "pattern repeating": "PQR",
     "threading": "PQA",
     **dict.fromkeys(("finishing", "pecking along Z", "pecking along X", "thread pass"), "PQ"),
     **dict.fromkeys(("roughing along Z", "roughing along X", "thread"), "PQ"),
-    **dict.fromkeys(HOLES, "QD"),
+    **dict.fromkeys(HOLE_MEANINGS, "QD"),
 }
 UNIT = {"G20": "inch", "G21": "mm"}
 
@@ -46,9 +46,9 @@ def _quantity_of(draft: Draft, word: ForeignWord) -> str:
         return ""
     if letter in "HC" and draft.control.is_lathe:
         return "length" if draft.state.polar == "on" else "angle"
-    if letter in ANGLES:
+    if letter in ANGLE_WORDS:
         return "angle"
-    return "length" if letter in LENGTHS else ""
+    return "length" if letter in LENGTH_WORDS else ""
 
 
 def _is_arc(draft: Draft) -> bool:
@@ -56,7 +56,7 @@ def _is_arc(draft: Draft) -> bool:
 
 
 def _is_cycle(draft: Draft) -> bool:
-    return bool({"drilling cycle", *HOLES} & set(draft.meanings)) or bool(draft.state.cycle)
+    return bool({"drilling cycle", *HOLE_MEANINGS} & set(draft.meanings)) or bool(draft.state.cycle)
 
 
 def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:

@@ -7,7 +7,7 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF, REFERENCES, UNKNOWN
 
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
-LETTERS = frozenset("NGMFSTDHIJKLPQR$")
+BLOCK_LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 MACHINES_OWN = REFERENCES | {"G53"}
 
 
@@ -61,7 +61,7 @@ def _follow_surface_speed(draft: Draft) -> None:
 
 
 def axes_at_zero(draft: Draft) -> None:
-    """Keep words of an axis that the machine lacks as comments: it always stands at their 0."""
+    """Keep words of an axis that the machine lacks as comments: it always is at their 0."""
     if draft.state.polar != "off" or {"polar on", "cylinder"}.intersection(draft.meanings):
         return
     lacking = set(draft.control.at_zero) - set(draft.control.axes)
@@ -90,18 +90,18 @@ def refuse_leftovers(draft: Draft) -> None:
     if draft.meanings:
         word = next(iter(draft.meanings.values()))
         raise NotTranslated(f"{word.code} cannot stand in this block")
-    seen: set[str] = set()
+    letters: set[str] = set()
     for word in draft.words:
         if word.kind == "text" or word.letter in "GM":
             continue
-        if word.letter in seen:
+        if word.letter in letters:
             raise NotTranslated(f"{word.letter} stands twice")
-        seen.add(word.letter)
+        letters.add(word.letter)
         inside = word.letter in INSIDE.get(draft.state.polar, "")
         if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
             raise NotTranslated(
                 f"{word.text}: this control's machine has the axes {axes}; for another one say "
                 f'axes = "{axes}{word.letter}" in a control of your own'
             )
-        if word.letter not in LETTERS and word.letter not in AXIS_NUMBERS and not inside:
+        if word.letter not in BLOCK_LETTERS and word.letter not in AXIS_NUMBERS and not inside:
             raise NotTranslated(f"{word.text} is not understood in this block")

@@ -17,7 +17,7 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.places import FIELDS, end_of_word
+from g12.tools.translate.blocks.positions import FIELDS, end_of_word
 
 INDIFFERENT = frozenset("NMSTFHD$")
 
@@ -77,7 +77,7 @@ def _bare_words(draft: Draft) -> None:
 
 
 def distance_mode(draft: Draft) -> None:
-    """Write G90 (or G91) behind a block of increments."""
+    """Write G90 (or G91) after a block of increments."""
     state = draft.state
     if draft.is_settled or state.own_distance == AS_PROGRAMMED or not draft.letters() - INDIFFERENT:
         return
@@ -111,13 +111,13 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
         draft.after.append("G4 P0")
 
 
-LETTERS = frozenset("NXYZABCIJKRF")
+PLAIN_LETTERS = frozenset("NXYZABCIJKRF")
 SETTLED = (UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
-TURNING = frozenset("ABC")  # beside a slide they can need another feed
+ROTARY_LETTERS = frozenset("ABC")  # beside a slide they can need another feed
 
 
 def is_plain(draft: Draft) -> bool:
-    """Whether no rule has anything to do; the block's motion, feed and place are then noted.
+    """Whether no rule has anything to do; the block's motion, feed and position are then noted.
 
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """
@@ -128,15 +128,15 @@ def is_plain(draft: Draft) -> bool:
     if at != SETTLED:
         return False
     modes: dict[str, float | str] = {}
-    seen = set()
+    letters = set()
     for letter, value, kind, _ in draft.words:
-        if kind != "number" or letter in seen:
+        if kind != "number" or letter in letters:
             return False
-        seen.add(letter)
+        letters.add(letter)
         if letter == "G":
             modes["motion"] = f"G{value.lstrip('0') or '0'}"
         elif (
-            letter not in LETTERS
+            letter not in PLAIN_LETTERS
             or (letter in AXIS_NUMBERS and letter not in control.axes)
             or (letter != "N" and "." not in value and value != "0")
         ):
@@ -144,10 +144,10 @@ def is_plain(draft: Draft) -> bool:
         elif letter == "F":
             modes["feed"] = value
     motion = modes.get("motion", state.motion)
-    arc = motion in ("G2", "G3") or seen.isdisjoint("IKR" if control.is_lathe else "R")
+    arc = motion in ("G2", "G3") or letters.isdisjoint("IKR" if control.is_lathe else "R")
     if not arc or motion not in MOVES or control.meanings.get(motion) != "same":
         return False
-    if motion != "G0" and not TURNING.isdisjoint(seen):
+    if motion != "G0" and not ROTARY_LETTERS.isdisjoint(letters):
         return False
     modes.update(
         (FIELDS[w.letter], end_of_word(state, w)) for w in draft.words if w.letter in FIELDS

@@ -2,7 +2,7 @@
 """Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
 
 X in polar mode is a diameter on most controls and a radius on some: where it is not as outside, G7
-or G8 is written before the section, and the other behind it. Y is C and V is H. The control's file
+or G8 is written before the section, and the other after it. Y is C and V is H. The control's file
 defines a rapid in polar mode.
 """
 
@@ -20,13 +20,19 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.places import IN_POLAR, STAYING, axis_of, known_place, value_text
+from g12.tools.translate.blocks.positions import (
+    IN_POLAR,
+    STAYING,
+    axis_of,
+    known_position,
+    value_text,
+)
 from g12.tools.translate.rules.decimals import UNIT
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
-PLANES = frozenset(("G17", "G18", "G19"))
-SECTIONS = {
+PLANES_IN_POLAR = frozenset(("G17", "G18", "G19"))
+SECTION_NAMES = {
     "on": "in polar mode",
     "cylinder": "on a cylinder",
     "off": "to where a section begins",
@@ -38,7 +44,7 @@ X_OF = {"G7": 2.0, "G8": 1.0}  # the word of a point whose radius is 1
 
 def plane_letters(draft: Draft) -> None:
     """Drop what a plane code has beside it to name its axes: ``G17 XC``, ``G17 U0 H0``."""
-    if not PLANES.intersection(draft.codes()):
+    if not PLANES_IN_POLAR.intersection(draft.codes()):
         return
     named = [word for word in draft.words if word.kind == "bare"]
     if not named and not draft.letters() - set("NGUVWH"):
@@ -89,13 +95,13 @@ def turn_off(draft: Draft, code: ForeignWord) -> None:
 
 def _slides_kept(draft: Draft, scale: float) -> dict[str, float]:
     """Return X and Z after the switch; ``scale`` multiplies X."""
-    x, z = known_place(draft.start, "X"), known_place(draft.start, "Z")
+    x, z = known_position(draft.start, "X"), known_position(draft.start, "Z")
     found = {"at_x": None if x is None else x * scale, "at_z": z}
     return {name: value for name, value in found.items() if value is not None}
 
 
 def own_block(draft: Draft, code: str, lines: list[str]) -> None:
-    """Write lines behind the block's other words, which must move nothing."""
+    """Write lines after the block's other words, which must move nothing."""
     if draft.axis_words() or draft.letters() & set("UVWHIJKR"):
         raise NotTranslated(f"{code} moves nothing: its block has {draft.words[-1].text}")
     draft.write(lines)
@@ -132,8 +138,12 @@ def _lengths_of_c(draft: Draft) -> None:
 
 def _unmoved_depth(draft: Draft) -> None:
     """Drop a Z beside X or C that does not move."""
-    start = known_place(draft.start, "Z")
-    if start is not None and draft.letters() & IN_PLANE and start == known_place(draft.state, "Z"):
+    start = known_position(draft.start, "Z")
+    if (
+        start is not None
+        and draft.letters() & IN_PLANE
+        and start == known_position(draft.state, "Z")
+    ):
         draft.comments += [word.text for word in (draft.take("Z"),) if word]
 
 
@@ -162,7 +172,9 @@ def _is_unmoved(draft: Draft) -> bool:
     if draft.letters() & set("IJKR"):
         return False
     axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
-    starts = [(known_place(draft.start, axis), known_place(draft.state, axis)) for axis in axes]
+    starts = [
+        (known_position(draft.start, axis), known_position(draft.state, axis)) for axis in axes
+    ]
     return all(start is not None and start == end for start, end in starts)
 
 
@@ -171,17 +183,18 @@ def _offset_number(draft: Draft) -> None:
     word = draft.take("D")
     if word and word.value.lstrip("0") not in (draft.state.length, draft.state.tool):
         raise NotTranslated(
-            f"{word.text} {SECTIONS[draft.state.polar]}: G41 and G42 take the loaded tool's radius"
+            f"{word.text} {SECTION_NAMES[draft.state.polar]}: G41 and G42 take the loaded tool's "
+            "radius"
         )
 
 
 def rapid(draft: Draft) -> None:
-    """Write a rapid in polar mode as the control's file says, and the feed again behind it."""
+    """Write a rapid in polar mode as the control's file says, and the feed again after it."""
     rule = draft.control.value("polar", "rapid", "refuse")
     if rule == "feed":
         _rapid_at_feed(draft)
     elif rule == "refuse" and _is_rapid(draft):
-        where = SECTIONS[draft.state.polar]
+        where = SECTION_NAMES[draft.state.polar]
         raise NotSaid(
             f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
             "polar",
@@ -208,7 +221,7 @@ def _rapid_at_feed(draft: Draft) -> None:
 
 def feed_of_rapids(draft: Draft) -> float:
     """Return the speed that the control's file gives to rapids in a section."""
-    where = SECTIONS[draft.state.polar]
+    where = SECTION_NAMES[draft.state.polar]
     unit = UNIT.get(draft.state.units)
     if not unit:
         raise NotTranslated(f"G0 {where}: its speed needs the units: say G20 or G21 (--units)")
@@ -275,7 +288,7 @@ def _held_slides(draft: Draft) -> list[str]:
     """Return the words of slides that were held back (`turning/feed_of_c`)."""
     why = "a slide of LinuxCNC's is behind the program's"
     held: Any = draft.sure("held", why)
-    points = {axis: known_place(draft.start, axis) for axis, _ in held}
+    points = {axis: known_position(draft.start, axis) for axis, _ in held}
     for axis, point in points.items():
         if point is None:
             raise NotTranslated(

@@ -13,7 +13,7 @@ from g12.tools.translate.blocks.draft import PARTNERS, Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES, REFERENCES
-from g12.tools.translate.blocks.places import known_place, value_text
+from g12.tools.translate.blocks.positions import known_position, value_text
 
 
 def reference_point(draft: Draft) -> None:
@@ -45,7 +45,7 @@ def _from_here(draft: Draft, code: str) -> None:
 
 
 def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
-    """Return the absolute word for an increment from where the tool stands."""
+    """Return the absolute word for an increment from where the tool is."""
     if draft.sure("compensation", f"{word.text} is an increment") != "G40":
         raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")
     axis = PARTNERS[word.letter]
@@ -114,7 +114,7 @@ def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
     """Write W beside X and C of a section as Z, which is not in the section's plane."""
     if word.letter != "W" or {"Z"} & draft.letters():
         raise NotTranslated(f"{word.text} beside other axes in a section")
-    depth = known_place(draft.state, "Z")
+    depth = known_position(draft.state, "Z")
     if draft.sure("distance", f"{word.text} is an increment") == "G91":
         draft.replace(word, word._replace(letter="Z"))
     elif depth is None:

@@ -10,13 +10,13 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import REFERENCES, UNKNOWN
 
 LONGEST_WAIT = "Q30"  # s, then LinuxCNC reports a spindle that is not oriented
-STOPS = frozenset(("M5", "M9"))
+STOP_CODES = frozenset(("M5", "M9"))
 RAPIDS = REFERENCES | {"G0", "G53"}
-TURNING = frozenset(("M3", "M4", "M5"))
+SPINDLE_M_CODES = frozenset(("M3", "M4", "M5"))
 NO_LIVE_TOOL = (
     "{} is the live tool's spindle: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's that drives it"
 )
-POCKETS = frozenset(("G12", "G13", "G12.2", "G13.2"))
+POCKET_CODES = frozenset(("G12", "G13", "G12.2", "G13.2"))
 
 
 def speed_limit(draft: Draft) -> None:
@@ -55,7 +55,7 @@ def live_tool(draft: Draft) -> None:
     """Name the spindle of M3, M4, M5 and S: that of the block's P word, or the live tool's."""
     if draft.control.c_axis_on.intersection(word.code for word in draft.block.words):
         draft.change(spindle=UNKNOWN)
-    codes = TURNING.intersection(draft.m_codes())
+    codes = SPINDLE_M_CODES.intersection(draft.m_codes())
     named = _named_spindle(draft, bool(codes))
     if codes and named in ("", "$0", "$-1"):
         draft.change(spindle=next(iter(codes - {"M5"}), UNKNOWN))
@@ -98,8 +98,10 @@ def orientation(draft: Draft, code: ForeignWord) -> None:
 
 
 def stop_behind_a_cut(draft: Draft) -> None:
-    """Write M5 and M9 of a block that cuts behind it: LinuxCNC would stop before the move."""
-    stops = [w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOPS]
+    """Write M5 and M9 of a block that cuts after it: LinuxCNC would stop before the move."""
+    stops = [
+        w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOP_CODES
+    ]
     if not stops or not cuts(draft):
         return
     draft.drop(stops)
@@ -111,4 +113,4 @@ def cuts(draft: Draft) -> bool:
     codes, state = set(draft.codes()), draft.state
     if codes & RAPIDS or not draft.letters() & set("XYZABCIJKR"):
         return False
-    return bool(codes & POCKETS or state.cycle or state.motion in ("G1", "G2", "G3", "G33"))
+    return bool(codes & POCKET_CODES or state.cycle or state.motion in ("G1", "G2", "G3", "G33"))

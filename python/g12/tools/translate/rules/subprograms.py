@@ -86,7 +86,7 @@ def _check_point(draft: Draft, word: ForeignWord) -> None:
 
 
 def finish_call(draft: Draft) -> None:
-    """Write the lines of a call or a return behind the block's other words."""
+    """Write the lines of a call or a return after the block's other words."""
     if draft.call and draft.called_as:
         draft.call = draft.call._replace(number=draft.called_as)
     if draft.call and draft.call.repeats and draft.jumps:

@@ -7,11 +7,11 @@ from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
-from g12.tools.translate.rules.spindle import TURNING
+from g12.tools.translate.rules.spindle import SPINDLE_M_CODES
 
-COMPENSATION = frozenset(("G41", "G42"))
-POCKETS = frozenset(("G12", "G13"))
-USES_D = COMPENSATION | POCKETS
+COMPENSATION_ON = frozenset(("G41", "G42"))
+PLAIN_POCKETS = frozenset(("G12", "G13"))
+USES_D = COMPENSATION_ON | PLAIN_POCKETS
 
 
 def tool_and_offsets(draft: Draft) -> None:
@@ -57,7 +57,7 @@ def _turret_word(draft: Draft) -> None:
 
 def _spindle_goes_on(draft: Draft) -> None:
     """Restart the spindle that turns during the tool change: LinuxCNC's M6 stops it."""
-    if TURNING.intersection(draft.m_codes()) or draft.state.live:
+    if SPINDLE_M_CODES.intersection(draft.m_codes()) or draft.state.live:
         return
     why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
     turning = draft.sure("spindle", why)
@@ -121,9 +121,9 @@ def _radius_offset(draft: Draft) -> None:
         if not USES_D.intersection(codes):
             draft.take("D")
             draft.comments.append(word.text)
-    if COMPENSATION.intersection(codes):
+    if COMPENSATION_ON.intersection(codes):
         compensation(draft, word)
-    elif not word and POCKETS.intersection(codes) and _takes_last(draft):
+    elif not word and PLAIN_POCKETS.intersection(codes) and _takes_last(draft):
         value = draft.sure("radius", "a pocket without D takes the last one")
         draft.words += [ForeignWord("D", value)] if value else []
 
@@ -133,7 +133,7 @@ def _compensated_again(draft: Draft) -> None:
 
     Where it is on in one way to the block only, as in a loop, the program tests LinuxCNC's mode.
     """
-    on = [w for w in draft.words if w.letter == "G" and w.code[:3] in COMPENSATION]
+    on = [w for w in draft.words if w.letter == "G" and w.code[:3] in COMPENSATION_ON]
     if not on or draft.start.polar != "off" or draft.control.onto:
         return
     if draft.start.compensation not in (on[0].code[:3], UNSURE):
@@ -166,7 +166,9 @@ def compensation(draft: Draft, word: ForeignWord | None) -> None:
         raise NotTranslated("G41 or G42 without D, and no D before it")
     if re.fullmatch("0+", value):
         draft.words = [
-            w._replace(value=f"{w.code[1:]}.1") if w.letter == "G" and w.code in COMPENSATION else w
+            w._replace(value=f"{w.code[1:]}.1")
+            if w.letter == "G" and w.code in COMPENSATION_ON
+            else w
             for w in draft.words
         ]
     if not word:

@@ -46,7 +46,7 @@ class ContourMove(NamedTuple):
 
 
 def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
-    """Return the segments of a contour's blocks from where the tool stands."""
+    """Return the segments of a contour's blocks from where the tool is."""
     at, sides = start, []
     for block, end in zip(blocks, ends_of(blocks, start)):
         if end != at or _is_circle(block):
@@ -54,9 +54,9 @@ def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMo
         at = end
     segments: list[ContourMove] = []
     for number, side in enumerate(sides):
-        behind = sides[number + 1] if number + 1 < len(sides) else None
+        following = sides[number + 1] if number + 1 < len(sides) else None
         begin = segments[-1].end if segments else side.start
-        segments += _with_corner(side._replace(start=begin), behind)
+        segments += _with_corner(side._replace(start=begin), following)
     return segments
 
 
@@ -68,12 +68,12 @@ def ends_of(blocks: Sequence[ContourBlock], start: complex) -> list[complex]:
     """Return where each block ends, corners being sharp."""
     ends = [start]
     for number, block in enumerate(blocks):
-        behind = blocks[number + 1] if number + 1 < len(blocks) else None
-        ends.append(_end_of(block, behind, ends[-1]))
+        following = blocks[number + 1] if number + 1 < len(blocks) else None
+        ends.append(_end_of(block, following, ends[-1]))
     return ends[1:]
 
 
-def _end_of(block: ContourBlock, behind: ContourBlock | None, at: complex) -> complex:
+def _end_of(block: ContourBlock, following: ContourBlock | None, at: complex) -> complex:
     """Return where a block ends: its words, or its angle from the Z axis."""
     values = block.values
     z = _coordinate(block, at.real, "Z", "W", 1.0)
@@ -82,7 +82,7 @@ def _end_of(block: ContourBlock, behind: ContourBlock | None, at: complex) -> co
     if angle is None or (x is not None and z is not None):
         return complex(at.real if z is None else z, at.imag if x is None else x)
     if x is None and z is None:
-        return _meeting(block, behind, at, radians(angle))
+        return _meeting(block, following, at, radians(angle))
     slope = tan(radians(angle))
     if z is None:
         if abs(slope) < SAME:
@@ -103,12 +103,12 @@ def _coordinate(
 
 
 def _meeting(
-    block: ContourBlock, behind: ContourBlock | None, at: complex, angle: float
+    block: ContourBlock, following: ContourBlock | None, at: complex, angle: float
 ) -> complex:
     """Return where a line of an angle meets the next one, which has its own and its end."""
-    values = behind.values if behind else {}
+    values = following.values if following else {}
     other = values.get(",A", values.get("A"))
-    if other is None or not {"X", "Z"} <= values.keys() or behind.relative:
+    if other is None or not {"X", "Z"} <= values.keys() or following.relative:
         raise NotTranslated(
             f"line {block.line}: an angle alone needs X, Z and an angle in the next block"
         )
@@ -145,20 +145,20 @@ def _centre_by_radius(start: complex, end: complex, radius: float, line: int) ->
     return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
 
 
-def _with_corner(side: ContourMove, behind: ContourMove | None) -> list[ContourMove]:
-    """Return a side and the chamfer or the rounding behind it."""
+def _with_corner(side: ContourMove, following: ContourMove | None) -> list[ContourMove]:
+    """Return a side and the chamfer or the rounding after it."""
     size, rounded = _corner_of(side)
     if not size:
         return [side]
     line = side.block.line
-    if behind is None or behind.centre is not None or behind.block.motion == "G0":
+    if following is None or following.centre is not None or following.block.motion == "G0":
         raise NotTranslated(f"line {line}: a corner is broken between two lines of G1 only")
-    one, two = behind.start - side.start, behind.end - behind.start
+    one, two = following.start - side.start, following.end - following.start
     turn = phase(two / one)
     cut = size * tan(abs(turn) / 2) if rounded else size
     if abs(turn) < SAME or abs(abs(turn) - pi) < SAME or cut > min(abs(one), abs(two)) + SAME:
         raise NotTranslated(f"line {line}: a corner of {size:g} has no room between its lines")
-    first, last = behind.start - cut * one / abs(one), behind.start + cut * two / abs(two)
+    first, last = following.start - cut * one / abs(one), following.start + cut * two / abs(two)
     corner = ContourMove(first, last, side.block)
     if rounded:
         sense = 1 if turn > 0 else -1
@@ -175,12 +175,12 @@ def _corner_of(side: ContourMove) -> tuple[float, bool]:
             if values.get(letter):
                 return abs(values[letter]), letter in (",R", "R")
     elif values.get(",R") or values.get(",C"):
-        raise NotTranslated(f"line {side.block.line}: a corner is broken behind a line of G1 only")
+        raise NotTranslated(f"line {side.block.line}: a corner is broken after a line of G1 only")
     return 0.0, False
 
 
 def offset_by(segments: Sequence[ContourMove], by: complex) -> list[ContourMove]:
-    """Return segments in another place."""
+    """Return segments moved by a vector."""
     return [
         s._replace(
             start=s.start + by,

@@ -59,8 +59,8 @@ def _is_drawn(draft: Draft) -> bool:
 
 def _goes_on_from_a_corner(draft: Draft) -> bool:
     """Whether increments of a block start at a corner that LinuxCNC has cut off."""
-    behind, increments = draft.state.corner, draft.increments()
-    if not behind or not (draft.axis_words() or increments):
+    corner, increments = draft.state.corner, draft.increments()
+    if not corner or not (draft.axis_words() or increments):
         return False
     draft.change(corner=False)
     return bool(increments) or draft.state.distance == "G91"

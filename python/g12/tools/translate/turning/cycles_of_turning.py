@@ -17,7 +17,7 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.places import FIELDS
+from g12.tools.translate.blocks.positions import FIELDS
 from g12.tools.translate.rules.motion import in_absolute_words, needs_g90
 from g12.tools.translate.rules.polar import own_feed_ended
 from g12.tools.translate.turning.feed_of_c import number_of_feed
@@ -47,7 +47,7 @@ from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitc
 
 SHORTEST = 1e-5  # of a thread
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
-BESIDE = frozenset("NGMSTF$")  # may stand in a cycle's block
+BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may stand in a cycle's block
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
@@ -129,7 +129,7 @@ def _write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **mod
 
 def _refuse_strange(draft: Draft, where: str) -> None:
     """Refuse a word that the cycle has not taken: LinuxCNC would give it another meaning."""
-    strange = next((word for word in draft.words if word.letter not in BESIDE), None)
+    strange = next((word for word in draft.words if word.letter not in BESIDE_SINGLE_PASS), None)
     if strange:
         raise NotTranslated(f"{strange.text} is not understood {where}")
 
@@ -234,7 +234,7 @@ def finishing(draft: Draft) -> None:
     segments, state = read_contour(draft, indices, start)
     moves = finishing_cut(start, segments)
     if state.compensation != before and state.compensation != "G40":
-        back = len(segments)  # the first move behind the contour
+        back = len(segments)  # the first move after the contour
         moves[back:] = [
             *(m._replace(others=("G40",)) for m in moves[back:][:1]),
             *moves[back + 1 :],

@@ -17,12 +17,12 @@ from collections.abc import Iterator
 from math import ceil
 from typing import Any, NamedTuple
 
-from g12.tools.translate.blocks.control import HOLES
+from g12.tools.translate.blocks.control import HOLE_MEANINGS
 from g12.tools.translate.blocks.draft import PARTNERS, Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.places import FIELDS, known_place, value_text
+from g12.tools.translate.blocks.positions import FIELDS, known_position, value_text
 from g12.tools.translate.milling.drilling_cycles import repeats_of, seconds_of_dwell
 from g12.tools.translate.rules.codes import is_own, mapped
 from g12.tools.translate.rules.decimals import in_units
@@ -34,12 +34,12 @@ from g12.tools.translate.turning.given_words import (
 )
 
 DRILL, BORE, TAP = "drill", "bore", "tap"
-POSITION = frozenset("XZCUWHR")
+POSITION_LETTERS = frozenset("XZCUWHR")
 STEPS = {axis: letter for letter, axis in PARTNERS.items()}
 OWN_M_CODES = frozenset(f"M{number}" for number in range(10))  # LinuxCNC's, beside a cycle
 MOST_PECKS, MOST_REPEATS = 1000, 360
 STOP = "G4 P0"
-LEAST = 1e-6  # of a peck that is no rounding
+LEAST_PECK = 1e-6  # of a peck that is no rounding
 
 
 class LatheCycle(NamedTuple):
@@ -50,7 +50,7 @@ class LatheCycle(NamedTuple):
     """
 
     side: bool | None
-    way: str
+    kind: str
     start: str = ""
     live: bool = False
 
@@ -58,9 +58,9 @@ class LatheCycle(NamedTuple):
 def lathe_cycle(meaning: str) -> LatheCycle:
     """Return what a meaning of the control's file, as ``face live tap left``, drills."""
     words = meaning.split()
-    way = next((way for way in (BORE, TAP) if way in words), DRILL)
+    kind = next((kind for kind in (BORE, TAP) if kind in words), DRILL)
     start = {"right": "M3", "left": "M4"}.get(words[-1], "")
-    return LatheCycle({"side": True, "face": False}.get(words[0]), way, start, "live" in words)
+    return LatheCycle({"side": True, "face": False}.get(words[0]), kind, start, "live" in words)
 
 
 class HoleLevels(NamedTuple):
@@ -79,8 +79,8 @@ class HoleLevels(NamedTuple):
     def pecked(self, depth: float, clear: float, full: bool) -> Iterator[str]:
         """Yield the moves down to the end, each ``depth`` deeper (0: at once)."""
         scale = self.toward * (2 if self.axis == "X" else 1)
-        way = abs(self.end - self.r) / abs(scale)
-        count = ceil((way - LEAST) / depth) if depth else 1
+        stroke = abs(self.end - self.r) / abs(scale)
+        count = ceil((stroke - LEAST_PECK) / depth) if depth else 1
         if count > MOST_PECKS:
             raise NotTranslated(f"pecks of {depth:g} are {count} in one hole: at most {MOST_PECKS}")
         for peck in range(1, count):
@@ -103,7 +103,7 @@ def drilling_of_lathe(draft: Draft) -> None:
     if cancelled:
         draft.comments.append(cancelled.code)
         draft.change(cycle=UNKNOWN, cycle_words=())
-    meaning = next((name for name in draft.meanings if name in HOLES), "")
+    meaning = next((name for name in draft.meanings if name in HOLE_MEANINGS), "")
     if not meaning and draft.state.cycle:
         meaning = _repeated_cycle(draft)
     if meaning:
@@ -118,7 +118,7 @@ def _repeated_cycle(draft: Draft) -> str:
         draft.change(cycle=UNKNOWN, cycle_words=())
     elif codes & CONSUMERS:
         draft.change(cycle=UNSURE, cycle_words=UNSURE)
-    elif draft.letters() & POSITION:
+    elif draft.letters() & POSITION_LETTERS:
         return draft.sure("cycle", "a drilling cycle may be on: write G80 or its code")
     return ""
 
@@ -148,7 +148,7 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     kept["peck"] = kept.get("peck", 0.0) if depth is None else depth
     levels = _hole_levels(draft, "X" if side else "Z", kept)
     bottom = _down_and_out(draft, levels, cycle, kept)
-    other, places = "Z" if side else "X", _positions_after(draft, times)
+    other, ends = "Z" if side else "X", _positions_after(draft, times)
     there, on = _lines_to_holes(draft, other)
     _check_nothing_else(draft, code)
     stays = draft.sure("retract", "a cycle returns by G98 or G99") == "G99"
@@ -160,10 +160,8 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     lines = [*first, *there, *on, *hole, *[*on, *hole] * (times - 1)] if times else first
     _put_lines(draft, lines)
     kept |= {"top": levels.top, "r": levels.r, "end": levels.end, "side": side}
-    places[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
-    draft.change(
-        cycle=meaning, cycle_words=tuple(sorted(kept.items())), own_motion=UNSURE, **places
-    )
+    ends[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
+    draft.change(cycle=meaning, cycle_words=tuple(sorted(kept.items())), own_motion=UNSURE, **ends)
 
 
 def _put_lines(draft: Draft, lines: list[str]) -> None:
@@ -281,13 +279,13 @@ def _with_r(draft: Draft, levels: HoleLevels, r: float, kind: str) -> HoleLevels
 
 
 def _down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dict) -> list[str]:
-    if cycle.way == TAP:
+    if cycle.kind == TAP:
         pitch = f"K{value_text(_tap_pitch(draft))}"
         return [" ".join(["G33.1", levels.word(levels.end), pitch, *_tap_spindle(draft, cycle)])]
     full = draft.control.value("holes", "out", "full") == "full"
     clear = stored_setting(draft, "retract") or kept["peck"] / 2
-    lines = list(levels.pecked(kept["peck"] if cycle.way == DRILL else 0.0, clear, full))
-    out = f"{'G1' if cycle.way == BORE else 'G0'} {levels.word(levels.r)}"
+    lines = list(levels.pecked(kept["peck"] if cycle.kind == DRILL else 0.0, clear, full))
+    out = f"{'G1' if cycle.kind == BORE else 'G0'} {levels.word(levels.r)}"
     return [*lines, f"G4 P{kept['dwell'] or 0}", out]
 
 
@@ -323,7 +321,7 @@ def _positions_after(draft: Draft, times: int) -> dict[str, float | str]:
             found[FIELDS[word.letter]] = word.number if word.kind == "number" else UNKNOWN
         elif word.letter in PARTNERS:
             axis = PARTNERS[word.letter]
-            at, is_number = known_place(draft.start, axis), word.kind == "number"
+            at, is_number = known_position(draft.start, axis), word.kind == "number"
             found[FIELDS[axis]] = at + times * word.number if at is not None and is_number else ""
     return found
 

@@ -12,9 +12,9 @@ from math import hypot
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.modal import CONSUMERS, UNSURE
-from g12.tools.translate.blocks.places import axis_of, known_place, value_text
+from g12.tools.translate.blocks.positions import axis_of, known_position, value_text
 
-LEAST_MM = 0.001  # a slide moves by that or not at all
+LEAST_SLIDE_MM = 0.001  # a slide moves by that or not at all
 SLIDES = "XYZ"
 INSTEAD = "write G0 with X, Z and C as numbers in a block before it"
 
@@ -46,7 +46,7 @@ def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
     """Return how far each axis goes, in mm, inches or degrees; X as a radius."""
     moved = {}
     for axis in (axis for axis in AXIS_NUMBERS if axis in axes):
-        start, end = known_place(draft.start, axis), known_place(draft.state, axis)
+        start, end = known_position(draft.start, axis), known_position(draft.state, axis)
         if start is None or end is None:
             raise NotTranslated(
                 f"C beside a slide at a feed: its time hangs on where {axis} stands, which is not "
@@ -118,17 +118,17 @@ def _absolute_words(draft: Draft, axes: set[str]) -> None:
         raise NotTranslated(f"C beside a slide, and a slide is held back here: {INSTEAD}")
     held = dict(state.held)
     starts = {
-        axis: held.get(axis, known_place(draft.start, axis)) for axis in {*axes, *held} - {"C"}
+        axis: held.get(axis, known_position(draft.start, axis)) for axis in {*axes, *held} - {"C"}
     }
-    ends = {axis: known_place(state, axis) for axis in starts}
+    ends = {axis: known_position(state, axis) for axis in starts}
     goes = hypot(*((ends[a] - starts[a]) * _scale_of(draft, a) for a in starts))
     holds = 0 < goes < _least_of(draft)
     draft.words = [w for w in draft.words if axis_of(w.letter) not in {*starts, "C"}]
     written = "C" if holds else [*sorted(starts), "C"]
-    draft.words += [word_of(f"{a}{value_text(known_place(state, a))}") for a in written]
+    draft.words += [word_of(f"{a}{value_text(known_position(state, a))}") for a in written]
     draft.change(held=tuple(sorted(starts.items())) if holds else ())
 
 
 def _least_of(draft: Draft) -> float:
     inches = draft.sure("units", "C beside a slide") == "G20"
-    return LEAST_MM / 25.4 if inches else LEAST_MM
+    return LEAST_SLIDE_MM / 25.4 if inches else LEAST_SLIDE_MM

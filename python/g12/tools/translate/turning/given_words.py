@@ -7,14 +7,19 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.blocks.modal import MOVES, ModalState
-from g12.tools.translate.blocks.places import known_place
+from g12.tools.translate.blocks.positions import known_position
 from g12.tools.translate.rules import codes, decimals, modes
 from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
 
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
-BESIDE = frozenset("FSM")  # what a finishing cut does with its moves
+BESIDE_CYCLE = frozenset("FSM")  # what a finishing cut does with its moves
 IN_CONTOURS = MOVES | {"G90", "G91"}
-READERS = (codes.keep_as_comments, codes.map_codes, modes.follow_modes, decimals.whole_units)
+WORD_RULES_OF_CYCLES = (
+    codes.keep_as_comments,
+    codes.map_codes,
+    modes.follow_modes,
+    decimals.whole_units,
+)
 
 
 def take_number(draft: Draft, letter: str) -> float | None:
@@ -70,8 +75,8 @@ def stored_setting(draft: Draft, name: str) -> float:
 
 
 def start_point(draft: Draft) -> complex:
-    """Return where the tool stands when the cycle begins."""
-    x, z = known_place(draft.start, "X"), known_place(draft.start, "Z")
+    """Return where the tool is when the cycle begins."""
+    x, z = known_position(draft.start, "X"), known_position(draft.start, "Z")
     if x is None or z is None:
         raise NotTranslated(
             "this begins where the tool stands, which is not known here: write G0 with X and Z as "
@@ -98,24 +103,24 @@ def take_end(draft: Draft, start: complex) -> dict[str, float]:
 def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
     """Return the blocks from P to Q, and that which follows the cycle.
 
-    A contour that stands behind the cycle is not executed again; one before it is read back.
+    A contour that is after the cycle is not executed again; one before it is read back.
     """
     numbered = [(index, block.number) for index, block in draft.program if block.words]
-    behind = [index for index, number in numbered if number == first and index > draft.index]
+    later = [index for index, number in numbered if number == first and index > draft.index]
     before = [index for index, number in numbered if number == first and index < draft.index]
     recalled = "finishing" in draft.meanings and before
-    begin = before[-1] if recalled else next(iter(behind), None)
+    begin = before[-1] if recalled else next(iter(later), None)
     end = next((i for i, number in numbered if number == last and i >= (begin or 0)), None)
     if begin is None or end is None:
         number = first if begin is None else last
-        raise NotTranslated(f"N{number} is not in this program behind the cycle")
+        raise NotTranslated(f"N{number} is not in this program after the cycle")
     return range(begin, end + 1), draft.index + 1 if recalled else end + 1
 
 
 def read_contour(
     draft: Draft, indices: range, start: complex
 ) -> tuple[list[ContourMove], ModalState]:
-    """Return the contour of some blocks, and the modes behind it."""
+    """Return the contour of some blocks, and the modes after it."""
     found, state = contour_blocks(draft, indices)
     if state.distance != draft.state.distance:
         raise NotTranslated(
@@ -129,7 +134,7 @@ def read_contour(
 
 
 def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBlock], ModalState]:
-    """Return some blocks as those of a contour, and the modes behind them."""
+    """Return some blocks as those of a contour, and the modes after them."""
     blocks = dict(draft.program)
     motion, state, found = draft.state.motion, draft.state, []
     for index in indices:
@@ -146,7 +151,7 @@ def _contour_block(
 ) -> tuple[ContourBlock, ModalState, str]:
     reader = Draft(block, state, draft.control, draft.machine_codes)
     try:
-        for rule in READERS:
+        for rule in WORD_RULES_OF_CYCLES:
             rule(reader)
         reader.meanings.pop("exact stop", None)
         own = _block_of_words(reader, motion)
@@ -165,7 +170,7 @@ def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
             if word.kind != "number" or word.letter in values:
                 raise NotTranslated(f"{word.text}: a contour is translated from numbers, each once")
             values[word.letter] = word.number
-        elif word.letter in BESIDE or _is_mode(word):
+        elif word.letter in BESIDE_CYCLE or _is_mode(word):
             others.append(word.text)
         elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
             raise NotTranslated(f"{word.text} cannot stand in a contour")

@@ -12,7 +12,7 @@ from math import copysign
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.places import value_text
+from g12.tools.translate.blocks.positions import value_text
 from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
 
 DIGITS = 1e-6  # a word is written where its value changes by that
@@ -85,7 +85,7 @@ def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
-MOST_PASSES = 5000
+MOST_PECKING_PASSES = 5000
 
 
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
@@ -107,8 +107,8 @@ def repeated_cuts(
     passes: int,
 ) -> list[CycleMove]:
     """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
-    if not 1 <= passes <= MOST_PASSES:
-        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_PASSES}")
+    if not 1 <= passes <= MOST_PECKING_PASSES:
+        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_PECKING_PASSES}")
     side = _tool_side(contour)
     if side * allowance.imag < 0 or side * relief.imag < 0:
         raise NotTranslated("U has the sign that would cut into the contour")
@@ -148,15 +148,15 @@ class Pecking(NamedTuple):
 
 def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     """Return the moves of a pecking cycle."""
-    depth, places = _places(given.end - start, given)
+    depth, offsets = _offsets(given.end - start, given)
     if not depth:
         raise NotTranslated("the cycle cuts nothing: it ends where the tool stands")
     peck = given.peck or abs(depth)
-    if abs(depth) / peck > MOST_PASSES:
+    if abs(depth) / peck > MOST_PECKING_PASSES:
         raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
     point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
     away, moves = copysign(1.0, -depth), []
-    for number, aside in enumerate(places):
+    for number, aside in enumerate(offsets):
         moves.append(rapid_to(point(0.0, aside)))
         done = 0.0
         while abs(depth) - done > SAME:
@@ -165,22 +165,22 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
             if abs(depth) - done > SAME:
                 moves.append(rapid_to(point(-away * max(done - given.retract, 0.0), aside)))
         if given.shift and number:
-            aside -= copysign(given.shift, places[-1])
+            aside -= copysign(given.shift, offsets[-1])
             moves.append(rapid_to(point(depth, aside)))
         moves.append(rapid_to(point(0.0, aside)))
     return [*moves, rapid_to(start)]
 
 
-def _places(way: complex, given: Pecking) -> tuple[float, list[float]]:
-    """Return the depth, and how far aside of the start each place is."""
-    turned = _turned(way, given.along_x)
+def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
+    """Return the depth, and the offset of each peck from the start."""
+    turned = _turned(span, given.along_x)
     depth, width = turned.real, turned.imag
     if abs(width) < SAME:
         return depth, [0.0]
     if not given.step:
         raise NotTranslated("the cycle has no step to the next place")
     count = int(abs(width) / given.step - SAME)
-    if count > MOST_PASSES:
+    if count > MOST_PECKING_PASSES:
         raise NotTranslated(f"{count} places: the step is too small")
     steps = [copysign(given.step * number, width) for number in range(count + 1)]
     return depth, [*steps, width]

@@ -6,8 +6,8 @@
 3. off at 45 degrees by the retract, back by rapid; pockets are entered straight down at the feed
 4. at last along the contour with its allowance, then back to the start point
 
-The contour may go up and down across the cuts (type II), but never back along them. A point is seen
-as (along, depth): cuts run to smaller ``along``, levels go down.
+The contour may go up and down across the cuts (type II), but never back along them. The cuts have
+coordinates of their own, (along, depth): they run to smaller ``along``, levels go down.
 """
 
 from cmath import phase, rect
@@ -36,13 +36,13 @@ class RoughCuts(NamedTuple):
 
 
 class CutView(NamedTuple):
-    """How a point is seen by the cuts: the signs of along and depth, and which axis is which."""
+    """The coordinates of the cuts: the signs of along and depth, and which axis is which."""
 
     along: int
     depth: int
     along_x: bool
 
-    def seen(self, point: complex) -> complex:
+    def local(self, point: complex) -> complex:
         """Return along + depth * 1j."""
         turned = complex(point.imag, point.real) if self.along_x else point
         return complex(self.along * turned.real, self.depth * turned.imag)
@@ -61,7 +61,7 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
     allowed[0] = allowed[0]._replace(start=start)
     portions = [portion for segment in allowed[1:] for portion in _portions(segment, view)]
     _check_direction(portions, view)
-    at = view.seen(start)
+    at = view.local(start)
     top = max(at.imag, *(p.imag for portion in portions for p in portion.ends))
     lowest = min(p.imag for portion in portions for p in portion.ends)
     count = floor((at.imag - lowest) / given.depth - SAME)
@@ -71,7 +71,7 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
     for number in range(1, count + 1):
         level = at.imag - number * given.depth
         moves += _level(portions, level, at, top, given, view)
-    end = view.seen(allowed[-1].end)
+    end = view.local(allowed[-1].end)
     back = [view.real(end.real, top), view.real(at.real, top), start]
     return [*moves, rapid_to(start), *moves_along(allowed), *map(rapid_to, back)]
 
@@ -84,8 +84,8 @@ def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
 
 def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
     plain = CutView(1, 1, given.along_x)
-    first, last = (plain.seen(contour[n].end) - plain.seen(start) for n in (0, -1))
-    depth = plain.seen(start).imag - plain.seen(contour[0].end).imag
+    first, last = (plain.local(contour[n].end) - plain.local(start) for n in (0, -1))
+    depth = plain.local(start).imag - plain.local(contour[0].end).imag
     axes = "XZ" if given.along_x else "ZX"
     if abs(depth) < SAME or len(contour) < 2:
         raise NotTranslated(f"the block of P must move in {axes[1]}, from the start to the part")
@@ -93,7 +93,7 @@ def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -
     if abs(along) < SAME:
         raise NotTranslated(f"the contour goes nowhere in {axes[0]}")
     view = CutView(-1 if along > 0 else 1, 1 if depth > 0 else -1, given.along_x)
-    allowance = view.seen(given.allowance)
+    allowance = view.local(given.allowance)
     if allowance.imag < 0 or allowance.real < 0:
         raise NotTranslated("the allowance U or W has the sign that would cut into the contour")
     return view
@@ -109,11 +109,11 @@ class Monotone(NamedTuple):
 
 def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
     """Return the monotone portions of a segment."""
-    points = [view.seen(p) for p in _turning_points(segment)]
+    points = [view.local(p) for p in _turning_points(segment)]
     line, centre = segment.block.line, segment.centre
     if centre is None:
         return [Monotone((a, b), _on_line(a, b), line) for a, b in zip(points, points[1:])]
-    middle, radius = view.seen(centre), abs(segment.start - centre)
+    middle, radius = view.local(centre), abs(segment.start - centre)
     return [
         Monotone((a, b), _on_arc(middle, radius, (a + b).real / 2), line)
         for a, b in zip(points, points[1:])
@@ -193,9 +193,9 @@ def _level(
             moves.append(rapid_to(view.real(begin, level + off)))
         else:
             near = min(top, level + given.depth + given.retract)
-            up = view.real(view.seen(lifted).real, top)
-            places = [(at.real, top), (begin, top), (begin, near)]
-            moves += [rapid_to(view.real(*place)) for place in places]
+            up = view.real(view.local(lifted).real, top)
+            points = [(at.real, top), (begin, top), (begin, near)]
+            moves += [rapid_to(view.real(*point)) for point in points]
             moves += [feed_to(view.real(begin, level)), feed_to(view.real(end, level))]
             moves += [rapid_to(lifted), rapid_to(up), rapid_to(view.real(at.real, top))]
     return moves

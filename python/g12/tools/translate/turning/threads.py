@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Threads: one pass (G92 of system A), and all of them (G76), each as G33.
 
-LinuxCNC's own G76 has another rule for the depth of its passes; G33 is exact. Its K is the way
+LinuxCNC's own G76 has another rule for the depth of its passes; G33 is exact. Its K is the travel
 along the path for each revolution, the lead of these controls that along Z (or X, if steeper).
 """
 
@@ -13,7 +13,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.turning.contour import SAME
 from g12.tools.translate.turning.moves import CycleMove, rapid_to
 
-MOST_PASSES = 1000
+MOST_THREAD_PASSES = 1000
 
 
 class Thread(NamedTuple):
@@ -54,13 +54,13 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     shifted = complex(thread.lead * thread.turn / 360, side * up)
     begin = complex(start.real, thread.end.imag + thread.taper) + shifted
     end = complex(thread.end.real, thread.end.imag + side * up)
-    way = end - begin
-    if abs(way.real) < SAME:
+    path = end - begin
+    if abs(path.real) < SAME:
         raise NotTranslated("the thread has no length in Z")
-    pitch = pitch_along(way, thread.lead)
-    chamfer = min(thread.chamfer, abs(way.real))
+    pitch = pitch_along(path, thread.lead)
+    chamfer = min(thread.chamfer, abs(path.real))
     moves = [rapid_to(begin)]
-    turning = end - way / abs(way.real) * chamfer
+    turning = end - path / abs(path.real) * chamfer
     moves.append(CycleMove("G33", turning, None, pitch))
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
@@ -74,10 +74,10 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     ]
 
 
-def pitch_along(way: complex, lead: float) -> float:
+def pitch_along(path: complex, lead: float) -> float:
     """Return the travel along the path for each revolution."""
-    longer = max(abs(way.real), abs(way.imag))
-    return lead * abs(way) / longer
+    longer = max(abs(path.real), abs(path.imag))
+    return lead * abs(path) / longer
 
 
 def _depths(infeed: Infeed) -> list[float]:
@@ -93,8 +93,10 @@ def _depths(infeed: Infeed) -> list[float]:
         if depth > full - SAME:
             break
         found.append(depth)
-        if number > MOST_PASSES:
-            raise NotTranslated(f"more than {MOST_PASSES} passes: the first depth is too small")
+        if number > MOST_THREAD_PASSES:
+            raise NotTranslated(
+                f"more than {MOST_THREAD_PASSES} passes: the first depth is too small"
+            )
     finishing = infeed.finishing if infeed.allowance > SAME else infeed.finishing - 1
     return [*found, full, *[infeed.height] * max(finishing, 0)]
 

@@ -11,14 +11,14 @@ from g12.tools.translate.blocks.modal import MOTIONS, UNKNOWN, ModalState
 
 FIELDS = {axis: f"at_{axis.lower()}" for axis in AXIS_NUMBERS}
 LOST = dict.fromkeys(FIELDS.values(), UNKNOWN)
-FOLLOWED = frozenset(  # a block of these codes alone ends at its words
+FOLLOWED_CODES = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
 IN_POLAR = {"Y": "C", "V": "H"}
-LENGTHS = frozenset(("G43", "G49"))  # of the tool: a mill's is along Z
-SHIFTING = LENGTHS | {f"G{n}" for n in range(54, 60)}
+LENGTH_CODES = frozenset(("G43", "G49"))  # of the tool: a mill's is along Z
+SHIFTING = LENGTH_CODES | {f"G{n}" for n in range(54, 60)}
 PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
-DRILLING = PATTERNS | {"drilling cycle"}
+DRILLING_MEANINGS = PATTERNS | {"drilling cycle"}
 STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
     (
         "speed limit or origin",
@@ -32,7 +32,7 @@ STAYING = frozenset(  # codes that move nothing and leave the origin, or set it 
 )
 
 
-def known_place(state: ModalState, axis: str) -> float | None:
+def known_position(state: ModalState, axis: str) -> float | None:
     """Return an axis's position, None if it is not known."""
     at = getattr(state, FIELDS[axis])
     return at if isinstance(at, float) else None
@@ -55,13 +55,13 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
         return UNKNOWN
     if word.letter in AXIS_NUMBERS and state.distance == "G90":
         return word.number
-    start = known_place(state, axis_of(word.letter))
+    start = known_position(state, axis_of(word.letter))
     return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
 
 
 def _is_drilling(draft: Draft) -> bool:
     """Whether a mill's drilling cycle is active in a block; a motion code ends it."""
-    begins = bool(set(draft.meanings) & DRILLING)
+    begins = bool(set(draft.meanings) & DRILLING_MEANINGS)
     goes_on = bool(draft.state.cycle) and MOTIONS.isdisjoint(draft.codes())
     return (begins or goes_on) and not draft.control.is_lathe
 
@@ -78,15 +78,17 @@ def _follow_drilling(draft: Draft) -> bool:
     return True
 
 
-def follow_places(draft: Draft) -> None:
+def follow_positions(draft: Draft) -> None:
     """Follow the positions to the end of a block."""
     codes = set(draft.codes())
-    lengths = frozenset() if draft.control.is_lathe else LENGTHS
+    lengths = frozenset() if draft.control.is_lathe else LENGTH_CODES
     shifted = codes & (SHIFTING - lengths) or draft.start.units != draft.state.units
     turret = draft.control.is_lathe and "T" in draft.letters()
     changes = "M6" in draft.m_codes()
-    other = codes - FOLLOWED - SHIFTING or set(draft.meanings) - STAYING or _is_drilling(draft)
-    drills = _follow_drilling(draft) if not codes - FOLLOWED else False
+    other = (
+        codes - FOLLOWED_CODES - SHIFTING or set(draft.meanings) - STAYING or _is_drilling(draft)
+    )
+    drills = _follow_drilling(draft) if not codes - FOLLOWED_CODES else False
     if drills:
         return
     if other or turret or changes or shifted:
