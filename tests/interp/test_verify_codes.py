@@ -412,3 +412,39 @@ def test_a_g28_whose_place_was_never_set_is_noted_on_a_lathe(
     (tmp_path / "own.var").write_text(stored)
     changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "own.var")}}
     assert codes(beginning, blocks, changed=changed) == expected
+
+
+FAR = "G0 X{} Z1|G12 I20 Z-1 D4"  # its axes have limits of -500 and 500
+TRAVEL = [  # what the var file holds, a program, the axis that is beyond and where it would be
+    (None, FAR.format(490), "travel-unplaced, travel-perhaps X505"),
+    ({}, "G55|" + FAR.format(0), "travel-unplaced"),
+    ({5221: 10}, "G55|" + FAR.format(0), "travel-unplaced"),
+    ({5221: 10, 5241: 10}, "G55|" + FAR.format(0), ""),
+    ({5221: 100}, FAR.format(490), "travel X605"),
+    ({5221: -100}, FAR.format(490), ""),
+    ({5221: -1000}, FAR.format(490), "travel X-525"),
+    ({5221: -1000}, "G10 L2 P1 X480|" + FAR.format(10), "travel X505"),
+    ({5221: -900, 5241: 10}, "G55|" + FAR.format(480), "travel X505"),
+    ({5221: 10, 5241: -900}, FAR.format(480), "travel X505"),
+    *(({5221: 210}, f"{code}|{FAR.format(280)}", "travel X505")
+      for code in ("G92.1", "G10 L1 P6 R10", "G92.2")),
+    *(({5221: -200}, f"{code}|{FAR.format(490)}", "")
+      for code in ("G92.1", "G10 L1 P6 R10", "G92.2")),
+    ({5210: 1, 5211: 10}, FAR.format(480), "travel X505"),
+    ({5210: 1, 5211: 10}, "G92.1|" + FAR.format(480), "travel-unplaced"),
+    ({5221: 1, 5230: 90}, FAR.format(490), "travel Y505"),
+    ({31: 1}, "o1 if [#31 GT 0]|G0 X5|G0 X6|o1 endif|" + FAR.format(490), "travel-unknown"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("stored", "blocks", "expected"), TRAVEL)
+def test_the_travel_with_the_offsets_of_the_var_file(stored, blocks, expected, proof_of, tmp_path):
+    changed = None
+    if stored is not None:
+        values = {5220: 1, **stored}
+        (tmp_path / "its.var").write_text("".join(f"{n} {values[n]}\n" for n in sorted(values)))
+        changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
+    judged = proof_of("mill", blocks, changed=changed).judged
+    found = [(each.code, each.values) for each in judged if "travel" in each.code]
+    told = [f"{code} {v['axis']}{v['position']:.0f}" if "axis" in v else code for code, v in found]
+    assert ", ".join(told) == expected

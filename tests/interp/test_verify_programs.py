@@ -318,99 +318,19 @@ def test_a_section_in_a_sub_is_measured_at_every_call(tmp_path):
 # ---------------------------------------------------------------- the machine's travel
 
 
-def lines_of(parameters):
-    """Return the text of a var file."""
-    return "".join(f"{number} {value}\n" for number, value in sorted(parameters.items()))
-
-
-def far(tmp_path, *head, centre=490, stored=None):
-    """Return findings and notes of a pocket of radius 20 at X ``centre``, limits -500 to 500.
-
-    ``stored`` is the work offset of G54 in X, or the parameters that the var file holds.
-    """
-    changed = {}
-    if stored is not None:
-        stored = stored if isinstance(stored, dict) else {5220: 1, 5221: stored}
-        (tmp_path / "its.var").write_text(lines_of(stored))
-        changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
-    lines = [*MM, *head, f"G0 X{centre} Y0 Z1", "G12 I20 Z-1 D4"]
-    proof = proof_of_text(tmp_path, lines, changed=changed)
-    travel = [each for each in proof.judged if each.code.startswith("travel")]
-    found = [each.text() for each in travel if each.is_finding]
-    return found, [each.text() for each in travel if each.is_note]
-
-
-def test_a_pocket_beyond_the_travel_is_noted_without_a_work_offset(tmp_path):
-    found, noted = far(tmp_path)
-    assert found == []
-    assert noted == ["with no work offset the X axis would go to 505, its limit is 500 mm"]
-
-
-@pytest.mark.parametrize(("stored", "judged"), [({}, True), ({5241: 10}, False)])
-def test_the_travel_of_a_system_that_was_never_set_is_not_judged(stored, judged, tmp_path):
-    (tmp_path / "its.var").write_text(lines_of({5220: 1, 5221: 10, **stored}))
-    changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
-    lines = [*MM, "G55", "G0 X0 Y0 Z1", "G12 I20 Z-1 D4"]
-    proof = proof_of_text(tmp_path, lines, changed=changed)
-    assert [each.line for each in proof.judged if each.code == "travel-unplaced"] == [5] * judged
-
-
-@pytest.mark.parametrize(("stored", "text"), [(100, "to 605"), (-100, ""), (-1000, "to −525")])
-def test_a_stored_work_offset_counts(stored, text, tmp_path):
-    found, noted = far(tmp_path, stored=stored)
-    assert text in "".join(found) and bool(text) == bool(found) and noted == []
-
-
-def test_an_offset_that_the_program_sets_counts(tmp_path):
-    found, _ = far(tmp_path, "G10 L2 P1 X480", centre=10, stored=-1000)
-    assert found == ["the X axis would go to 505, its limit is 500 mm"]
-
-
 def test_a_pocket_wider_than_the_travel_fits_nowhere(tmp_path):
     changed = {"AXIS_Y": {"MIN_LIMIT": 0, "MAX_LIMIT": 25}}
     proof = proof_of_text(tmp_path, [*MM, "G0 Z1", "G12 I20 Z-1 D4"], changed=changed)
     assert [text for _, text in proof.findings] == ["the Y axis would go to −15, its limit is 0 mm"]
 
 
-TO_505 = ["the X axis would go to 505, its limit is 500 mm"]
-
-
-def test_the_work_offset_in_force_counts_not_that_behind_m2(tmp_path):
-    stored = {5221: -900, 5241: 10}
-    assert far(tmp_path, "G55", centre=480, stored=stored)[0] == TO_505
-    assert far(tmp_path, centre=480, stored={5221: 10, 5241: -900})[0] == TO_505
-
-
-@pytest.mark.parametrize("code", ["G92.1", "G10 L1 P6 R10", "G92.2"])
-def test_a_code_that_sets_no_work_offset_leaves_the_stored_one(code, tmp_path):
-    assert far(tmp_path, code, centre=280, stored=210)[0] == TO_505
-    assert far(tmp_path, code, centre=490, stored=-200) == ([], [])
-
-
-def test_g92_of_the_var_file_counts_until_the_program_cancels_it(tmp_path):
-    stored = {5210: 1, 5211: 10}
-    assert far(tmp_path, centre=480, stored=stored)[0] == TO_505
-    assert far(tmp_path, "G92.1", centre=480, stored=stored) == ([], [])
-
-
-def test_the_rotation_of_the_var_file_counts(tmp_path):
-    stored = {5221: 1, 5230: 90}
-    assert far(tmp_path, centre=490, stored=stored)[0] == [
-        "the Y axis would go to 505, its limit is 500 mm"
-    ]
-
-
-def test_a_program_that_moves_otherwise_with_the_var_file_is_noted(tmp_path):
-    head = ["o1 if [#31 GT 0]", "G0 X5", "G0 X6", "o1 endif"]
-    found, noted = far(tmp_path, *head, stored={31: 1})
-    assert found == [] and "with the machine's var file the program moves otherwise" in noted[0]
-
-
 def test_what_a_program_starts_with_can_be_given(tmp_path):
     lines = [*MM, "G0 X0 Y0 Z1", "G12 I#31 Z-1 D4"]
     proof = proof_of_text(tmp_path, lines, parameters={31: 20, 5221: 490})
     assert proof.pockets[0].commanded.wall.radius == 20
-    assert [text for _, text in proof.findings] == TO_505
+    assert [text for _, text in proof.findings] == [
+        "the X axis would go to 505, its limit is 500 mm"
+    ]
 
 
 def test_a_part_on_the_face_may_be_slower_where_c_could_not_follow_it(tmp_path):
