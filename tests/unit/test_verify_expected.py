@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.tools.verify.expected import haas
-from g12.tools.verify.expected.circle_mill import EventPlace, EventWords
+from g12.tools.verify.expected.circle_mill import EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.expected.mitsubishi import MitsubishiWords
 from g12.tools.verify.expected.yasnac import YasnacWords
@@ -147,12 +147,14 @@ def test_mitsubishi_golden_case():
 
 # ---------------------------------------------------------------- the event
 
-HERE = EventPlace(3 + 4j, 5.0, 0.1, True)
+START, LEVEL, PLANE = 3 + 4j, 5.0, 0.1
 
 
-def event(cutter=0.25, place=HERE, **entries):
-    given = {"R": 1.5, "Z": -0.5, "C": 2.0, **entries}
-    return EventWords(given, place, cutter, 20.0)
+def event(cutter=0.25, feed=20.0, **entries):
+    """Return an event whose levels are given from the program's zero."""
+    given = {"R": 1.5, "Z": -0.5, "W": PLANE, "C": 2.0, **entries}
+    levels = {entry: given[entry] - LEVEL for entry in "ZWO" if entry in given}
+    return EventWords({**given, **levels}, START, cutter, feed)
 
 
 @pytest.mark.parametrize(
@@ -187,10 +189,8 @@ def test_event_perimeters(entries, rough, finish):
     ],
 )
 def test_event_pecks_from_its_first_plane(entries, levels):
-    seen = [level - HERE.level for level in levels]
-    assert event(**{"Z": -1.0, **entries}).levels == pytest.approx(seen)
-    from_plane = HERE._replace(absolute=False)
-    assert event(place=from_plane, **{"Z": -1.1, **entries}).levels == pytest.approx(seen)
+    from_tool = [level - LEVEL for level in levels]
+    assert event(**{"Z": -1.0, **entries}).levels == pytest.approx(from_tool)
 
 
 def feeds_of(found):
@@ -200,7 +200,7 @@ def feeds_of(found):
 
 
 def test_event_has_feeds_of_its_own():
-    found = event(F=8.0, P=1.0, V=4.0, L=0.1)
+    found = event(feed=8.0, P=1.0, V=4.0, L=0.1)
     assert feeds_of(found) == (1, 8, 4)
     found = event(L=-0.1)
     assert feeds_of(found) == (20, 20, 20)

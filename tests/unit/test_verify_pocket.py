@@ -16,10 +16,10 @@ from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
-from g12.tools.verify.expected.circle_mill import EventPlace, EventWords
+from g12.tools.verify.expected.circle_mill import EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.pocket import measure_pocket
-from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
+from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.workpiece import Program, assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -32,7 +32,7 @@ G18 = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]], float)
 def target(rings=(3.0, 8.0, 13.0, 17.0), depths=(-1.0,), *, cutter=3.0, asked=None, **wall):
     asked = asked or HaasWords(0j, rings, depths, -1, 600.0, 600.0)
     wall = Wall(**{"origin": CENTRE, "axes": np.eye(3), "radius": rings[-1] + cutter, **wall})
-    return Target(Source(1, "", "G12", "haas"), wall, Cutter(cutter), asked)
+    return Target(1, "", "G12", "haas", wall, Cutter(cutter), asked)
 
 
 def made(wanted, plane=17):
@@ -69,9 +69,8 @@ def codes(moves, wanted, **options):
 
 
 def event(**entries):
-    place = EventPlace(5 + 2j, 3.0, 1.0, True)
-    words = {"R": 20.0, "Z": -1.0, "C": 2.0, "L": 0.5, **entries}
-    asked = EventWords(words, place, 3.0, 600.0)
+    words = {"R": 20.0, "Z": -4.0, "W": -2.0, "C": 2.0, "L": 0.5, **entries}
+    asked = EventWords(words, 5 + 2j, 3.0, 600.0)
     core = 0.0 if "G" in entries else 13.5
     origin = np.array([50.0, 0.0, 3.0])
     return target((17.0,), asked=asked, origin=origin, cleared=core)
@@ -92,7 +91,7 @@ def test_a_good_pocket_has_no_findings():
     )
 
 
-@pytest.mark.parametrize("entries", [{"G": 7.0}, {"G": 7.0, "K": 0.7, "O": 6.0}, {"D": 2.0}])
+@pytest.mark.parametrize("entries", [{"G": 7.0}, {"G": 7.0, "K": 0.7, "O": 3.0}, {"D": 2.0}])
 def test_a_good_event_has_no_findings(entries):
     wanted = event(**entries)
     assert codes(made(wanted), wanted) == []

@@ -12,7 +12,7 @@ from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.in_material import assumptions, rapids_through
-from g12.tools.verify.reading.circles import Cutter, Source, Target, Wall
+from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.workpiece import Program, assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
@@ -36,7 +36,7 @@ class Pockets(Hand):
         self.pocket(rings, depth)
         wall = Wall(place, np.eye(3), rings[-1] + 3.0, **wanted)
         words = HaasWords(0j, rings, [depth - place[2]], -1, None, None)
-        target = Target(Source(self.block, "", "G12", "haas"), wall, Cutter(cutter), words)
+        target = Target(self.block, "", "G12", "haas", wall, Cutter(cutter), words)
         self.asked.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 

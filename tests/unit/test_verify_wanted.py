@@ -164,7 +164,7 @@ def test_one_ring_leaves_its_core_but_what_the_way_down_has_cleared(line, core):
 def test_d0_puts_the_tool_centre_on_the_circle():
     found = target("G12 I4 Z-2 D0", **HERE)
     assert (found.wall.radius, found.cutter.radius) == (7, 3)
-    assert (found.cutter.circle, found.cutter.word) == (4, "I")
+    assert (found.words.final, found.words.word) == (4, "I")
 
 
 @pytest.mark.parametrize(
@@ -249,7 +249,7 @@ def test_the_turn_is_that_of_the_handler_whatever_the_code(handler, turn):
     moves = Hand().rapid(z=5).line(z=4).moves
     reader = CircleReader(codes, INI, moves, {1: 6.0})
     ((_, found),) = reader.targets([block("G22 I9 Z-1")])
-    assert (found.words.turn, found.source.code) == (turn, "G22")
+    assert (found.words.turn, found.code) == (turn, "G22")
 
 
 def test_a_cycle_with_a_prolog_of_the_machines_own_is_known_by_its_sub():

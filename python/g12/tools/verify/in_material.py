@@ -212,7 +212,7 @@ def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     ]
     yield from _once_a_line(filter(None, (_plunge(workpiece, index) for index in fed)))
     cuts = [(each.line, each.at, each.end) for each in program.on_face]
-    cuts += [(target.source.line, block.at, block.end) for block, target in program.circles]
+    cuts += [(target.line, block.at, block.end) for block, target in program.circles]
     drilled = (call for call in program.holes if not call.is_side)
     cuts += [(call.line, call.moves.start, call.moves.stop) for call in drilled]
     for line, at, end in cuts:

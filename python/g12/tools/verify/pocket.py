@@ -22,6 +22,7 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, judge_path, lay
 from g12.tools.verify.compare.state import extra_events, judge_state, state_differences
+from g12.tools.verify.expected.toolpath import TOUCHING
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
@@ -49,7 +50,7 @@ def measure_pocket(
 
     ``pace`` is a function of all its moves and of those that cut.
     """
-    own, source, wall = range(block.at, block.end), target.source, target.wall
+    own, wall = range(block.at, block.end), target.wall
     laid = lay(target.path, _made_in(wall, moves, own), tolerance)
     cutting = [i for i in own if _is_cutting(moves[i], wall)]
     remaining = uncut(block, target, material, tolerance, real is None)
@@ -58,7 +59,7 @@ def measure_pocket(
     judged = [
         *_judge_cutter(target),
         *_judge_depth(target, tolerance),
-        *judge_path(laid, source.line, wall.machine),
+        *judge_path(laid, target.line, wall.machine),
         *_judge_cut(target, remaining, too_far, tolerance),
         *_judge_state_after(block, target, laid),
     ]
@@ -81,14 +82,14 @@ def measure_pocket(
     }
     return MeasuredCut(
         target,
-        source.line,
-        source.file,
-        source.code,
+        target.line,
+        target.file,
+        target.code,
         own,
         wall.face,
         deviation,
         values,
-        in_file(judged, source.file, wall.machine((0j, 0.0))),
+        in_file(judged, target.file, wall.machine((0j, 0.0))),
         turning=False,
         sound=not laid.differences,
     )
@@ -96,15 +97,15 @@ def measure_pocket(
 
 def _pocket_values(target: Target) -> dict[str, Any]:
     """Return what the words of a pocket ask for as plain values; ``z`` is that of other planes."""
-    wall, cutter = target.wall, target.cutter
-    rings = list(dict.fromkeys(round(arc.radius, 6) for arc in target.arcs))
-    turns = sorted({round(math.copysign(1, arc.sweep)) for arc in target.arcs})
+    wall, words = target.wall, target.words
+    rings = list(dict.fromkeys(round(each.radius, 6) for each in target.circles))
+    turns = sorted({round(math.copysign(1, each.sweep)) for each in target.circles})
     reach, level = max(rings, default=0.0), float(wall.origin[Z])
     return {
-        "dialect": target.source.dialect,
+        "dialect": target.dialect,
         "centre": [float(value) for value in wall.origin[:2]],
-        "cutter": 2 * cutter.radius,
-        "circle": {"word": cutter.word, "radius": cutter.circle} if cutter.word else None,
+        "cutter": 2 * target.cutter.radius,
+        "circle": {"word": words.word, "radius": words.final} if words.word else None,
         "radius": wall.radius,
         "core": wall.core or None,
         "rings": rings,
@@ -114,7 +115,7 @@ def _pocket_values(target: Target) -> dict[str, Any]:
         "lowest": wall.height(target.deepest),
         "z": None if wall.plane == Z else [level - reach, level + reach],
         "entry": _entry_values(target),
-        "stepover": target.words.stepover,
+        "stepover": words.stepover,
     }
 
 
@@ -122,13 +123,12 @@ def _entry_values(target: Target) -> dict[str, Any]:
     """Return how the tool goes down: the helices' count, radius and greatest angle, or straight."""
     falls = [move.name == "helix" for move in target.path]
     falling = [move for move in target.path if move.name == "helix"]
-    curve = falling[0].curve if falling else None
-    if not isinstance(curve, Arc):
+    if not falling:
         return {"way": "straight"}
     fall = max(move.start_level - move.end_level for move in falling)
     count = sum(now > before for before, now in zip(falls, falls[1:]))
-    angle = math.degrees(math.atan2(fall, curve.length))
-    return {"way": "helix", "count": count, "radius": curve.radius, "angle": angle}
+    angle = math.degrees(math.atan2(fall, falling[0].curve.length))
+    return {"way": "helix", "count": count, "radius": falling[0].radius, "angle": angle}
 
 
 def _made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
@@ -166,12 +166,12 @@ def _is_cutting(move: Move, wall: Wall) -> bool:
 
 def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
     """Return the radius of the wall as cut, 0 if it is not."""
-    walls = {id(move) for move in target.walls}
     made = [
         moves[index].radius
         for move, indices in zip(target.path, laid.moves)
+        if move.is_circle and abs(move.radius - target.words.final) < TOUCHING
         for index in indices
-        if id(move) in walls and moves[index].kind == "arc"
+        if moves[index].kind == "arc"
     ]
     if not made:
         return 0.0
@@ -184,8 +184,7 @@ def _run_values(
 ) -> Mapping[str, float]:
     """Return a run's largest deviations, and how far it went beyond the wall."""
     wall, cutter = target.wall, target.cutter.radius
-    full = {id(move) for move in target.circles}
-    circles = [i for move, made in zip(target.path, laid.moves) if id(move) in full for i in made]
+    circles = [i for move, made in zip(target.path, laid.moves) if move.is_circle for i in made]
     lines = [wall.local(real.points[real.during(index)]) for index in cutting]
     radii = np.concatenate([np.zeros(0), *(np.hypot(*line[:, :2].T) for line in lines)])
     far = radii.max(initial=0.0) + cutter - wall.radius
@@ -197,14 +196,14 @@ def _run_values(
 
 def _judge_cutter(target: Target) -> Iterator[Finding]:
     """Yield what is to know of the cutter: that of D, the loaded one, or none."""
-    cutter, wall, line = target.cutter, target.wall, target.source.line
+    cutter, wall, line = target.cutter, target.wall, target.line
     values = {
         "tool": cutter.tool,
         "named": cutter.named,
         "loaded": 2 * cutter.loaded,
         "diameter": 2 * cutter.radius,
     }
-    if cutter.word:
+    if target.words.word:
         yield Finding("centre-on-circle", line)
     if _is_wrong_tool(cutter):
         cut = wall.radius - cutter.radius + cutter.loaded
@@ -223,16 +222,16 @@ def _is_wrong_tool(cutter: Cutter) -> bool:
 
 
 def _judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
-    if target.source.dialect != EVENT and target.deepest > tolerance:
+    if target.dialect != EVENT and target.deepest > tolerance:
         values = {"depth": target.wall.height(target.deepest), "start": target.wall.height(0.0)}
-        yield Finding("cuts-air", target.source.line, values)
+        yield Finding("cuts-air", target.line, values)
 
 
 def _judge_cut(
     target: Target, remaining: BaseGeometry, too_far: float, tolerance: float
 ) -> Iterator[Finding]:
     """Yield material that remains, and a wall that a run cut too far."""
-    wall, deepest, line = target.wall, target.deepest, target.source.line
+    wall, deepest, line = target.wall, target.deepest, target.line
     if remaining.area > AREA:
         values = {"area": remaining.area, "shape": remaining, "floor": wall.height(deepest)}
         yield Finding("uncut", line, values, wall.machine((0j, deepest)))
@@ -246,7 +245,7 @@ def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Fin
     other_feed = any(each.kind == FEED for each in laid.differences)
     state = state_differences(block.state_after, target.leaves)
     others = [each for each in state if not (other_feed and each.name == "_feed")]
-    yield from judge_state(others, extra_events(block), target.source.line)
+    yield from judge_state(others, extra_events(block), target.line)
 
 
 def uncut(
@@ -288,8 +287,7 @@ def _clears(target: Target, inner: float, outer: float) -> bool:
     edge = cutter.loaded if _is_wrong_tool(cutter) else cutter.radius
     there = [m for m in target.path if m.start_level == m.end_level == floor and not m.rapid]
     spans = [(0.0, edge)] if any(abs(move.curve.start) < FINE for move in there) else []
-    arcs = (m.curve for m in target.circles if m.end_level == floor)
-    rings = (arc.radius for arc in arcs if isinstance(arc, Arc))
+    rings = (move.radius for move in target.circles if move.end_level == floor)
     spans += [(max(0.0, radius - edge), radius + edge) for radius in rings]
     for first, last in sorted(spans):
         inner = max(inner, last) if first <= inner else inner

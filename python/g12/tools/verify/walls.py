@@ -108,7 +108,7 @@ def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
     for _, target in circles:
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
-            yield AssumedHole(target.source.line, (x, y, z), target.wall.bore)
+            yield AssumedHole(target.line, (x, y, z), target.wall.bore)
 
 
 def holes_entered(

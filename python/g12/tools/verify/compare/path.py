@@ -18,10 +18,9 @@ from itertools import accumulate, chain
 from typing import Any
 
 from g12.geometry.curve import Arc, Curve, Line
-from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.expected.toolpath import Expected, Point, distance
 from g12.tools.verify.result.finding import Finding
 
-Point = tuple[complex, float]  # in the plane, and the level
 AHEAD = 100  # moves after a difference that are searched for its size
 SLACK = 0.25  # mm that a point may be ahead: at a corner that is blended
 TIE = 1e-7  # mm: of two points as near as that the earlier one counts
@@ -80,9 +79,9 @@ class Made:
         """Return how far a point is from what was made between two of the points."""
         curve = self.curve or Line(first[0], last[0])
         chord = Expected("", Line(first[0], last[0]), first[1], last[1])
-        _, level = chord.point(chord.share_of(*point))
+        _, level = chord.point(chord.nearest(point))
         away = abs(complex(curve.distance(point[0]), point[1] - level))
-        return max(0.0, away - _apart(first, last) / 2) if self.sampled else away
+        return max(0.0, away - distance(first, last) / 2) if self.sampled else away
 
 
 def _along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
@@ -210,13 +209,13 @@ class _Cursor:
         How far off is the greatest distance of it and of what is passed before it; the search ends
         where that alone is greater than for a move before.
         """
-        reach, share = 2 * _apart(first, last) + self.slack, self.share
+        reach, share = 2 * distance(first, last) + self.slack, self.share
         passed, least = (0.0, last), math.inf
         for index in range(self.index, len(self.path)):
             expected, length = self.path[index], self._lengths[index]
             most = min(1.0, share + reach / length) if length else 1.0
             nearest = expected.nearest(last, share, most)
-            off = expected.distance(*last, nearest)
+            off = distance(last, expected.point(nearest))
             if off < least:
                 within = self._within(move, (first, last), index, share, nearest)
                 worst = max(passed, (off, last), within, key=_size)
@@ -233,15 +232,15 @@ class _Cursor:
                 return
             share = 0.0
 
-    def _missed(self, index: int, distance: float) -> float:
+    def _missed(self, index: int, missed: float) -> float:
         """Return how far a move's end is from what was made: of the present one, so far.
 
         A blended corner comes nearest to it before what is made turns away.
         """
         if index != self.index:
-            return distance
+            return missed
         nearest = self._nearest_end[1] if self._nearest_end[0] == index else math.inf
-        self._nearest_end = index, min(nearest, distance)
+        self._nearest_end = index, min(nearest, missed)
         return self._nearest_end[1]
 
     def _within(
@@ -319,7 +318,7 @@ def _at_its_worst(
 def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
     """Return the greatest distance of a move from the nearest of some others, and where it is."""
     away = (
-        (min((it.distance(*at, it.share_of(*at)) for it in path), default=math.inf), at)
+        (min((distance(at, it.point(it.nearest(at))) for it in path), default=math.inf), at)
         for at in move.points
     )
     return max(away, key=_size)
@@ -328,9 +327,9 @@ def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
 def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
     """Return what a move does after the whole toolpath is made: nothing, if it stays there."""
     end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
-    at = max(move.points, key=lambda point: _apart(point, end))
+    at = max(move.points, key=lambda point: distance(point, end))
     return (
-        PathDifference(EXTRA, None, at, index=move.index) if _apart(at, end) > tolerance else None
+        PathDifference(EXTRA, None, at, index=move.index) if distance(at, end) > tolerance else None
     )
 
 
@@ -346,10 +345,6 @@ def _otherwise(expected: Expected, move: Made) -> PathDifference | None:
     if abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
         return PathDifference(FEED, expected, at, move.feed, index)
     return None
-
-
-def _apart(one: Point, other: Point) -> float:
-    return abs(complex(abs(one[0] - other[0]), one[1] - other[1]))
 
 
 def judge_path(

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The toolpath of a circle mill event, by ngc/circle_mill.md.
 
-Radii are those of the tool's centre in mm, levels are measured from where the tool stands.
+Radii are those of the tool's centre in mm, levels are measured from the tool before the event.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Self
 
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer
 from g12.tools.verify.expected.words import LEFT_OUT, BlockInMm
@@ -16,62 +16,66 @@ RETRACT = 2.54  # mm, of a pocket between its levels
 NARROWER = 0.254  # mm: the roughing width without J is the cutter's diameter less this
 ROUNDING = 1e-6  # mm
 POCKET = 7.0  # the event's G of a pocket
-ENTRIES = "GXYZWORDCKJLPFV"
+CALL_ENTRIES = "GXYZWORDCKJLPFV"  # of the sub, in order
+NUMBERS = "GDC"  # entries that are no lengths
+ENTRIES_OF_CALL = {entry: entry for entry in "GZWORDCKJLPV"}
+ENTRIES_OF_CODE = {**{entry: entry for entry in "RZKPJD"}, "W": "I", "O": "E", "L": "Q", "C": "H"}
 ROUGH_FINISH = ((-1, -1), (1, 1), (-1, 1), (1, -1))  # turns by D
 
 Entries = Mapping[str, float]  # by the control's letters; lengths and feeds in mm
 
 
-class EventPlace(NamedTuple):
-    """Where an event begins: from the centre, its level, the plane W, both as the program has them.
-
-    ``absolute`` says that Z is measured from the program's zero, not from W.
-    """
-
-    start: complex
-    level: float
-    plane: float
-    absolute: bool
-    line: int = 0
-
-
 @dataclass(frozen=True)
 class EventWords(CircleWords):
-    """An event's entries, where it begins, and the cutter by its radius.
+    """An event's entries, the tool's position from the centre, and the cutter's radius.
 
-    ``block_feed`` is the feed without F among the entries: the block's, or the one in force.
+    The levels Z, W and O of the entries are measured from the tool before the event.
     """
 
     entries: Entries
-    place: EventPlace
+    start: complex
     cutter: float
-    block_feed: float | None
-    per_rev: bool = False
+    feed: float | None
+
+    @classmethod
+    def of(cls, view: BlockInMm, entries: Entries, plane: float, cutter: float) -> Self:
+        """Return the event of a block; ``plane`` is W in program coordinates."""
+        level, base = view.position("z"), 0.0 if view.absolute else plane
+        levels = {"W": plane - level, "Z": entries["Z"] + base - level}
+        levels |= {"O": entries["O"] - level} if "O" in entries else {}
+        return cls(
+            {**entries, **levels},
+            view.from_centre(),
+            cutter,
+            view.feed(),
+            line=view.line,
+            per_rev=view.per_rev,
+        )
 
     @property
     def pocket(self) -> bool:
-        """Tell whether it clears all that is within the wall."""
+        """Whether it clears all that is within the wall."""
         return self.entries.get("G", 0.0) == POCKET
 
     @property
     def side(self) -> int:
-        """Return where the cutter works: -1 inside the wall, +1 outside, 0 on the circle."""
+        """Where the cutter works: -1 inside the wall, +1 outside, 0 on the circle."""
         turn = -self._turns[0]
         return {0: 0, 1: turn, 2: -turn}[int(self.entries["C"])]  # clockwise: left is outside
 
     @property
     def inside(self) -> bool:
-        """Tell whether the cutter works inside the wall."""
+        """Whether the cutter works inside the wall."""
         return self.side <= 0
 
     @property
     def word(self) -> str:
-        """Return the entry of the circle on which the tool's centre goes, "" beside a wall."""
+        """The entry of the circle on which the tool's centre goes, "" beside a wall."""
         return "" if self.side else "R"
 
     @property
     def final(self) -> float:
-        """Return the radius of the last circle."""
+        """The radius of the last circle."""
         return self.entries["R"] + self.side * self.cutter
 
     def cleared(self, cutter: float) -> float:
@@ -79,18 +83,13 @@ class EventWords(CircleWords):
         return 0.0 if self.pocket else max(0.0, self.rings[-1] - cutter)
 
     @property
-    def feed(self) -> float | None:
-        """Return the feed of roughing."""
-        return self.entries.get("F", self.block_feed)
-
-    @property
     def plunge_feed(self) -> float | None:
-        """Return the feed down."""
+        """The feed down."""
         return self.entries.get("P", self.feed)
 
     @property
     def rings(self) -> list[float]:
-        """Return the radii of a level's circles, outward and equally far apart."""
+        """The radii of a level's circles, outward and equally far apart."""
         rough = self.final + self.side * abs(self.entries.get("L", 0.0))
         if not self.pocket:
             return [rough]
@@ -100,12 +99,11 @@ class EventWords(CircleWords):
 
     @property
     def levels(self) -> list[float]:
-        """Return the levels from where the tool stands, downward."""
-        entries, place = self.entries, self.place
-        final = entries["Z"] + (0.0 if place.absolute else place.plane) - place.level
-        rough = final + max(0.0, entries.get("L", 0.0))
-        peck = entries.get("K", self._first_plane - rough)
-        levels = [self._first_plane - peck]
+        """The levels of the passes, downward."""
+        first, final = self.entries["W"], self.entries["Z"]
+        rough = final + max(0.0, self.entries.get("L", 0.0))
+        peck = self.entries.get("K", first - rough)
+        levels = [first - peck]
         while levels[-1] > rough + ROUNDING:
             levels.append(levels[-1] - peck)
         levels[-1] = rough
@@ -113,36 +111,31 @@ class EventWords(CircleWords):
 
     @property
     def stepover(self) -> float | None:
-        """Return the distance between neighbouring passes, None with one ring."""
+        """The distance between neighbouring passes, None with one ring."""
         return self.rings[0] if len(self.rings) > 1 else None
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves: to the plunge point, the levels, the finish, and back."""
-        place = self.place
-        writer = Writer(place.start, 0.0, place.line, self.per_rev)
-        writer.vertical("rapid up", max(0.0, self._first_plane), rapid=True)
+        writer, plane = self.writer(self.start), self.entries["W"]
+        writer.vertical("rapid up", max(0.0, plane), rapid=True)
         plunge_point = 0j if self.pocket else complex(0.0, -self.rings[-1])
         writer.straight("rapid to the plunge point", plunge_point, rapid=True)
-        writer.vertical("rapid to the first reference plane", self._first_plane, rapid=True)
+        writer.vertical("rapid to the first reference plane", plane, rapid=True)
         for index, level in enumerate(self.levels):
             if index and self.pocket:
                 self._back_to_centre(writer)
             self._level(writer, level)
         if "L" in self.entries:
             self._finish(writer)
-        second = self.entries.get("O", place.plane) - place.level
+        second = self.entries.get("O", plane)
         writer.vertical("rapid to the second reference plane", second, rapid=True)
-        writer.straight("rapid back to the start", place.start, rapid=True)
+        writer.straight("rapid back to the start", self.start, rapid=True)
         return writer.path
 
     @property
     def _turns(self) -> tuple[int, int]:
         """The turns of roughing and of the finish."""
         return ROUGH_FINISH[int(self.entries.get("D", 0.0))]
-
-    @property
-    def _first_plane(self) -> float:
-        return self.place.plane - self.place.level
 
     def _level(self, writer: Writer, level: float) -> None:
         writer.vertical("plunge", level, self.plunge_feed)
@@ -151,7 +144,7 @@ class EventWords(CircleWords):
             writer.arc("circle", 0j, 2 * math.pi * self._turns[0], self.feed)
 
     def _back_to_centre(self, writer: Writer) -> None:
-        retracted = min(writer.level + RETRACT, self._first_plane)
+        retracted = min(writer.level + RETRACT, self.entries["W"])
         writer.vertical("retract", retracted, rapid=True)
         writer.straight("rapid back to the centre", 0j, rapid=True)
 
@@ -164,31 +157,29 @@ class EventWords(CircleWords):
         writer.arc("lead-out of the finish", middle, entry, feed)
 
 
-def event_of(entries: Entries, plane: float, view: BlockInMm, cutter: float) -> EventWords:
-    """Return the event of a block; ``plane`` is W in program coordinates."""
-    start = view.seen_from(view.centre())
-    place = EventPlace(start, view.present("z"), plane, view.absolute, view.line)
-    return EventWords(entries, place, cutter, view.feed(), view.rev)
+def words_of_call(arguments: Sequence[float]) -> dict[str, float]:
+    """Return the entries of ``o<circle_mill> call`` as if they were words of a block."""
+    given = zip(CALL_ENTRIES, arguments)
+    return {letter: value for letter, value in given if value != LEFT_OUT}
 
 
-def called_event(view: BlockInMm) -> dict[str, float]:
-    """Return the entries of ``o<circle_mill> call``, mm; X and Y go where the words would."""
-    given = dict(zip(ENTRIES, view.arguments))
-    entries = {
-        letter: value * (1.0 if letter in "GDC" else view.unit)
-        for letter, value in given.items()
-        if value != LEFT_OUT
-    }
-    view.words = {letter: given[letter] for letter in "XY"}
-    return entries
+def entries_of_call(view: BlockInMm) -> dict[str, float]:
+    """Return the entries of a call."""
+    return _entries(view, ENTRIES_OF_CALL)
 
 
-def coded_event(view: BlockInMm, pocket: bool) -> dict[str, float]:
-    """Return the entries of a G12.2 or G13.2 block, mm."""
-    letters = {entry: entry for entry in "RZKPJ"} | {"W": "I", "O": "E", "L": "Q"}
-    entries = {entry: view.length(word) for entry, word in letters.items() if word in view.words}
+def entries_of_code(view: BlockInMm, pocket: bool) -> dict[str, float]:
+    """Return the entries of a G12.2 or G13.2 block; with L0 only the side has a finish."""
+    entries = _entries(view, ENTRIES_OF_CODE)
     if view.words.get("L") == 0.0:
         entries["L"] = -entries["L"]
-    entries["D"], entries["C"] = view.words.get("D", 0.0), view.words["H"]
-    entries["G"] = POCKET if pocket else 0.0
-    return entries
+    return {**entries, "G": POCKET if pocket else 0.0}
+
+
+def _entries(view: BlockInMm, words: Mapping[str, str]) -> dict[str, float]:
+    """Return the entries of a block, lengths in mm; ``words`` are their letters."""
+    return {
+        entry: view.words[word] if entry in NUMBERS else view.length(word)
+        for entry, word in words.items()
+        if word in view.words
+    }

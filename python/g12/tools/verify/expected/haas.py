@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The toolpath of a Haas G12 or G13 block, by ngc/haas.md.
 
-Radii are those of the tool's centre in mm, depths are measured from where the tool stands.
+Radii are those of the tool's centre in mm, depths are measured from the tool before the block.
 """
 
 import math
@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Self
 
-from g12.settings import Settings
+from g12.tools.machine.ini import Ini
 from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
 from g12.tools.verify.expected.words import BlockInMm
 
@@ -20,7 +20,7 @@ ROUNDING = 1e-6  # mm
 
 @dataclass(frozen=True)
 class HaasWords(CircleWords):
-    """A block's words: where the tool stands from the centre, the radii of the rings, the depths.
+    """A block's words: the tool's position from the centre, the radii of the rings, the depths.
 
     ``depths`` has one for each pass. ``pitch`` is what a spiral grows by in a turn, 0 for rings.
     ``turn`` is +1 counterclockwise, -1 clockwise. ``helix`` is its radius, 0 for a plunge, and
@@ -36,21 +36,20 @@ class HaasWords(CircleWords):
     pitch: float = 0.0
     helix: float = 0.0
     angle: float = 0.0
-    line: int = 0
-    per_rev: bool = False
     word: str = ""
 
     @classmethod
-    def of(cls, view: BlockInMm, turn: int, offset: float, settings: Settings) -> Self:
+    def of(cls, view: BlockInMm, turn: int, offset: float, ini: Ini) -> Self:
         """Return the words of a block; ``offset`` is the radius in force."""
         word, step, feed = "K" if "K" in view.words else "I", view.length("Q"), view.feed()
         first, last = view.length("I") - offset, view.length(word) - offset
+        settings = ini.settings
         is_spiral = settings.clearing == "spiral"
         helix = 0.0
         if settings.entry == "helix":
             helix = min(first, CLEARED * offset) if offset else first
         return cls(
-            view.seen_from(view.centre()),
+            view.from_centre(),
             [first, last] if is_spiral and step else rings_between(first, last, step),
             _pass_depths(view),
             turn,
@@ -59,9 +58,9 @@ class HaasWords(CircleWords):
             step if is_spiral else 0.0,
             helix,
             math.radians(settings.entry_angle),
-            view.line,
-            view.rev,
             "" if offset else word,
+            line=view.line,
+            per_rev=view.per_rev,
         )
 
     @property
@@ -85,7 +84,7 @@ class HaasWords(CircleWords):
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves: to the centre, then each pass from there and back."""
-        writer = Writer(self.start, 0.0, self.line, self.per_rev)
+        writer = self.writer(self.start)
         writer.straight("rapid to the centre", 0j, rapid=True)
         ahead = 1 + 0j  # the direction of the lead-in
         for above, depth in zip((0.0, *self.depths), self.depths):
@@ -176,8 +175,5 @@ def rings_between(first: float, last: float, step: float) -> list[float]:
 
 
 def _pass_depths(view: BlockInMm) -> list[float]:
-    """Return the depth of each pass, from where the tool stands."""
-    passes = int(view.words.get("L", 1))
-    repeated = view.absolute or "Z" not in view.words
-    counts = [1] * passes if repeated else range(1, passes + 1)
-    return [view.height("Z", count) - view.start[2] for count in counts]
+    """Return the depth of each pass."""
+    return [view.depth(count + 1) for count in range(int(view.words.get("L", 1)))]

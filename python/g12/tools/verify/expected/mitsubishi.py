@@ -5,7 +5,8 @@ import math
 from dataclasses import dataclass
 from typing import Self
 
-from g12.tools.verify.expected.toolpath import CircleWords, Expected, Writer, core_within
+from g12.tools.machine.ini import Ini
+from g12.tools.verify.expected.toolpath import CircleWords, Expected, core_within
 from g12.tools.verify.expected.words import BlockInMm
 
 
@@ -16,15 +17,13 @@ class MitsubishiWords(CircleWords):
     final: float
     turn: int
     feed: float | None
-    line: int = 0
-    per_rev: bool = False
     word: str = ""
 
     @classmethod
-    def of(cls, view: BlockInMm, turn: int, offset: float) -> Self:
+    def of(cls, view: BlockInMm, turn: int, offset: float, ini: Ini) -> Self:
         """Return the words of a block; ``offset`` is the radius of D."""
         final, word = abs(view.length("I")) - offset, "" if offset else "I"
-        return cls(final, turn, view.feed(), view.line, view.rev, word)
+        return cls(final, turn, view.feed(), word, line=view.line, per_rev=view.per_rev)
 
     def cleared(self, cutter: float) -> float:
         """Return the radius within which material may remain."""
@@ -32,7 +31,7 @@ class MitsubishiWords(CircleWords):
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves: half a circle out along the first axis, round, and back."""
-        writer, half = Writer(0j, 0.0, self.line, self.per_rev), self.turn * math.pi
+        writer, half = self.writer(), self.turn * math.pi
         writer.arc("lead-in", complex(self.final) / 2, half, self.feed)
         writer.arc("circle", 0j, 2 * half, self.feed)
         writer.arc("lead-out", complex(self.final) / 2, half, self.feed)

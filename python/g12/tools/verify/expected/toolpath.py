@@ -6,12 +6,17 @@ its plane; of a polar section, the part's face; on a cylinder, its unrolled surf
 measured at right angles to it.
 """
 
+import math
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line
 
 NO_LENGTH = 1e-6  # mm
-TOUCHING = 0.01  # mm: so far over each other two rings leave nothing
+TOUCHING = 0.01  # mm: two rings that overlap by this leave no material between them
+FULL = 2 * math.pi - 1e-9
+
+Point = tuple[complex, float]  # in the plane, and the level
 
 
 class Expected(NamedTuple):
@@ -33,19 +38,30 @@ class Expected(NamedTuple):
 
     @property
     def length(self) -> float:
-        """Return the length in space."""
+        """The length in space."""
         return abs(complex(self.curve.length, self.end_level - self.start_level))
 
-    def point(self, share: float) -> tuple[complex, float]:
-        """Return the point of the plane and the level at a share of the move."""
+    @property
+    def sweep(self) -> float:
+        """The signed angle of an arc in radians, 0 of a line."""
+        return getattr(self.curve, "sweep", 0.0)
+
+    @property
+    def radius(self) -> float:
+        """The radius of an arc, 0 of a line."""
+        return getattr(self.curve, "radius", 0.0)
+
+    @property
+    def is_circle(self) -> bool:
+        """Whether it is a full circle."""
+        return abs(self.sweep) > FULL
+
+    def point(self, share: float) -> Point:
+        """Return the point at a share of the move."""
         rise = share * (self.end_level - self.start_level)
         return self.curve.point(share), self.start_level + rise
 
-    def share_of(self, point: complex, level: float) -> float:
-        """Return the share of the move's point nearest to a point."""
-        return self.nearest((point, level), 0.0, 1.0)
-
-    def nearest(self, point: tuple[complex, float], least: float, most: float) -> float:
+    def nearest(self, point: Point, least: float = 0.0, most: float = 1.0) -> float:
         """Return the share nearest to a point between two shares.
 
         An arc that climbs is followed across the plane, a straight move in space.
@@ -62,14 +78,14 @@ class Expected(NamedTuple):
         across = ((point - self.curve.start) * along.conjugate()).real
         return (across + (level - self.start_level) * rise) / square if square else 0.0
 
-    def distance(self, point: complex, level: float, share: float) -> float:
-        """Return the distance in space between a point and the move's point at a share."""
-        there, height = self.point(share)
-        return abs(complex(abs(point - there), level - height))
+
+def distance(one: Point, other: Point) -> float:
+    """Return the distance of two points in space."""
+    return abs(complex(abs(one[0] - other[0]), one[1] - other[1]))
 
 
 class Writer:
-    """Writes down a toolpath from where the tool stands; what has no length is left out.
+    """Writes down a toolpath from where the tool is; leaves out what has no length.
 
     ``line`` is that of the block, ``per_rev`` says that its feeds are per revolution.
     """
@@ -77,22 +93,17 @@ class Writer:
     def __init__(self, at: complex, level: float, line: int = 0, per_rev: bool = False) -> None:
         self.at, self.level = at, level
         self.path: list[Expected] = []
-        self._line, self._per_rev = line, per_rev
+        self._how = {"line": line, "per_rev": per_rev}
 
     def straight(
-        self,
-        name: str,
-        end: complex,
-        feed: float | None = None,
-        fall: float = 0.0,
-        **how: bool,
+        self, name: str, end: complex, feed: float | None = None, fall: float = 0.0, **how: bool
     ) -> None:
-        """Add a line across the plane that falls by some height; ``how`` is ``rapid`` or so."""
-        self._add(name, Line(self.at, end), self.level - fall, feed, **how)
+        """Add a line across the plane that falls by ``fall``; ``how`` is ``rapid``, ``per_rev``."""
+        self._add(name, Line(self.at, end), self.level - fall, feed, how)
 
     def vertical(self, name: str, level: float, feed: float | None = None, **how: bool) -> None:
         """Add a move to another level."""
-        self._add(name, Line(self.at, self.at), level, feed, **how)
+        self._add(name, Line(self.at, self.at), level, feed, how)
 
     def arc(
         self,
@@ -103,48 +114,47 @@ class Writer:
         fall: float = 0.0,
         **how: bool,
     ) -> None:
-        """Add an arc about a centre that falls by some height."""
-        self._add(name, Arc(self.at, centre, sweep), self.level - fall, feed, **how)
+        """Add an arc about a centre that falls by ``fall``."""
+        self._add(name, Arc(self.at, centre, sweep), self.level - fall, feed, how)
 
-    def _add(
-        self,
-        name: str,
-        curve: Curve,
-        level: float,
-        feed: float | None,
-        rapid: bool = False,
-        per_rev: bool | None = None,
-    ) -> None:
-        per_rev = self._per_rev if per_rev is None else per_rev
-        move = Expected(name, curve, self.level, level, feed, rapid, per_rev, line=self._line)
+    def _add(self, name: str, curve: Curve, level: float, feed: float | None, how: dict) -> None:
+        move = Expected(name, curve, self.level, level, feed, **{**self._how, **how})
         if move.length > NO_LENGTH:
             self.path.append(move)
             self.at, self.level = curve.end, level
 
 
+@dataclass(frozen=True, kw_only=True)
 class CircleWords:
-    """What a block that cuts a circle says, where its dialect does not say otherwise."""
+    """The words of a block that cuts a circle, where its dialect has no others."""
+
+    line: int = 0
+    per_rev: bool = False
 
     @property
     def inside(self) -> bool:
-        """Tell whether the cutter works inside the wall."""
+        """Whether the cutter works inside the wall."""
         return True
 
     @property
     def stepover(self) -> float | None:
-        """Return the distance between neighbouring passes, None with one ring."""
+        """The distance between neighbouring passes, None with one ring."""
         return None
 
     def bore(self, cutter: float) -> float:
         """Return the radius of the hole that was there before; ``cutter`` is a radius."""
         return 0.0
 
+    def writer(self, start: complex = 0j) -> Writer:
+        """Return a writer whose level 0 is where the tool is; ``start`` is from the centre."""
+        return Writer(start, 0.0, self.line, self.per_rev)
 
-def core_within(ring: float, cutter: float, begun: float = 0.0) -> float:
-    """Return the radius of what one ring along a wall leaves standing by design.
 
-    The cutter, by its radius, begins in the centre, or on a circle of radius ``begun`` there: a
-    ring that touches what it clears there leaves nothing.
+def core_within(ring: float, cutter: float, cleared: float = 0.0) -> float:
+    """Return the radius of the core that one ring along a wall leaves by design.
+
+    ``cutter`` is a radius. The cutter begins in the centre, or on a circle of the radius
+    ``cleared`` there: a ring that touches that leaves nothing.
     """
     inner = ring - cutter
-    return inner if inner > begun + cutter - TOUCHING else 0.0
+    return inner if inner > cleared + cutter - TOUCHING else 0.0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The toolpath of a Yasnac G12 or G13 block, by ngc/yasnac.md.
 
-Places are those of the tool's centre along X from the circle's centre, mm, signed like I.
+Positions are those of the tool's centre along X from the circle's centre, mm, signed like I.
 """
 
 import math
@@ -18,9 +18,9 @@ ROUNDING = 1e-6  # mm
 
 @dataclass(frozen=True)
 class YasnacWords(CircleWords):
-    """A block's words: where the fast move ends (0 without one), the spiral, the circle.
+    """A block's words: the end of the fast move (0 without one), the spiral, the circle.
 
-    ``first`` is where the half circle ends: on the circle, or on the spiral's first turn, which
+    ``first`` is the end of the half circle: on the circle, or on the spiral's first turn, which
     grows by ``pitch`` (0 without a spiral). ``traverse`` is the feed of the fast moves in mm per
     minute, 0 for rapids. ``turn`` is +1 counterclockwise, -1 clockwise. ``hole`` is the radius of
     the hole that was there before, without an offset that of the tool's centre in it.
@@ -34,8 +34,6 @@ class YasnacWords(CircleWords):
     feed: float | None
     pitch: float = 0.0
     traverse: float = 0.0
-    line: int = 0
-    per_rev: bool = False
     word: str = ""
     hole: float = 0.0
 
@@ -54,10 +52,10 @@ class YasnacWords(CircleWords):
             view.feed(),
             view.length("Q"),
             ini.settings.yasnac_traverse * ini.mm,
-            view.line,
-            view.rev,
             "" if offset else "I",
             abs(hole),
+            line=view.line,
+            per_rev=view.per_rev,
         )
 
     @property
@@ -84,7 +82,7 @@ class YasnacWords(CircleWords):
 
     def toolpath(self) -> list[Expected]:
         """Return the expected moves: fast to the approach, onto the circle, round, and back."""
-        writer, half = Writer(0j, 0.0, self.line, self.per_rev), self.turn * math.pi
+        writer, half = self.writer(), self.turn * math.pi
         self._fast(writer, self.approach)
         writer.arc("lead-in", complex(self.approach + self.first) / 2, half, self.feed)
         for growth in self._growths():
@@ -105,8 +103,6 @@ class YasnacWords(CircleWords):
             yield growth / 2
             rest -= growth
 
-    def _fast(self, writer: Writer, place: float) -> None:
-        if self.traverse:
-            writer.straight("fast move", complex(place), self.traverse, per_rev=False)
-        else:
-            writer.straight("fast move", complex(place), rapid=True)
+    def _fast(self, writer: Writer, x: float) -> None:
+        how = {"per_rev": False} if self.traverse else {"rapid": True}
+        writer.straight("fast move", complex(x), self.traverse or None, **how)

@@ -46,11 +46,11 @@ def cores(circles: Collection[tuple[Block, Target]], material: Material) -> Iter
     """Yield one note of the cores that stand when their circles are cut."""
     found = [each for each in circles if core_area(*each, material) > LEAST_AREA]
     for block, target in found[:1]:
-        line, wall = target.source.line, target.wall
-        others = {other.source.line for _, other in found} - {line}
+        line, wall = target.line, target.wall
+        others = {other.line for _, other in found} - {line}
         values = {"area": core_area(block, target, material), "more": also_in(others)}
         place = wall.machine((0j, target.deepest))
-        yield Finding("core-stands", line, values, place, target.source.file)
+        yield Finding("core-stands", line, values, place, target.file)
 
 
 def core_area(block: Block, target: Target, material: Material) -> float:
@@ -67,12 +67,12 @@ def round_of(target: Target) -> Round:
     wall = target.wall
     cut = wall.radius + 2 * target.cutter.radius * (not wall.inside)
     centre, floor = complex(*wall.origin[:2]), wall.height(target.deepest)
-    return Round(target.source.line, centre, wall.radius, cut, floor, wall.face)
+    return Round(target.line, centre, wall.radius, cut, floor, wall.face)
 
 
 def cut_before(circles: Collection[tuple[Block, Target]], material: Material) -> Iterator[Finding]:
     """Yield one note of the circles of which all was cut before."""
-    lines = [target.source.line for block, target in circles if was_cut(block, target, material)]
+    lines = [target.line for block, target in circles if was_cut(block, target, material)]
     if lines:
         yield Finding("cut-before", lines[0], {"more": also_in(set(lines) - {lines[0]})})
 

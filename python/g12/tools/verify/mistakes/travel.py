@@ -48,7 +48,7 @@ def judge_travel(
     """Yield the pockets that leave the travel; ``moves`` are those on the machine, if known."""
     if moves is None:
         for _, target in circles:
-            yield Finding("travel-unknown", target.source.line, file=target.source.file)
+            yield Finding("travel-unknown", target.line, file=target.file)
         return
     extents = [_extent_of(block, moves) for block, _ in circles]
     offsets = {event.text for event in events if event.text.startswith(WORK_OFFSETS)}
@@ -58,11 +58,11 @@ def judge_travel(
     widths = {zero: np.ptp(both, axis=0) for zero, both in ends.items()}
     for (_, target), extent in zip(circles, extents):
         if not extent.is_placed:
-            yield Finding("travel-unplaced", target.source.line, file=target.source.file)
+            yield Finding("travel-unplaced", target.line, file=target.file)
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
         for code, values in _overruns(extent, width, ini):
-            yield Finding(code, target.source.line, values, file=target.source.file)
+            yield Finding(code, target.line, values, file=target.file)
 
 
 def _overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple[str, dict]]:
