@@ -22,7 +22,7 @@ from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.compare.path import Laid, Made, judge_path, lay
 from g12.tools.verify.compare.plane import turned_plane
 from g12.tools.verify.compare.section import LaidMoves, ToolpathView, judge_toolpath
-from g12.tools.verify.compare.state import judge_state, state_differences
+from g12.tools.verify.compare.state import judge_events, judge_state
 from g12.tools.verify.expected.contour import ACTS
 from g12.tools.verify.expected.holes import Holes, HolesPath, holes_of
 from g12.tools.verify.expected.shapes import shape_path
@@ -51,11 +51,11 @@ def measure_shape(
         diameters=call.diameters,
         last=call.line,
     )
-    state = state_differences(block.state_after, call.leaves())
-    events = dict.fromkeys(each.text for each in block.own_events if ACTS.match(each.text))
+    events = (each.text for each in block.own_events if ACTS.match(each.text))
     judged = [
         *judge_toolpath(view),
-        *judge_state(state, events, call.line),
+        *judge_state(block.state_after, call.leaves(), call.line),
+        *judge_events(events, call.line),
     ]
     values = {
         "cutter": 2 * call.cutter,
@@ -105,8 +105,7 @@ def measure_holes(
         run = _laid_run(holes, expected, real, own, tolerance)
     found = LaidMoves(laid, run)
     events = [each for each in block.own_events if ACTS.match(each.text) and not clamp.codes]
-    texts = dict.fromkeys(each.text for each in events if not each.text.startswith("dwell"))
-    state = state_differences(block.state_after, call.leaves())
+    texts = (each.text for each in events if not each.text.startswith("dwell"))
     blended = [i for i in own if moves[i].kind == "rapid" and not moves[i].exact][:1]
     judged = [
         *judge_path(found.laid, call.line, holes.place, holes.words),
@@ -115,7 +114,8 @@ def measure_holes(
         *_judge_dwells(holes, block.own_events, moves),
         *_judge_clamp(holes, expected, laid, block, clamp),
         *([] if call.cutter else [Finding("no-diameter", call.line)]),
-        *judge_state(state, texts, call.line),
+        *judge_state(block.state_after, call.leaves(), call.line),
+        *judge_events(texts, call.line),
     ]
     values = {
         "circle": 2 * holes.circle,

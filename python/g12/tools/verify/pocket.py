@@ -21,7 +21,7 @@ from g12.tools.path.slowest import Pace
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, judge_path, lay
-from g12.tools.verify.compare.state import extra_events, judge_state, state_differences
+from g12.tools.verify.compare.state import extra_events, judge_events, judge_state
 from g12.tools.verify.expected.toolpath import TOUCHING
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.reading.codes import EVENT
@@ -242,10 +242,11 @@ def _judge_cut(
 
 def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
     """Yield the wrong modal state after a pocket; a wrong feed is reported once."""
-    other_feed = any(each.kind == FEED for each in laid.differences)
-    state = state_differences(block.state_after, target.leaves)
-    others = [each for each in state if not (other_feed and each.name == "_feed")]
-    yield from judge_state(others, extra_events(block), target.line)
+    expected = dict(target.leaves)
+    if any(each.kind == FEED for each in laid.differences):
+        expected.pop("_feed", None)
+    yield from judge_state(block.state_after, expected, target.line)
+    yield from judge_events(extra_events(block), target.line)
 
 
 def uncut(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The modal state after a block and what happens besides motion, against what the words ask.
+"""The modal state after a block, and what happens besides motion, against the words.
 
 States are by the interpreter's names, ``_metric``, ``_feed``, in program units; events are texts
 of a trace: ``M8 on``, ``S1000``, ``dwell 2``.
@@ -9,7 +9,7 @@ import math
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import zip_longest
-from typing import NamedTuple
+from types import MappingProxyType
 
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
@@ -19,7 +19,7 @@ from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import ANGLE, STATE, WALL
 
 ACT = re.compile(r"(G|M\d|S|tool|dwell (?!0$))")  # of what a trace reports
-UNITS, FORGOTTEN = {20.0, 21.0}, "G64 P0.1 Q0.1"  # what a preview makes of G64 where units change
+UNITS, G64_OF_PREVIEW = {20.0, 21.0}, "G64 P0.1 Q0.1"
 MODES = {
     "_metric": ("G20", "G21"),
     "_absolute": ("G91", "G90"),
@@ -31,68 +31,41 @@ CODES = ("_motion_mode", "_plane")
 LETTERS = {"_selected_tool": "T", "_rpm": "S"}
 
 
-class StateDifference(NamedTuple):
-    """A modal value that is otherwise than the words ask, in program units."""
-
-    name: str
-    found: float
-    expected: float
-
-    def texts(self) -> tuple[str, str]:
-        """Return as words what was found and what is expected."""
-        return _text(self.name, self.found), _text(self.name, self.expected)
-
-
-def state_differences(
+def judge_state(
     found: Mapping[str, float],
     expected: Mapping[str, float],
-    allowed: Mapping[str, float] | None = None,
-) -> tuple[StateDifference, ...]:
-    """Return which values differ by more than is ``allowed``, or relatively by rounding.
+    line: int,
+    allowed: Mapping[str, float] = MappingProxyType({}),
+) -> Iterator[Finding]:
+    """Yield the values that differ by more than is ``allowed``, or relatively by rounding.
 
-    An empty state is that of a program which ended in the block. Angles of C count in any turn.
+    ``found`` is empty where the program ended in the block. Angles of C count in any turn.
     """
-    allowed = allowed or {}
-    return tuple(
-        StateDifference(name, found[name], value)
-        for name, value in expected.items()
-        if found
-        and _apart(name, found[name], value) > allowed.get(name, STATE * max(1.0, abs(value)))
-    )
+    for name, value in expected.items() if found else ():
+        off = found[name] - value
+        off = math.remainder(off, 360.0) if name == "_c" else off
+        if abs(off) > allowed.get(name, STATE * max(1.0, abs(value))):
+            texts = {"found": _text(name, found[name]), "expected": _text(name, value)}
+            yield Finding("state", line, texts)
 
 
-def _apart(name: str, one: float, other: float) -> float:
-    return abs(math.remainder(one - other, 360.0) if name == "_c" else one - other)
+def judge_events(texts: Iterable[str], line: int) -> Iterator[Finding]:
+    """Yield each event that the words do not have, once."""
+    return (Finding("extra-event", line, {"event": text}) for text in dict.fromkeys(texts))
 
 
-def extra_events(block: Block) -> tuple[str, ...]:
-    """Return what a block does besides moving, though its words do not say so."""
-    found = [event.text for event in block.own_events if ACT.match(event.text)]
-    return tuple(dict.fromkeys(text for text in found if not _is_said(text, block)))
-
-
-def _is_said(event: str, block: Block) -> bool:
-    """Tell whether a block's words say what an event reports.
+def extra_events(block: Block) -> Iterator[str]:
+    """Yield what a block does besides moving, though its words do not have it.
 
     Where the units change, a preview makes another G64 of the one in force.
     """
-    if event == FORGOTTEN and UNITS.intersection(block.codes):
-        return True
-    said = [f"M{code:g}" for code in block.m_codes] + [f"G{code:g}" for code in block.codes]
-    if 9.0 in block.m_codes and event.endswith(" off"):
-        return True
-    return event.split()[0] in said or (event[0] == "S" and "S" in block.words)
-
-
-def judge_state(
-    differences: Iterable[StateDifference], events: Iterable[str], line: int
-) -> Iterator[Finding]:
-    """Yield the findings of a state that is otherwise, and of events that are not in the words."""
-    for difference in differences:
-        found, expected = difference.texts()
-        yield Finding("state", line, {"found": found, "expected": expected})
-    for text in events:
-        yield Finding("extra-event", line, {"event": text})
+    commanded = {f"M{code:g}" for code in block.m_codes} | {f"G{code:g}" for code in block.codes}
+    for text in (event.text for event in block.own_events if ACT.match(event.text)):
+        is_speed = text[0] == "S" and "S" in block.words
+        is_coolant_off = 9.0 in block.m_codes and text.endswith(" off")
+        is_g64 = text == G64_OF_PREVIEW and UNITS.intersection(block.codes)
+        if not (is_speed or is_coolant_off or is_g64 or text.split()[0] in commanded):
+            yield text
 
 
 def _text(name: str, value: float) -> str:
@@ -104,43 +77,31 @@ def _text(name: str, value: float) -> str:
     return f"{letter}{plain(value, 4)}"
 
 
-class Done(NamedTuple):
-    """An act, actual or expected, and the line cut before it (0: none)."""
-
-    text: str
-    after: int
-
-    @property
-    def place(self) -> str:
-        """Where it comes in words."""
-        return f"after line {self.after}" if self.after else "at the start"
-
-
 def judge_section_state(section: SectionContour, moves: Sequence[Move]) -> Iterator[Finding]:
-    """Yield what a section does besides moving, or leaves, otherwise than its words ask."""
+    """Yield where a section's acts and the modal state after it differ from its words."""
     yield from judge_acts(section, moves)
-    place = WALL / section.unit
-    allowed = {"_x": place, "_z": place, "_c": ANGLE}
-    differences = state_differences(section.state_after, section.expected_state, allowed)
-    yield from judge_state(differences, (), section.last)
+    position = WALL / section.unit
+    allowed = {"_x": position, "_z": position, "_c": ANGLE}
+    yield from judge_state(section.state_after, section.expected_state, section.last, allowed)
     if len(set(section.paths_after)) > 1:
         found, expected = section.paths_after
         yield Finding("state", section.last, {"found": found, "expected": expected})
 
 
 def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Finding]:
-    """Yield the first act of a section that is missing, in another place or not in the words."""
+    """Yield the first act of a section that is missing, elsewhere or not in the words.
+
+    An act is a text and the line of the move before it, 0 at the start.
+    """
     actual = [
-        Done(event.text, moves[event.at - 1].line if event.at > section.at else 0)
+        (event.text, moves[event.at - 1].line if event.at > section.at else 0)
         for event in section.events
         if ACTS.match(event.text)
     ]
     cut = {moves[index].line for index in range(section.at, section.end)}
-    lines = [
-        [e.line for e in section.elements[: act.drawn] if e.line in cut] for act in section.acts
-    ]
     commanded = [
-        Done(act.text, before[-1] if before else 0) for act, before in zip(section.acts, lines)
+        (act.text, next((e.line for e in section.elements[: act.drawn][::-1] if e.line in cut), 0))
+        for act in section.acts
     ]
     pairs = zip_longest(actual, commanded)
     at = next((at for at, (one, other) in enumerate(pairs) if one != other), None)
@@ -148,11 +109,16 @@ def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Findi
         return
     found, expected = actual[at:], commanded[at:]
     moved = bool(found and expected) and expected[0] in found
-    if not expected or (moved and expected[0].text != found[0].text):
-        values = {"act": found[0].text, "found": found[0].place}
-        yield Finding("act-extra", found[0].after, values)
+    if not expected or (moved and expected[0][0] != found[0][0]):
+        act, after = found[0]
+        yield Finding("act-extra", after, {"act": act, "found": _location(after)})
         return
-    values = {"act": expected[0].text, "asked": expected[0].place}
-    same = [done for done in found if done.text == expected[0].text]
-    more, code = ({"found": same[0].place}, "act-elsewhere") if same else ({}, "act-missing")
-    yield Finding(code, section.acts[at].line, {**values, **more})
+    act, after = expected[0]
+    values = {"act": act, "asked": _location(after)}
+    elsewhere = [{"found": _location(line)} for text, line in found if text == act]
+    code = "act-elsewhere" if elsewhere else "act-missing"
+    yield Finding(code, section.acts[at].line, {**values, **(elsewhere or [{}])[0]})
+
+
+def _location(after: int) -> str:
+    return f"after line {after}" if after else "at the start"

@@ -205,8 +205,9 @@ class SubCall:
 
     def leaves(self) -> dict[str, float]:
         """Return the expected modal state after the call: that before it, without positions."""
-        unknown = {*POSITION_NAMES, "_feed"} if feed_in_force(self._state) is None else POSITION_NAMES
-        return {name: self._state[name] for name in STATE_NAMES if name not in unknown}
+        feed_known = feed_in_force(self._state) is not None
+        names = [name for name in STATE_NAMES if feed_known or name != "_feed"]
+        return {name: self._state[name] for name in names if name not in POSITION_NAMES}
 
 
 def equal_steps(first: float, last: float, most: float, rounding: float) -> list[float]:
