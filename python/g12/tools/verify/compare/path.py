@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lay what was made along the expected toolpath, in order, and name the first difference.
+"""Lay the actual motion along the expected toolpath, in order, and name the first difference.
 
-A cursor goes along the expected moves and never back. Each point that was made takes it to a point
-within reach, which is as far as the tool can have come since the point before: to the one where
-neither that point nor what the cursor passes on the way is farther from what was made than need be.
-So a path that crosses, repeats or retraces itself is followed, a missing move is a
-difference, and into how many segments a move was split does not matter. Emitted moves and the
-samples of a run are laid alike. Beyond a difference of the path nothing is compared.
+A cursor goes along the expected moves and never back. Each actual point takes it to a point within
+reach, which is as far as the tool can have come since the point before: to the one where neither
+the actual point nor what the cursor passes on the way is farther from the actual motion than need
+be. So it follows a path that crosses, repeats or retraces itself, a missing move is a difference,
+and the number of segments of a move does not matter. Emitted moves and the samples of a run are
+laid alike. After a difference of the path nothing is compared.
 
 Lengths are mm, in the frame of the expected moves.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate, chain
 from typing import Any
@@ -28,7 +28,8 @@ ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
 ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
 COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
 SAME_FEED = 1e-5  # relative; a trace prints feeds with nine decimals
-OFF, MISSING, EXTRA, RAPID, FEED, FEED_MODE = "off", "missing", "extra", "rapid", "feed", "mode"
+OFF, MISSING, EXTRA = "path-off", "path-missing", "path-extra"
+RAPID, FEED, FEED_MODE = "rapid", "feed", "feed-mode"
 ToMachine = Callable[[Point], Sequence[float]]
 InWords = Callable[[Point], Sequence[tuple[str, Any]]]
 PER = {False: "per minute", True: "per revolution"}
@@ -36,12 +37,12 @@ PER = {False: "per minute", True: "per revolution"}
 
 @dataclass(frozen=True)
 class Made:
-    """A move that was made: its points, the first of them its start, and how it was commanded.
+    """An actual move: its points, the first of them its start, and how it was commanded.
 
     Between its points it follows ``curve``, straight lines without one; of a curve the start and
     the end suffice. ``index`` is that of the move in the trace. ``feed`` is in mm per minute, or
-    per revolution if ``per_rev``; None where it is not to be compared. ``sampled``: between the
-    points of a run it may have been beside its chord, by half of that at most.
+    per revolution if ``per_rev``; None where it is not to be compared. ``sampled``: between two
+    points of a run the tool may have been beside their chord, by half its length at most.
     """
 
     index: int
@@ -53,7 +54,7 @@ class Made:
     sampled: bool = False
 
     def steps(self) -> Iterator[tuple[Point, Point]]:
-        """Yield the stretches of the move, those of an arc short enough to be followed."""
+        """Yield the segments of the move, those of an arc short enough to be followed."""
         points = self.points
         if isinstance(self.curve, Arc) and len(points) == 2:
             points = _along_the_arc(self.curve, *points)
@@ -76,7 +77,7 @@ class Made:
         return off + max(abs(start - other.start), abs(end - other.end))
 
     def distance(self, point: Point, first: Point, last: Point) -> float:
-        """Return how far a point is from what was made between two of the points."""
+        """Return how far a point is from the motion between two of the points."""
         curve = self.curve or Line(first[0], last[0])
         chord = Expected("", Line(first[0], last[0]), first[1], last[1])
         _, level = chord.point(chord.nearest(point))
@@ -94,11 +95,10 @@ def _along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
 
 @dataclass(frozen=True)
 class PathDifference:
-    """The first thing that is not as expected.
+    """The first difference of a kind: OFF, MISSING, EXTRA, RAPID, FEED or FEED_MODE.
 
-    ``kind`` is OFF, MISSING, EXTRA, RAPID, FEED or FEED_MODE; ``size`` is the distance of OFF in
-    mm, of FEED the one commanded; ``at`` the point that was made, or that is missing; ``index`` the
-    move that was made, None of MISSING; ``expected`` is None of EXTRA.
+    ``size`` is the distance of OFF in mm, of FEED the actual one; ``at`` the actual point, or the
+    missing one; ``index`` the actual move, None of MISSING; ``expected`` is None of EXTRA.
     """
 
     kind: str
@@ -107,10 +107,30 @@ class PathDifference:
     size: float = 0.0
     index: int | None = None
 
+    @property
+    def code(self) -> str:
+        """The code of its finding."""
+        if self.kind == RAPID and self.expected.rapid:
+            return "not-rapid"
+        return "feed-rev" if self.kind == FEED and self.expected.per_rev else self.kind
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The values of its finding."""
+        if self.expected is None:
+            return {}
+        feed, per_rev = self.expected.feed, self.expected.per_rev
+        values = {"what": self.expected.name, "size": self.size}
+        if self.kind == FEED:
+            values |= {"made": self.size, "expected": feed}
+        if self.kind == FEED_MODE:
+            values |= {"made": PER[not per_rev], "expected": PER[per_rev]}
+        return values
+
 
 @dataclass(frozen=True)
 class Span:
-    """The part of a toolpath that a move was made along: from a share of one move to another's."""
+    """The span of a toolpath along a move: from a share of one expected move to another's."""
 
     index: int
     share: float
@@ -120,11 +140,11 @@ class Span:
 
 @dataclass
 class Laid:
-    """What was made along an expected toolpath.
+    """The actual motion along an expected toolpath.
 
     ``deviation`` is the greatest distance (mm) as far as the path was followed, ``moves`` are the
-    indices of the moves made along each expected one, ``spans`` what each move made, by index.
-    ``differences`` are the first of those of each kind; OFF, MISSING and EXTRA are the last.
+    indices of the actual moves along each expected one, ``spans`` are those of the actual moves, by
+    index. ``differences`` are the first of each kind; OFF, MISSING and EXTRA are the last.
     """
 
     moves: list[list[int]]
@@ -145,13 +165,12 @@ class Laid:
 
 @dataclass
 class _Cursor:
-    """A place on a toolpath: the index of an expected move, and the share of it that is made."""
+    """A point of a toolpath: the index of an expected move, and the share of it that is done."""
 
     path: Sequence[Expected]
-    slack: float
     index: int = 0
     share: float = 0.0
-    _nearest_end: tuple[int, float] = (-1, math.inf)  # a move, how near its end what was made came
+    _nearest_end: tuple[int, float] = (-1, math.inf)  # a move, the least distance from its end
     _lengths: list[float] = field(default_factory=list)
     _ends: list[float] = field(default_factory=list)  # lengths of the path up to each move's end
 
@@ -161,11 +180,11 @@ class _Cursor:
 
     @property
     def remaining(self) -> float:
-        """The length of the toolpath that is not made yet."""
+        """The length of the rest of the toolpath."""
         return self._ends[-1] - self._ends[self.index] + self._rest() if self.path else 0.0
 
     def next_move(self) -> Expected:
-        """Return the first move that is not made up to rounding, the last one without any."""
+        """Return the first move with a rest beyond rounding, the last one without any."""
         at = self.index if self._rest() > TIE else self.index + 1
         return self.path[min(at, len(self.path) - 1)]
 
@@ -190,9 +209,9 @@ class _Cursor:
         return off
 
     def advance(self, move: Made, first: Point, last: Point) -> tuple[float, Point]:
-        """Go where ``last`` is, with what is passed on the way, nearest to what was made.
+        """Go to the point nearest to ``last`` that passes nothing far from the actual motion.
 
-        Return the greatest distance, and where it is.
+        Return the greatest distance, and its point.
         """
         best = (math.inf, last), self.index, self.share
         for worst, index, share in self._candidates(move, first, last):
@@ -209,7 +228,7 @@ class _Cursor:
         How far off is the greatest distance of it and of what is passed before it; the search ends
         where that alone is greater than for a move before.
         """
-        reach, share = 2 * distance(first, last) + self.slack, self.share
+        reach, share = 2 * distance(first, last) + SLACK, self.share
         passed, least = (0.0, last), math.inf
         for index in range(self.index, len(self.path)):
             expected, length = self.path[index], self._lengths[index]
@@ -233,9 +252,9 @@ class _Cursor:
             share = 0.0
 
     def _missed(self, index: int, missed: float) -> float:
-        """Return how far a move's end is from what was made: of the present one, so far.
+        """Return how far a move's end is from the actual motion, of the present one up to here.
 
-        A blended corner comes nearest to it before what is made turns away.
+        A blended corner comes nearest to it before the motion turns away.
         """
         if index != self.index:
             return missed
@@ -261,12 +280,9 @@ def _size(found: tuple[float, Point]) -> float:
     return found[0]
 
 
-def lay(
-    path: Sequence[Expected], made: Iterable[Made], tolerance: float, slack: float = SLACK
-) -> Laid:
-    """Lay what was made along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
-    laid = Laid([[] for _ in path])
-    cursor, moves = _Cursor(path, slack), iter(made)
+def lay(path: Sequence[Expected], made: Iterable[Made], tolerance: float) -> Laid:
+    """Lay actual moves along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
+    laid, cursor, moves = Laid([[] for _ in path]), _Cursor(path), iter(made)
     for move in moves:
         off = _lay_move(cursor, move, tolerance, laid)
         if off:
@@ -291,17 +307,17 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Path
     laid.moves[cursor.index].append(move.index)
     laid.spans[move.index] = Span(*before, cursor.index, cursor.share)
     laid.deviation = max(laid.deviation, farthest)
-    laid.add(_otherwise(cursor.path[cursor.index], move))
+    laid.add(_difference_of_feed(cursor.path[cursor.index], move))
     return None
 
 
 def _at_its_worst(
     path: Sequence[Expected], off: PathDifference, moves: Iterable[Made], tolerance: float
 ) -> PathDifference:
-    """Return how far what was made comes off the toolpath before it comes back.
+    """Return how far the motion leaves the toolpath before it comes back.
 
-    ``moves`` are the one that is off and those after it. Where that one lies on the toolpath
-    farther ahead, what is between is missing.
+    ``moves`` are the one that is off and those after it. Where that one is on the toolpath farther
+    ahead, the moves between are missing.
     """
     at = next(index for index, move in enumerate(path) if move is off.expected)
     ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
@@ -316,7 +332,7 @@ def _at_its_worst(
 
 
 def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
-    """Return the greatest distance of a move from the nearest of some others, and where it is."""
+    """Return the greatest distance of a move from the nearest of others, and its point."""
     away = (
         (min((distance(at, it.point(it.nearest(at))) for it in path), default=math.inf), at)
         for at in move.points
@@ -325,26 +341,24 @@ def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
 
 
 def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:
-    """Return what a move does after the whole toolpath is made: nothing, if it stays there."""
+    """Return how a move leaves the end of the toolpath, None if it stays there."""
     end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
     at = max(move.points, key=lambda point: distance(point, end))
-    return (
-        PathDifference(EXTRA, None, at, index=move.index) if distance(at, end) > tolerance else None
-    )
+    off = distance(at, end) > tolerance
+    return PathDifference(EXTRA, None, at, index=move.index) if off else None
 
 
-def _otherwise(expected: Expected, move: Made) -> PathDifference | None:
-    """Return how a move differs in rapid or feed from the expected one that it is made along."""
-    at, index = move.points[-1], move.index
+def _difference_of_feed(expected: Expected, move: Made) -> PathDifference | None:
+    """Return how a move differs in rapid or feed from the expected one along which it is."""
+    compared = not expected.rapid and None not in (expected.feed, move.feed)
+    kind, size = "", 0.0
     if expected.rapid != move.rapid:
-        return PathDifference(RAPID, expected, at, index=index)
-    if expected.rapid or None in (expected.feed, move.feed):
-        return None
-    if expected.per_rev != move.per_rev:
-        return PathDifference(FEED_MODE, expected, at, index=index)
-    if abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
-        return PathDifference(FEED, expected, at, move.feed, index)
-    return None
+        kind = RAPID
+    elif compared and expected.per_rev != move.per_rev:
+        kind = FEED_MODE
+    elif compared and abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
+        kind, size = FEED, move.feed
+    return PathDifference(kind, expected, move.points[-1], size, move.index) if kind else None
 
 
 def judge_path(
@@ -356,31 +370,6 @@ def judge_path(
     a sentence names it, if those are others.
     """
     for difference in laid.differences:
-        at = tuple(to_machine(difference.at))
-        expected = difference.expected
-        own = expected.line if expected and expected.line else line
-        values = {"at": words(difference.at) if words else at, **_values(difference)}
-        yield Finding(_code(difference), own, values, at)
-
-
-def _code(difference: PathDifference) -> str:
-    kind, expected = difference.kind, difference.expected
-    if kind in (OFF, MISSING, EXTRA):
-        return f"path-{kind}"
-    if kind == FEED:
-        return "feed-rev" if expected.per_rev else "feed"
-    if kind == FEED_MODE:
-        return "feed-mode"
-    return "not-rapid" if expected.rapid else "rapid"
-
-
-def _values(difference: PathDifference) -> Mapping[str, Any]:
-    expected = difference.expected
-    if expected is None:
-        return {}
-    values = {"what": expected.name, "size": difference.size}
-    if difference.kind == FEED:
-        values |= {"made": difference.size, "expected": expected.feed}
-    if difference.kind == FEED_MODE:
-        values |= {"made": PER[not expected.per_rev], "expected": PER[expected.per_rev]}
-    return values
+        at, expected = tuple(to_machine(difference.at)), difference.expected
+        values = {"at": words(difference.at) if words else at, **difference.values}
+        yield Finding(difference.code, (expected and expected.line) or line, values, at)
