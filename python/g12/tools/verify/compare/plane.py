@@ -13,8 +13,8 @@ import numpy as np
 from g12.tools.path.part import C, X, Z
 from g12.tools.preview.moves import Move
 from g12.tools.units import plain
-from g12.tools.verify.compare.path import Point
 from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.expected.toolpath import Point
 
 
 class Plane(NamedTuple):
