@@ -157,10 +157,7 @@ def _made_of_holes(holes: Holes, moves: Sequence[Move], own: range) -> Iterator[
         move = moves[index]
         ends = [holes.point(move.start), holes.point(move.end)]
         if max(abs(ends[0][0] - ends[1][0]), abs(ends[0][1] - ends[1][1])) > CART_FUZZ:
-            rapid = move.kind == "rapid"
-            feed = None if rapid else move.feed
-            curve = Line(ends[0][0], ends[1][0])
-            yield Made(index, ends, curve, feed, rapid, move.feed_mode == "G95")
+            yield Made.of(index, move, ends, Line(ends[0][0], ends[1][0]))
 
 
 def _judge_dwells(

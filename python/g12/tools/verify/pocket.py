@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How well a circle was cut: what was made, laid along the toolpath that its words ask for.
+"""How well a circle was cut: its moves, laid along the toolpath that its words command.
 
 Lengths are millimetres, areas square millimetres, angles degrees, feeds mm/min, times seconds.
 """
@@ -22,18 +22,18 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, judge_path, lay
 from g12.tools.verify.compare.state import extra_events, judge_events, judge_state
-from g12.tools.verify.expected.toolpath import TOUCHING
+from g12.tools.verify.expected.toolpath import TOUCHING, Point
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import AREA, RUN, SIZE, WEAR
 
-STILL = 1e-8  # mm: a shorter move is none
+STILL = 1e-8  # mm: a shorter move has no length
 SAME_AXIS = 1e-9
-SHARES = np.linspace(0.0, 1.0, 25)  # of an arc that stands across the pocket's plane
+SHARES = np.linspace(0.0, 1.0, 25)  # of an arc in another plane than the pocket's
 FINE = 1e-5  # chord error of the circles about a pocket's centre
-LEAST_CORE = 0.01  # a smaller circle about the centre is none
+LEAST_CORE = 0.01  # mm: a smaller radius is 0
 TURNS = {-1: "clockwise", 1: "counterclockwise"}
 
 
@@ -96,7 +96,7 @@ def measure_pocket(
 
 
 def _pocket_values(target: Target) -> dict[str, Any]:
-    """Return what the words of a pocket ask for as plain values; ``z`` is that of other planes."""
+    """Return what the words of a pocket command as plain values; ``z`` is of G18 and G19."""
     wall, words = target.wall, target.words
     rings = list(dict.fromkeys(round(each.radius, 6) for each in target.circles))
     turns = sorted({round(math.copysign(1, each.sweep)) for each in target.circles})
@@ -120,7 +120,7 @@ def _pocket_values(target: Target) -> dict[str, Any]:
 
 
 def _entry_values(target: Target) -> dict[str, Any]:
-    """Return how the tool goes down: the helices' count, radius and greatest angle, or straight."""
+    """Return the entry: the helices' count, radius and greatest angle, or straight."""
     falls = [move.name == "helix" for move in target.path]
     falling = [move for move in target.path if move.name == "helix"]
     if not falling:
@@ -132,29 +132,30 @@ def _entry_values(target: Target) -> dict[str, Any]:
 
 
 def _made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
-    """Yield moves, by their indices, as seen from a wall's centre, but for those of no length."""
+    """Yield the moves that have a length, by their indices, from a wall's centre."""
     starts, ends = (
-        wall.local(np.array([getattr(moves[i], end)[:3] for i in own])).tolist()
+        _points(wall, np.array([getattr(moves[i], end)[:3] for i in own]))
         for end in ("start", "end")
     )
-    for index, start, end in zip(own, starts, ends):
+    for index, *points in zip(own, starts, ends):
         move = moves[index]
-        points = [(complex(*start[:2]), start[2]), (complex(*end[:2]), end[2])]
         if move.length <= STILL:
             continue
         across = plane_axes(move)
         in_plane = across is wall.axes or np.abs(across[2] - wall.axes[2]).max() < SAME_AXIS
         if move.kind == "arc" and in_plane:
-            centre = complex(*wall.local(np.array(move.centre))[0, :2])
+            centre, _ = _points(wall, np.array(move.centre))[0]
             curve: Curve | None = Arc(points[0][0], centre, move.sweep)
         elif move.kind == "arc":
-            curve, there = None, wall.local(arc_points(move, SHARES)[:, :3]).tolist()
-            points = [(complex(*at[:2]), at[2]) for at in there]
+            curve, points = None, _points(wall, arc_points(move, SHARES))
         else:
             curve = Line(points[0][0], points[1][0])
-        rapid = move.kind == "rapid"
-        feed = None if rapid else move.feed
-        yield Made(index, points, curve, feed, rapid, move.feed_mode == "G95")
+        yield Made.of(index, move, points, curve)
+
+
+def _points(wall: Wall, positions: np.ndarray) -> list[Point]:
+    """Return machine positions (n, 3 or more) as points of a wall's plane with their levels."""
+    return [(complex(x, y), level) for x, y, level in wall.local(positions).tolist()]
 
 
 def _is_cutting(move: Move, wall: Wall) -> bool:
@@ -182,7 +183,7 @@ def reached(target: Target, laid: Laid, moves: Sequence[Move]) -> float:
 def _run_values(
     target: Target, laid: Laid, cutting: Sequence[int], real: Followed
 ) -> Mapping[str, float]:
-    """Return a run's largest deviations, and how far it went beyond the wall."""
+    """Return the greatest deviations of a run, and how far it cut beyond the wall."""
     wall, cutter = target.wall, target.cutter.radius
     circles = [i for move, made in zip(target.path, laid.moves) if move.is_circle for i in made]
     lines = [wall.local(real.points[real.during(index)]) for index in cutting]
@@ -195,7 +196,7 @@ def _run_values(
 
 
 def _judge_cutter(target: Target) -> Iterator[Finding]:
-    """Yield what is to know of the cutter: that of D, the loaded one, or none."""
+    """Yield the findings of the cutter: that of D, the loaded one, or none."""
     cutter, wall, line = target.cutter, target.wall, target.line
     values = {
         "tool": cutter.tool,
@@ -216,7 +217,7 @@ def _judge_cutter(target: Target) -> Iterator[Finding]:
 
 
 def _is_wrong_tool(cutter: Cutter) -> bool:
-    """Tell whether D names another cutter than the loaded one, by more than wear."""
+    """Return whether D names another cutter than the loaded one, by more than wear."""
     known = cutter.named is not None and cutter.loaded > 0.0
     return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
 
@@ -230,14 +231,14 @@ def _judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
 def _judge_cut(
     target: Target, remaining: BaseGeometry, too_far: float, tolerance: float
 ) -> Iterator[Finding]:
-    """Yield material that remains, and a wall that a run cut too far."""
+    """Yield uncut material, and a wall that a run cut too far."""
     wall, deepest, line = target.wall, target.deepest, target.line
     if remaining.area > AREA:
         values = {"area": remaining.area, "shape": remaining, "floor": wall.height(deepest)}
         yield Finding("uncut", line, values, wall.machine((0j, deepest)))
     if too_far > tolerance + RUN:
-        place = wall.machine((complex(wall.radius), deepest))
-        yield Finding("wall-run", line, {"size": too_far, "at": place}, place)
+        at = wall.machine((complex(wall.radius), deepest))
+        yield Finding("wall-run", line, {"size": too_far, "at": at}, at)
 
 
 def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Finding]:
@@ -252,9 +253,9 @@ def _judge_state_after(block: Block, target: Target, laid: Laid) -> Iterator[Fin
 def uncut(
     block: Block, target: Target, material: Material, tolerance: float, as_emitted: bool
 ) -> BaseGeometry:
-    """Return what remains of a pocket after its block, in machine coordinates of the plane XY.
+    """Return the uncut area of a pocket after its block, in machine coordinates of the plane XY.
 
-    ``as_emitted``: its circles are those of its moves, not what a run made of them.
+    ``as_emitted``: its circles are those of its moves, not those of a run.
     """
     wall, (inner, outer) = target.wall, reach(target, tolerance)
     known = as_emitted and _clears(target, inner, outer)
@@ -263,12 +264,12 @@ def uncut(
     region = disc((0, 0), outer, FINE)
     if inner > LEAST_CORE:
         region = region.difference(disc((0, 0), inner, FINE))
-    there = translate(region, *wall.origin[:2])
-    return material.standing(there, wall.height(target.deepest), block.end)
+    region = translate(region, *wall.origin[:2])
+    return material.standing(region, wall.height(target.deepest), block.end)
 
 
 def reach(target: Target, tolerance: float) -> tuple[float, float]:
-    """Return between which distances from the centre nothing may remain.
+    """Return the distances from the centre between which no material may remain.
 
     D may be larger than the cutter by an allowance for wear.
     """
@@ -280,14 +281,14 @@ def reach(target: Target, tolerance: float) -> tuple[float, float]:
 
 
 def _clears(target: Target, inner: float, outer: float) -> bool:
-    """Tell whether the circles of the deepest level surely leave nothing between two distances.
+    """Return whether the circles of the deepest level clear all between two distances.
 
-    To ask the material takes five times as long.
+    An optimisation: to ask the material of 1,000 pockets takes five times as long.
     """
     cutter, floor = target.cutter, target.deepest
     edge = cutter.loaded if _is_wrong_tool(cutter) else cutter.radius
-    there = [m for m in target.path if m.start_level == m.end_level == floor and not m.rapid]
-    spans = [(0.0, edge)] if any(abs(move.curve.start) < FINE for move in there) else []
+    flat = [m for m in target.path if m.start_level == m.end_level == floor and not m.rapid]
+    spans = [(0.0, edge)] if any(abs(move.curve.start) < FINE for move in flat) else []
     rings = (move.radius for move in target.circles if move.end_level == floor)
     spans += [(max(0.0, radius - edge), radius + edge) for radius in rings]
     for first, last in sorted(spans):

@@ -96,13 +96,13 @@ STOCK: tuple[Row, ...] = (
 )
 
 
-ROWS = {"pockets": POCKET, "sections": SECTION, "holes": HOLES, "shapes": SHAPE}
-WHAT = {  # of the line of a cut
-    "pockets": "⌀ {radius:twice} to {square_to}{lowest:mm}",
-    "sections": "cutter ⌀ {cutter:mm}, {sides}, to {third}{lowest:mm}",
-    "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
-    "shapes": "cutter ⌀ {cutter:mm}, to Z{lowest:mm}",
+FORMS = {  # of a cut of each kind: what its line has, and the rows of --full
+    "pockets": ("⌀ {radius:twice} to {square_to}{lowest:mm}", POCKET),
+    "sections": ("cutter ⌀ {cutter:mm}, {sides}, to {third}{lowest:mm}", SECTION),
+    "holes": ("{holes} {depth:mm} deep, {side} ⌀ {circle:mm}", HOLES),
+    "shapes": ("cutter ⌀ {cutter:mm}, to Z{lowest:mm}", SHAPE),
 }
+PRINTED = ("pockets", "shapes", "holes", "sections")
 
 
 def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = False) -> str:
@@ -138,7 +138,7 @@ def as_json(proof: Proof, strict: bool = False) -> str:
         "program": str(proof.opened.source if proof.opened else proof.subject.program),
         "ini": str(proof.subject.ini.path),
         "real": proof.subject.real is not None,
-        **{kind: [_values_of(kind, cut, proof) for cut in cuts[kind]] for kind in ROWS},
+        **{kind: [_values_of(kind, cut, proof) for cut in cuts[kind]] for kind in FORMS},
         "rapids": [_judged_values(each, proof) for each in proof.judged if "path" in each.values],
         "stock": proof.given and _stock_values(proof.given),
         "unseen": [
@@ -177,7 +177,7 @@ def _values_of(kind: str, cut: MeasuredCut, proof: Proof) -> dict[str, Any]:
 
 
 def _section_values(cut: MeasuredCut, ini: Ini) -> dict[str, Any]:
-    """Return why X words of a section are read so, and about how long kinematics would take."""
+    """Return what decides how a section's X words are read, and its time with kinematics."""
     section, reading = cut.commanded, ini.settings.polar_x
     by_mode = section.surface or reading == "inherit"
     modal = "G7" if section.diameters else "G8"
@@ -194,21 +194,21 @@ def _stock_values(workpiece: Workpiece) -> dict[str, Any]:
 def _zero_text(proof: Proof, unit: Unit) -> str:
     """Return where the program's zero is on the machine, "" where they are the same.
 
-    Places of a section are as far from the spindle as the program's; those on a cylinder are the
-    program's. Where X0 lies must be the spindle's axis.
+    Positions in a section are as far from the spindle as the program's; those on a cylinder are
+    the program's. X0 must be the spindle's axis.
     """
     zero = proof.workpiece.program.zero()
     words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
-    said = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
-    moved = in_words(said, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""
+    text = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
+    moved = in_words(text, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""
     x0 = x0_text(proof.subject.part, unit) if proof.sections else ""
     return "; ".join(filter(None, [moved, x0]))
 
 
 def _paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
     """Yield every measure of each pocket, shape and section, and of the stock."""
-    for kind in ("pockets", "shapes", "holes", "sections"):
-        for cut in proof.cuts._asdict()[kind]:
+    for kind in PRINTED:
+        for cut in getattr(proof.cuts, kind):
             yield paragraph_of(kind, cut, proof, unit)
     if proof.given:
         values = _stock_values(proof.given)
@@ -217,22 +217,25 @@ def _paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
 
 def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     """Return the paragraph of a cut."""
-    values = {"seconds": None, "across_flats": (), **_values_of(kind, cut, proof)}
-    reckoned = values["seconds"] == values.get("seconds_programmed")  # knows no acceleration
-    values |= {"allowed": _allowed_of(kind, proof)}
-    values |= {"unknown": "not judged" if math.isnan(cut.deviation) else "∞"}
-    values |= {"real_seconds": None if reckoned else values["seconds"]}
-    flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in values["across_flats"])
-    values |= dict(zip(("flats", "flats_reached"), zip(*flats)))
+    values = _values_of(kind, cut, proof)
+    flats = values.get("across_flats", ())
+    flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in flats)
+    seconds, programmed = (values.get(name) for name in ("seconds", "seconds_programmed"))
+    values |= {
+        "allowed": _allowed_of(kind, proof),
+        "unknown": "not judged" if math.isnan(cut.deviation) else "∞",
+        "real_seconds": None if seconds == programmed else seconds,  # without acceleration
+        **dict(zip(("flats", "flats_reached"), zip(*flats))),
+    }
     call = proof.subject.trace.moves[cut.own.start].block
     inside = not cut.last or (not cut.file and cut.line <= call <= cut.last)
     called = "" if inside else f", called in line {proof.user_line(call)}"
-    title = f"{_where_text(cut, proof)}{called}: {_code_text(cut)}"
-    return paragraph(title, rows_of(ROWS[kind], values, unit))
+    title = f"{_line_text(proof, cut.line, cut.file, cut.last)}{called}: {_code_text(cut)}"
+    return paragraph(title, rows_of(FORMS[kind][1], values, unit))
 
 
 def _allowed_of(kind: str, proof: Proof) -> float:
-    """Return how far off a cut of a kind may be, mm."""
+    """Return the tolerance of a cut of a kind, mm."""
     return proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
 
 
@@ -254,16 +257,11 @@ def paragraph(title: str, rows: Iterable[Row]) -> str:
     return "\n".join([title, *(f"  {name:{NAMES}}  {text}".rstrip() for name, text in rows)])
 
 
-def _where_text(cut: MeasuredCut, proof: Proof) -> str:
-    if not cut.last:
-        return _line_text(proof, cut.line, cut.file)
-    first, last = (proof.user_line(line, cut.file) for line in (cut.line, cut.last))
-    return f"lines {first} to {last}{f' of {cut.file}' if cut.file else ''}"
-
-
-def _line_text(proof: Proof, line: int, file: str) -> str:
-    """Return the user's line in words, with the file of the sub in which it is."""
-    return f"line {proof.user_line(line, file)}{f' of {file}' if file else ''}"
+def _line_text(proof: Proof, line: int, file: str, last: int = 0) -> str:
+    """Return the user's line or lines in words, with the file of the sub in which they are."""
+    end = f" to {proof.user_line(last, file)}" if last else ""
+    of_file = f" of {file}" if file else ""
+    return f"line{'s' * bool(last)} {proof.user_line(line, file)}{end}{of_file}"
 
 
 def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> str:
@@ -306,19 +304,19 @@ def _cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
     The section in a shape's sub is measured with its shape.
     """
     of_shapes = {each.own for shape in proof.cuts.shapes for each in _sections_of(shape, proof)}
-    for kind in ("pockets", "shapes", "holes", "sections"):
+    for kind in PRINTED:
         allowed = unit.fine(_allowed_of(kind, proof))
-        for cut in proof.cuts._asdict()[kind]:
+        for cut in getattr(proof.cuts, kind):
             if kind == "sections" and cut.own in of_shapes:
                 continue
-            what = in_words(WHAT[kind], {**cut.values, **_what_words(kind, cut)}, unit)
+            what = in_words(FORMS[kind][0], {**cut.values, **_what_words(kind, cut)}, unit)
             inside = _sections_of(cut, proof) if kind == "shapes" else []
             worst = max(each.deviation for each in (cut, *inside))
             off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
             off = "not judged" if math.isnan(worst) else off
             seconds = [each.values.get("seconds") for each in inside or [cut]]
             time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
-            yield _where_text(cut, proof), _code_text(cut), what, off, time
+            yield _line_text(proof, cut.line, cut.file, cut.last), _code_text(cut), what, off, time
 
 
 def _sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:

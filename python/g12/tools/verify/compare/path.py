@@ -15,9 +15,10 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import accumulate, chain
-from typing import Any
+from typing import Any, Self
 
 from g12.geometry.curve import Arc, Curve, Line
+from g12.tools.preview.moves import Move
 from g12.tools.verify.expected.toolpath import Expected, Point, distance
 from g12.tools.verify.result.finding import Finding
 
@@ -52,6 +53,13 @@ class Made:
     rapid: bool = False
     per_rev: bool = False
     sampled: bool = False
+
+    @classmethod
+    def of(cls, index: int, move: Move, points: Sequence[Point], curve: Curve | None) -> Self:
+        """Return an emitted move with its feed."""
+        rapid = move.kind == "rapid"
+        feed = None if rapid else move.feed
+        return cls(index, points, curve, feed, rapid, move.feed_mode == "G95")
 
     def steps(self) -> Iterator[tuple[Point, Point]]:
         """Yield the segments of the move, those of an arc short enough to be followed."""
