@@ -26,7 +26,8 @@ from g12.tools.verify.expected.polar import Pen
 from g12.tools.verify.reading import sections as section_reading
 from g12.tools.verify.reading.circles import CircleReader
 from g12.tools.verify.reading.codes import SHAPES, Codes
-from g12.tools.verify.reading.sections import bodies_of, drawn_subs, section_lines
+from g12.tools.verify.reading.executed_subs import Copies
+from g12.tools.verify.reading.sections import INSIDE, doubts_of, lines_of_copy
 from support.made_moves import Hand
 
 REMAPS = (
@@ -360,45 +361,50 @@ def test_saved_modes_come_back(save):
         ("o<flat> call", "calls o<flat>"),
         ("X[#<_x>+1]", "asks for a position"),
         (f"X[1{'+1' * 124}]", "is too long"),
+        ("o77 call", ""),
     ],
 )
-def test_what_cannot_be_followed_is_a_doubt(line, why):
-    lines = lines_of("G12.1", "G1 C5", line, "G13.1", "o77 sub", "X#<_x>", "o77 endsub")
-    doubts = section_reading.doubts_of(lines, CODES, bodies_of(lines))
-    assert why in doubts[lines[0].text]
+def test_what_cannot_be_followed_is_a_doubt(line, why, tmp_path):
+    copies = copies_of(tmp_path, "G12.1", "G1 C5", line, "G13.1", "o77 sub", "o77 endsub")
+    assert doubts_of(copies) == ({copies.texts[2]: f"line 3 {why}"} if why else {})
 
 
-def lines_of(*lines):
-    texts = [read_line(number, text) for number, text in enumerate(lines, 1)]
-    return section_lines(texts, lines)
+def copies_of(folder, *lines):
+    """Return the copies of a program without files of subs."""
+    (folder / "program.ngc").write_text("\n".join(lines))
+    return Copies(folder / "program.ngc", [])
 
 
-def flattened(lines, drawn=None, sub=""):
-    """Return the copy's lines, without those that tell of blocks."""
-    flat = [
-        line for some in section_reading.flattened(lines, CODES, drawn or {}, sub) for line in some
-    ]
-    return [line for line in flat if "DEBUG" not in line and "#<@" not in line]
+def in_copy(folder, *lines):
+    """Return the copy's lines, without those that report blocks."""
+    copies = copies_of(folder, *lines)
+    copied = [line for some in lines_of_copy(copies, CODES, doubts_of(copies)) for line in some]
+    return [line for line in copied if "DEBUG" not in line and "#<@" not in line]
 
 
-def test_motion_is_taken_out_of_the_copy_and_control_stays():
+def test_motion_is_taken_out_of_the_copy_and_control_stays(tmp_path):
     loop = ["#1=2", "o1 while [#1]", "X#1 #1=[#1-1]", "o1 endwhile"]
-    lines = lines_of("G0 X5", "G12.1", *loop, "G13.1", "G0 X9")
-    kept = ["G0 X5", "#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile", "G0 X9"]
-    assert flattened(lines) == kept
+    kept = ["#1=2", "o1 while [#1]", "#1=[#1-1]", "o1 endwhile"]
+    lines = in_copy(tmp_path, "G0 X5", "G12.1", *loop, "G13.1", "G0 X9")
+    assert lines == ["G0 X5", f"{INSIDE}=1", *kept, f"{INSIDE}=0", "G0 X9"]
 
 
-def test_sections_call_copies_of_subs_without_motion():
-    flat = ["o<flat> sub", "M8 X1", "M98 P1000", "o<flat> return", "o<flat> endsub"]
-    calls = ["G12.1", "o<flat> call [1]", "G13.1", "o<flat> call [2]"]
-    lines = lines_of(*flat, "O1000", "G1 X5", "M99", *calls, "o99002 call")
-    bodies = bodies_of(lines)
-    drawn = drawn_subs(lines, CODES, bodies)
-    assert drawn == {"1000": "99001", "flat": "99003"}
-    assert flattened(lines, drawn)[len(flat) + 3 : -1] == ["o<99003>call[1]", "o<flat> call [2]"]
-    own = ["o<99003>sub", "M8", "m98p99001", "o<99003>return", "o<99003>endsub"]
-    assert flattened(bodies["flat"], drawn, "flat") == own
-    assert flattened(bodies["1000"], drawn, "1000") == ["o99001", "M99"]
+def test_a_sub_that_a_section_calls_moves_outside_of_it_alone(tmp_path):
+    sub = ["o<flat> sub", "M8 X1", "o<flat> endsub", "O1000", "G1 X5", "M99"]
+    calls = ["G12.1", "o<flat> call [1]", "M98 P1000", "G13.1", "o<flat> call [2]"]
+    lines = in_copy(tmp_path, *sub, *calls)
+    one = [f"o<g12_line_1> if [{INSIDE}]", "M8", "o<g12_line_1> else", "M8 X1"]
+    two = [f"o<g12_line_4> if [{INSIDE}]", "o<g12_line_4> else", "G1 X5"]
+    bodies = [sub[0], *one, "o<g12_line_1> endif", *sub[2:4], *two, "o<g12_line_4> endif", "M99"]
+    section = [f"{INSIDE}=1", *calls[1:3], f"{INSIDE}=0"]
+    assert lines == [*bodies, *section, calls[4]]
+
+
+def test_a_condition_on_a_position_is_reported_where_a_section_has_called_it(tmp_path):
+    sub = ["o<flat> sub", "o2 if [#<_x> GT 1]", "o2 endif", "o<flat> endsub"]
+    lines = in_copy(tmp_path, *sub, "G12.1", "o<flat> call", "G13.1")
+    label = "o<g12_line_1>"
+    assert lines[1:5] == [f"{label} if [{INSIDE}]", f"{label} else", f"{label} endif", sub[1]]
 
 
 # ---------------------------------------------------------------- contours on a cylinder

@@ -9,8 +9,8 @@ import os
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import chain
 from pathlib import Path
+from typing import Any
 
 from g12.machine_ini import remap_lines
 from g12.tools.machine.ini import Ini
@@ -56,7 +56,7 @@ def executed_everywhere(
     for some in filter(None, dict.fromkeys(((*files, *clamps), tuple(clamps)))):
         copies = Copies(program, some)
         lines = watched_lines(copies, codes, {file.name: code for file, code in clamps.items()})
-        copy = copies.trace(tracer, lines, {}, tools, parameters, watch_offsets=True)
+        copy = copies.trace(tracer, lines, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts), bool(clamps)
     wanted = codes.wanted_in(read_lines(program))
@@ -79,19 +79,17 @@ class Copies:
         self,
         tracer: Tracer,
         lines: Iterable[Sequence[str]],
-        more: Mapping[str, Iterable[Sequence[str]]],
         tools: Tools,
         parameters: Parameters,
-        **options: bool,
+        **options: Any,
     ) -> Trace:
         """Return the trace of copies in which ``lines`` stand for each line.
 
-        ``more`` are further files. Where there are subs, another tracer finds them.
+        Where there are subs, another tracer finds them.
         """
         made: dict[str, list[str]] = {"": []}
         for text, some in zip(self.texts, lines):
             made.setdefault(text.file, []).extend(some)
-        made |= {name: list(chain.from_iterable(own)) for name, own in more.items()}
         program = made.pop("")
         if not made:
             return tracer.trace_text(program, parameters=parameters, **options)

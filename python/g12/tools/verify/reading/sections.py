@@ -10,11 +10,11 @@ commands C in between, or gives it another zero.
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import accumulate, chain, count, islice
+from itertools import accumulate, chain, islice
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
@@ -42,39 +42,10 @@ PATH_CODES = (61.0, 61.1, 64.0)
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 RESTORE, SAVE_FOR_SUB = 72.0, 73.0
 Pens = Mapping[str, Callable[[Block], Any]]
-SUB_LINE = re.compile(
-    r"(/?(?:n[0-9.]+)?o<?)((?<=<)[^>]+|[0-9.]+)>?(sub|endsub|return|call|$).*"
-)  # and the O1000 of a body that M98 calls
-NUMBER_OF_M98 = re.compile(r"(?<=p)[0-9]+")
-FIRST_NAME = 99001  # in the copy, of the subs that sections call: free numbers from here on
+SUB = re.compile(r"(?:n[0-9.]+)?o<?((?<=<)[^>]+|[0-9.]+)>?(?:sub)?")
+INSIDE = "#<_g12_inside>"  # in the copy: not 0 in a section, also in the subs that it calls
 POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
 SAME_ANGLE = 1e-3  # degree
-
-
-class SectionLine(NamedTuple):
-    """A line: what it says, as written, the sub in whose body it is, the lines of files before."""
-
-    text: Text
-    written: str
-    sub: str = ""
-    skip: int = 0
-
-    @property
-    def is_control(self) -> bool:
-        """Whether it decides which line is next."""
-        return self.text.control or bool(self.text.call) or returns(self.text)
-
-    def with_drawn(self, subs: Mapping[str, str]) -> str:
-        """Return it with the copy's name for one of ``subs``, by their names."""
-        code = bare(self.written)
-        named = SUB_LINE.fullmatch(code)
-        if named and named[2] in subs:
-            return code[: named.end(1)] + subs[named[2]] + code[named.end(2) :]
-        by_m98 = not self.text.control and self.text.call in subs
-        return NUMBER_OF_M98.sub(subs[self.text.call], code) if by_m98 else self.written
-
-
-Bodies = Mapping[str, Sequence[SectionLine]]
 
 
 def bare(line: str) -> str:
@@ -82,80 +53,66 @@ def bare(line: str) -> str:
     return re.sub(r"\s", "", COMMENTS.sub("", line)).lower()
 
 
-def returns(text: Text) -> bool:
+def doubts_of(copies: Copies) -> dict[Text, str]:
+    """Return the lines that a copy without motion cannot follow in a section, and why."""
+    subs = {name[1] for name in map(SUB.fullmatch, map(bare, copies.lines)) if name}
+    doubts = {}
+    for text, line in zip(copies.texts, copies.lines):
+        if text.call and text.call not in subs:
+            doubts[text] = f"line {text.number} calls o<{text.call}>"
+        elif text.too_long:
+            doubts[text] = f"line {text.number} is too long"
+        elif any(name in bare(line) for name in POSITION):
+            doubts[text] = f"line {text.number} asks for a position"
+    return doubts
+
+
+def lines_of_copy(
+    copies: Copies, codes: Codes, doubts: Mapping[Text, str]
+) -> Iterator[Sequence[str]]:
+    """Yield the lines that replace each line: those of a section report their words alone.
+
+    A line outside of them does so where a section has called it.
+    """
+    flagged = list(codes.with_switches(copies.texts))
+    calls = any(text.call for text, _, inside in flagged if inside)
+    for index, (line, (text, switch, inside)) in enumerate(zip(copies.lines, flagged)):
+        skip, kept = index + 1 - text.number, words_kept(text, line, switch, codes)
+        reported = text if kept is not None else text._replace(words=())
+        report = [*reports_before(reported, skip), *(kept or ()), *reports_after(reported, skip)]
+        if kept is None and text not in doubts:
+            yield [line]
+        elif switch or (inside and kept is not None):
+            yield report
+        elif inside:
+            yield [*report, line]
+        elif not calls:
+            yield [line]
+        else:
+            label, others = f"o<g12_line_{index}>", [line] if kept is not None else []
+            guarded = [f"{label} if [{INSIDE}]", *report, f"{label} else", *others]
+            yield [*guarded, f"{label} endif", *([] if others else [line])]
+
+
+def words_kept(text: Text, line: str, switch: str, codes: Codes) -> list[str] | None:
+    """Return what remains of a line in the copy, None if it remains as it is.
+
+    What it does besides moving remains: LinuxCNC itself reports it.
+    """
+    if switch:
+        radius = dict(text.words).get("C", "1")
+        kept = [f"{INSIDE}={radius if switch == 'on' else 0}"]
+    elif text.words and not (text.control or text.call or text.too_long or is_m99(text)):
+        kept = [acting_words(text, line, codes)]
+    else:
+        return None
+    slash = "/" if text.deleted else ""
+    return [slash + words for words in (*kept, *text.assignments) if words]
+
+
+def is_m99(text: Text) -> bool:
     """Tell whether a line is the M99 that ends a sub of M98."""
     return ("M", "99") in text.words
-
-
-def section_lines(texts: Sequence[Text], written: Sequence[str]) -> list[SectionLine]:
-    """Return the lines of files, one after the other."""
-    found, sub, file = [], "", ""
-    for index, (text, line) in enumerate(zip(texts, written)):
-        named = SUB_LINE.fullmatch(bare(line))
-        begins = bool(named) and named[3] in ("sub", "")
-        sub = named[2] if named and begins else sub if text.file == file else ""
-        file = text.file
-        found.append(SectionLine(text, line, sub, index + 1 - text.number))
-        sub = "" if returns(text) or (named and named[3] == "endsub") else sub
-    return found
-
-
-def bodies_of(lines: Sequence[SectionLine]) -> dict[str, list[SectionLine]]:
-    """Return the lines of each sub by its name."""
-    found: dict[str, list[SectionLine]] = {}
-    for line in lines:
-        found.setdefault(line.sub, []).append(line)
-    return {sub: body for sub, body in found.items() if sub}
-
-
-def drawn_subs(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[str, str]:
-    """Return the subs that sections call, directly or not, each with its name in the copy."""
-    flagged = zip(lines, codes.with_switches(line.text for line in lines))
-    called = subs_from([line.text.call for line, (_, _, inside) in flagged if inside], bodies)
-    taken = {name for line in lines for name in (line.sub, line.text.call)}
-    free = (name for name in map(str, count(FIRST_NAME)) if name not in taken)
-    return dict(zip(sorted(called & bodies.keys()), free))
-
-
-def subs_from(calls: Iterable[str], bodies: Bodies) -> set[str]:
-    """Return the subs that are called, directly or not."""
-    waiting, found = [*calls], {""}
-    while waiting:
-        sub = waiting.pop()
-        if sub not in found:
-            found.add(sub)
-            waiting += [line.text.call for line in bodies.get(sub, ())]
-    return found - {""}
-
-
-def doubt_of(line: SectionLine, bodies: Bodies) -> str:
-    """Return why the copy cannot follow a line of a section, "" if it can."""
-    called = subs_from([line.text.call], bodies)
-    lines = [each for sub in called for each in bodies.get(sub, ())]
-    if called - bodies.keys() or any(map(own_doubt, lines)):
-        return f"line {line.text.number} calls o<{line.text.call}>"
-    return own_doubt(line)
-
-
-def own_doubt(line: SectionLine) -> str:
-    """Return why the copy cannot follow a line, its calls aside."""
-    if line.text.too_long:
-        return f"line {line.text.number} is too long"
-    asks = any(name in bare(line.written) for name in POSITION)
-    return f"line {line.text.number} asks for a position" if asks else ""
-
-
-def doubts_of(lines: Sequence[SectionLine], codes: Codes, bodies: Bodies) -> dict[Text, str]:
-    """Return what the copy of the program cannot follow, by the line that begins a section."""
-    doubts: dict[Text, str] = {}
-    first: Text | None = None
-    flagged = codes.with_switches(line.text for line in lines)
-    for line, (text, switch, inside) in zip(lines, flagged):
-        first = text if switch == "on" else first
-        why = doubt_of(line, bodies) if inside else ""
-        if first and why:
-            doubts[first] = why
-    return doubts
 
 
 def sections(
@@ -176,49 +133,23 @@ def sections(
     if not found:
         return []
     copies = Copies(program, called_files(read_lines(program), tracer.ini))
-    lines = section_lines(copies.texts, copies.lines)
-    bodies = bodies_of(lines)
-    drawn = drawn_subs(lines, codes, bodies)
-    more = {f"{name}.ngc": flattened(bodies[sub], codes, drawn, sub) for sub, name in drawn.items()}
-    copy = copies.trace(tracer, flattened(lines, codes, drawn), more, tools, parameters)
+    doubts = doubts_of(copies)
+    lines, setup = lines_of_copy(copies, codes, doubts), (f"{INSIDE}=0",)
+    copy = copies.trace(tracer, lines, tools, parameters, setup=setup)
     copied = blocks_in(copy, copies.texts)
     groups = list(grouped(copied, codes))
     if [own[0].text for own in found] != [group[0].text for group in groups]:
         raise moves_differ(program)
-    doubts = doubts_of(lines, codes, bodies)
     actual, expected = paths_in_force(blocks), paths_in_force(copied)
     return [
         replace(
             section_of(own, group, codes, pens),
-            doubt=doubts.get(own[0].text, ""),
+            doubt=next((doubts[block.text] for block in group if block.text in doubts), ""),
             paths_after=() if restores(group) else (actual[id(own[-1])], expected[id(group[-1])]),
             commanded_paths=(expected[id(group[0])], *paths_in(group)),
         )
         for own, group in zip(found, groups)
     ]
-
-
-def flattened(
-    lines: Sequence[SectionLine], codes: Codes, drawn: Mapping[str, str], sub: str = ""
-) -> list[list[str]]:
-    """Return the lines that replace each line in the copy without the sections' motion.
-
-    What a line does besides moving stays: LinuxCNC itself reports it. ``drawn`` are the subs that
-    sections call: their copies, of which ``sub`` is one, are in a section from the first line on.
-    """
-    found = []
-    own = {name: copied for name, copied in drawn.items() if name == sub}
-    flagged = codes.with_switches((line.text for line in lines), bool(sub))
-    for line, (text, switch, inside) in zip(lines, flagged):
-        if switch or (inside and text.words and not line.is_control and not text.too_long):
-            slash = "/" if text.deleted else ""
-            acting = "" if switch else acting_words(text, line.written, codes)
-            kept = [slash + words for words in (acting, *text.assignments) if words]
-            found.append([*reports_before(text, line.skip), *kept, *reports_after(text, line.skip)])
-        else:
-            named = drawn if inside else {} if line.text.call == sub else own
-            found.append([line.with_drawn(named)])
-    return found
 
 
 def acting_words(text: Text, line: str, codes: Codes) -> str:
