@@ -49,11 +49,11 @@ def place_samples(folder: Path) -> None:
 
 def readme(machines: list[Path]) -> str:
     """Return what the configuration selector shows beside a machine: what each one is."""
-    told = []
+    texts = []
     for ini in machines:
         first = ini.read_text(encoding="utf-8").splitlines()[0]
-        told.append(f"{ini.stem}\n  {first.removeprefix('# ')}\n")
-    return "Circular pockets and polar interpolation, simulated.\n\n" + "\n".join(told)
+        texts.append(f"{ini.stem}\n  {first.removeprefix('# ')}\n")
+    return "Circular pockets and polar interpolation, simulated.\n\n" + "\n".join(texts)
 
 
 if __name__ == "__main__":

@@ -43,6 +43,7 @@ CODE_PATTERN = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
 
 
 FACE_KINEMATICS = "polar_xzc"  # configs/kinematics
+ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # of the face, in HAL
 
 
 class Axis(NamedTuple):

@@ -21,9 +21,9 @@ from g12.errors import BlockRefusal, number
 from g12.host.interp import PLANE_CODES, Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
+from g12.machine_ini import ACCELERATION_PINS
 from g12.section.modes import decimal
 
-ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")  # HAL pins
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
 ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66

@@ -27,7 +27,7 @@ from g12.tools.path.samples import Samples
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import (
     Parameters,
-    Program,
+    ProgramPath,
     Tools,
     write_parameters,
     write_tools,
@@ -108,7 +108,7 @@ class Machine:
 
     def __init__(
         self,
-        ini: Program,
+        ini: ProgramPath,
         *,
         overrides: Overrides | None = None,
         tools: Tools = None,
@@ -144,7 +144,7 @@ class Machine:
         """Set the feed override; 1 is 100 %, without the INI's limit."""
         self._request("feed_override", scale)
 
-    def run(self, program: Program, timeout: float = 600.0) -> Run:
+    def run(self, program: ProgramPath, timeout: float = 600.0) -> Run:
         """Run a program file to its end or its error, resuming at M0 and M1.
 
         LinuxCNC works on a copy of it.

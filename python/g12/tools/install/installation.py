@@ -17,7 +17,7 @@ from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 
-MOST_NAMED = 3  # missing files are named
+MOST_MISSING_NAMED = 3  # missing files are named
 PREVENTING = {
     "no-linuxcnc",
     "python-fails",
@@ -31,8 +31,8 @@ def install(
     """Install features in a machine config; yield the lines to show."""
     missing = missing_files(text)
     if missing:
-        more = " …" if len(missing) > MOST_NAMED else ""
-        names = f"{', '.join(missing[:MOST_NAMED])}{more}"
+        more = " …" if len(missing) > MOST_MISSING_NAMED else ""
+        names = f"{', '.join(missing[:MOST_MISSING_NAMED])}{more}"
         yield f"{text.path.parent / package_copy.NAME}: missing: {names}"
         if dry_run:
             yield "dry run: nothing was written; without these files nothing more can be checked"

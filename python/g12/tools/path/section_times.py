@@ -26,7 +26,7 @@ from g12.tools.path.face_follow import axis_derivatives
 from g12.tools.path.least_time import Rates, least_seconds, seconds_at
 
 STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
-STRAIGHT_ON = math.radians(5.0)  # a sharper corner is a stop
+SMOOTH_CORNER = math.radians(5.0)  # a sharper corner is a stop
 SEGMENT_BULGE = 1.44  # of the tolerance
 STOPPED_IN = 0.4  # measured: the square of the speed by length times acceleration of a segment
 TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
@@ -114,7 +114,7 @@ def _smooth(legs: Iterable[Leg]) -> Iterator[list[Leg]]:
     """Yield moves without a corner between them."""
     run: list[Leg] = []
     for leg in legs:
-        if run and abs(leg.curve.direction(0.0) - run[-1].curve.direction(1.0)) > STRAIGHT_ON:
+        if run and abs(leg.curve.direction(0.0) - run[-1].curve.direction(1.0)) > SMOOTH_CORNER:
             yield run
             run = []
         run.append(leg)

@@ -37,7 +37,7 @@ PANEL, GAP, ROWS = 1.0, 0.32, 3
 BETWEEN = 0.75  # the two columns of panels
 BOTTOM = 0.5
 NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
-DETAIL_HEIGHT = 1.2  # with the detail view of the largest deviation
+DETAIL_ROW = 1.2  # with the detail view of the largest deviation
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     size = high - low
     scale = min((WIDTH - LEFT - RIGHT) / size[0], MOST / size[1])
     across, up = size[0] * scale, max(LEAST, size[1] * scale)
-    more = DETAIL_HEIGHT if scene.real is not None else 0.0
+    more = DETAIL_ROW if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - up, across, up)

@@ -34,7 +34,7 @@ LAUNCH = (
 )
 NO_BYTECODE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
-Program = str | os.PathLike
+ProgramPath = str | os.PathLike
 Tools = str | os.PathLike | Mapping[int, float] | None
 Parameters = str | os.PathLike | Mapping[int, float] | None
 
@@ -56,7 +56,7 @@ class Tracer:
     """
 
     def __init__(
-        self, ini: Program | Ini, *, overrides: Overrides | None = None, tools: Tools = None
+        self, ini: ProgramPath | Ini, *, overrides: Overrides | None = None, tools: Tools = None
     ) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="g12-trace-")
         self.folder = Path(self._scratch.name)
@@ -73,7 +73,7 @@ class Tracer:
 
     def trace(
         self,
-        program: Program,
+        program: ProgramPath,
         *,
         setup: Iterable[str] = (),
         parameters: Parameters = None,
@@ -173,8 +173,8 @@ class Tracer:
 
 
 def trace(
-    program: Program,
-    ini: Program,
+    program: ProgramPath,
+    ini: ProgramPath,
     *,
     overrides: Overrides | None = None,
     tools: Tools = None,

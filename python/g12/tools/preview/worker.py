@@ -31,7 +31,7 @@ LINEAR_AXES = (0, 1, 2, 6, 7, 8)
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
-PLANE_CODES = {1: 17, 2: 19, 3: 18}
+PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
 CALL_BY_M98, CALL_OF_REMAP = 2, 4  # call_type of a frame
@@ -50,7 +50,7 @@ PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
 INVERSE_TIME = 1  # index in FEED_MODES: each block has an F of its own
-FEED_MODES = ("G94", "G93", "G95")
+FEED_MODE_CODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
 TOOL_FUNCTIONS = {  # with their types as C++ names them
     "tooldata_init": "b",
@@ -94,7 +94,7 @@ class ToolEntry(ctypes.Structure):
         return (self.number, *self.offset, self.diameter, *self.angles, self.orientation)
 
 
-class Tools:
+class ToolTable:
     """The tool table in LinuxCNC's shared form, which the interpreter looks tools up in."""
 
     def __init__(self, table: str, random: bool) -> None:
@@ -185,7 +185,7 @@ class Lines:
 class Canon:
     """Records the interpreter's canonical calls, in mm and machine coordinates."""
 
-    def __init__(self, machine: dict, tools: Tools, request: dict) -> None:
+    def __init__(self, machine: dict, tools: ToolTable, request: dict) -> None:
         self.machine, self.tools = machine, list(tools)
         self.parameter_file = request["parameter_file"]
         self.lines = Lines(request["program"])
@@ -297,7 +297,7 @@ class Canon:
 
     def set_plane(self, plane: int) -> None:
         """Note the plane."""
-        self.plane = PLANE_CODES[plane]
+        self.plane = PLANE_NUMBERS[plane]
 
     def set_feed_rate(self, rate: float) -> None:
         """Note the feed, inches per minute or revolution if the program is metric."""
@@ -414,7 +414,7 @@ class Canon:
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
         start, self.tip, self.position = self._start(tip), tip, self._resolved(tip)
-        mode = FEED_MODES[interpreter_object().feed_mode] if feed else ""
+        mode = FEED_MODE_CODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
         path = (kind, self.line, self.lines.now(), start, self.position)
         remap = self.lines.remap()
@@ -562,7 +562,7 @@ def record_errors_of_handlers() -> None:
     emccanon.CANON_ERROR = lambda text, *_args: emccanon.MESSAGE(text)
 
 
-def interpret(machine: dict, tools: Tools, request: dict) -> dict:
+def interpret(machine: dict, tools: ToolTable, request: dict) -> dict:
     """Interpret one program and return everything it did."""
     import gcode
 
@@ -627,7 +627,7 @@ def blank(directory: str) -> dict:
     }
 
 
-def answered(machine: dict, tools: Tools, request: dict) -> dict:
+def answered(machine: dict, tools: ToolTable, request: dict) -> dict:
     """Interpret one program; ``failure`` in the answer is a fault of this process."""
     try:
         return interpret(machine, tools, request)
@@ -649,7 +649,7 @@ def ini_refused(machine: dict) -> str | None:
     return None
 
 
-def start(machine: dict, tools: Tools) -> dict:
+def start(machine: dict, tools: ToolTable) -> dict:
     """Load the machine's Python modules and return its answer to a blank program.
 
     ``no_end`` is this LinuxCNC's error for a program without an end.
@@ -676,7 +676,7 @@ def reply(connection: Connection, machine: dict, answer: dict) -> None:
     connection.send({**answer, "printed": printed(machine["output"])})
 
 
-def reply_alone(connection: Connection, machine: dict, tools: Tools, request: dict) -> None:
+def reply_alone(connection: Connection, machine: dict, tools: ToolTable, request: dict) -> None:
     """Answer from a fork of this process, which discards the state of the machine's modules."""
     copy = os.fork()
     if copy:
@@ -715,7 +715,7 @@ def serve(descriptor: int) -> None:
 
 def answer_requests(connection: Connection, machine: dict) -> None:
     """Load the machine and answer requests until the other end closes."""
-    tools = Tools(machine["tool_table"], machine["random"])
+    tools = ToolTable(machine["tool_table"], machine["random"])
     answer = start(machine, tools)
     known = tuple(answer.get("globals", ()))
     reply(connection, machine, answer)

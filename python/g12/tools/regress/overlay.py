@@ -27,7 +27,7 @@ PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
 LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
 SIDE = 1.5  # height of the side view
 LEGEND, ROWS = 2.9, 1.6
-DETAIL_SIZE = 2.0  # sides of the detail view of the largest gap
+GAP_VIEW_SIZE = 2.0  # sides of the detail view of the largest gap
 REACH, LEAST_REACH = 4.0, 1e-3  # half the view's side: in gaps, in mm
 VISIBLE = 0.08  # of the picture's size: a larger gap needs no detail view
 MARGIN_SHARE = 0.05
@@ -89,7 +89,7 @@ class View:
         self._widen(second, LEAST_HIGH / scale)
         self.plan = tuple((self.high - self.low)[self.pairs[0]] * scale)
         views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
-        self.height = max(TOP + views + BOTTOM, TOP + ROWS + DETAIL_SIZE + BOTTOM)
+        self.height = max(TOP + views + BOTTOM, TOP + ROWS + GAP_VIEW_SIZE + BOTTOM)
         self.width = LEFT + self.plan[0] + LEGEND + RIGHT
 
     def _widen(self, axis: int, least: float) -> None:
@@ -138,7 +138,9 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     left, top = view.beside
     style.draw_legend(figure, entries(drawn, view.unit), left, top, borderaxespad=0.0)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
-        axes = style.add_axes(figure, left, top - ROWS - DETAIL_SIZE, DETAIL_SIZE, DETAIL_SIZE)
+        axes = style.add_axes(
+            figure, left, top - ROWS - GAP_VIEW_SIZE, GAP_VIEW_SIZE, GAP_VIEW_SIZE
+        )
         draw_change(axes, drawn, view)
     return figure
 

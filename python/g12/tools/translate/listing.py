@@ -85,7 +85,7 @@ def missing_lines(
     machine_codes: frozenset[str] | None,
     settings: Iterable[tuple[str, str]],
 ) -> list[str]:
-    """Return the lines; ``settings`` are the tables and lines that rules have asked for."""
+    """Return the lines; ``settings`` are the tables and lines that rules need."""
     tables: dict[str, list[str]] = {"": []}
     words = [w for block in blocks for w in block.words if w.kind == "number"]
     letters = {control.value("words", w.letter, w.letter) for w in words}

@@ -15,7 +15,7 @@ LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
 ACTIVE_COMMENT = re.compile(r"\((MSG|ABORT), ")
 NUMBERED = re.compile("(N[0-9]+ )?")
-LEADING_NUMBER = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments after it
+NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments after it
 
 
 def lines_of(draft: Draft) -> list[str]:
@@ -118,7 +118,7 @@ def _unreached(block: ForeignBlock) -> list[str] | None:
 def _with_start_codes(start: str, lines: list[str]) -> list[str]:
     """Add the codes that hold at the start to the first line."""
     first = lines[0] if lines else ""
-    number = LEADING_NUMBER.match(first)
+    number = NUMBER_PREFIX.match(first)
     if number:
         return [f"{number[1]}{start} {first[number.end(1) :]}".rstrip(), *lines[1:]]
     return [start, *lines]

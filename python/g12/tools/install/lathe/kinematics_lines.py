@@ -26,7 +26,7 @@ from g12.tools.install.lathe.kinematics_rules import (
 
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
 LIMIT_KEYS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
-IN_PLACE = (  # entries whose value changes
+CHANGED_ENTRIES = (  # entries whose value changes
     ("KINS", "KINEMATICS"),
     ("TRAJ", "COORDINATES"),
     ("AXIS_X", "MIN_LIMIT"),
@@ -112,7 +112,7 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
     """Yield unusual forms of the lines that would change."""
     if config.ini.get("RS274NGC", "ON_ABORT_COMMAND"):
         yield "[RS274NGC] has an ON_ABORT_COMMAND"
-    for section, key in IN_PLACE:
+    for section, key in CHANGED_ENTRIES:
         for line, _ in text.entries(section, key)[:1]:
             if line.file != text.path:
                 yield f"{line.location}: {key} is in an included file"

@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from g12.errors import Refusal
 from g12.ini_sections import leading_number
-from g12.machine_ini import FACE_KINEMATICS, face_joints, face_of
+from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
 from g12.settings import settings_from_lines
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
@@ -40,7 +40,6 @@ NEWEST_PIN = b".most-override"  # of the module
 LEAST_PINS = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 LIMIT_SLACK = 1.001
-ACCELERATION_PINS = ("ini.x.max_acceleration", "ini.y.max_acceleration")
 SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp

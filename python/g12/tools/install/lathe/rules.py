@@ -13,7 +13,7 @@ from g12.tools.machine.stored_positions import unset_positions
 
 WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
 GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")
-FULL_TURN = 360.0
+DEGREES_OF_TURN = 360.0
 ON_A_LATHE = tuple(features.AXES_NEEDED)
 
 
@@ -46,7 +46,7 @@ def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
     low, high = (config.ini.number("AXIS_C", key, default)
                  for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
     wrapped = config.ini.number("AXIS_C", "WRAPPED_ROTARY", 0.0)
-    if not wrapped and high - low > FULL_TURN and not uses_face_kinematics(config):
+    if not wrapped and high - low > DEGREES_OF_TURN and not uses_face_kinematics(config):
         yield note(
             "unwinding",
             "[AXIS_C] WRAPPED_ROTARY is not set: G0 C0 after a section unwinds every turn that C "

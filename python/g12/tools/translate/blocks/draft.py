@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One block on its way through the rules: its remaining words, and the lines that it becomes."""
+"""One block between the rules: its remaining words, and the lines that it becomes."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
@@ -29,7 +29,7 @@ class SubprogramCall(NamedTuple):
 
 @dataclass(eq=False)
 class Draft:
-    """A block on its way through the rules: words that are its own line, further lines, modes."""
+    """A block between the rules: words that are its own line, further lines, modes."""
 
     block: ForeignBlock
     state: ModalState  # the modes, carried on by the rules
@@ -105,7 +105,7 @@ class Draft:
         self.words = [word for word in self.words if word not in words]
 
     def write(self, lines: Iterable[str]) -> None:
-        """Write lines after the block's words; the first is its own where no words are left."""
+        """Write lines after the block's words; the first is its own where no words remain."""
         lines = [*lines]
         if lines and self.is_empty():
             self.words.append(line_as_word(lines.pop(0)))

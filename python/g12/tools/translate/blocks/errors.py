@@ -9,7 +9,7 @@ class NotTranslated(ValueError):
 
 
 class NotSure(NotTranslated):
-    """A block whose meaning hangs on ``modes`` that are not the same on every way to it."""
+    """A block whose meaning depends on ``modes`` that are not the same on every way to it."""
 
     def __init__(self, sentence: str, *modes: str) -> None:
         super().__init__(sentence)

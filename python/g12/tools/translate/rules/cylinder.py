@@ -2,7 +2,7 @@
 """Cylindrical interpolation: G107 and G132 as G7.1.
 
 Most controls give the cylinder's radius as C (or H) and angles as C. Haas maps an axis of lengths
-onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the way along its surface.
+onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the length along its surface.
 """
 
 from math import degrees

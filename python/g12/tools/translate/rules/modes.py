@@ -14,7 +14,7 @@ MACHINES_OWN = REFERENCES | {"G53"}
 def zero_of_missing_axis(draft: Draft) -> None:
     """Drop ``A0`` on a machine without A: CAM writes it for a fourth axis that is not used.
 
-    A lathe's A and C beside X or Z are an angle and a chamfer, so only a machine with Y is meant.
+    A lathe's A and C beside X or Z are an angle and a chamfer, so it needs a machine with Y.
     A block keeps the word where it would mean another thing without it, as G28 does.
     """
     axes = draft.control.axes

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Work offsets beyond LinuxCNC's nine, and offsets that a program sets.
 
-LinuxCNC has no place for G154 P1 to P99 (G110 to G129 are the first twenty): they are kept in
+LinuxCNC has no offsets for G154 P1 to P99 (G110 to G129 are the first twenty): they are kept in
 numbered parameters, in machine units as the var file keeps G54's, ten for each: X Y Z A B C from
 ``first_parameter`` on. To select one is to copy it into G59.3 and to select that.
 

@@ -292,7 +292,7 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
 
 
 def _refuse_other_meanings(draft: Draft, meaning: str) -> None:
-    """Refuse a single pass whose code was meant as a mode of another G code system."""
+    """Refuse a single pass whose code is perhaps a mode of another G code system."""
     code = draft.meanings.get(meaning)
     if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
         raise NotTranslated(_other_meaning(code.code, meaning))
@@ -374,7 +374,7 @@ def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
 
 
 def _thread_move(draft: Draft) -> None:
-    """G32: G33 with the lead as the way along its path."""
+    """G32: G33 with the lead as the travel along its path."""
     start = start_point(draft)
     end = take_end(draft, start)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))

@@ -133,7 +133,7 @@ def facing_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
 
 
 class Pecking(NamedTuple):
-    """What G74 or G75 is given: where it ends, a peck, the step to the next place, the retract.
+    """What G74 or G75 is given: where it ends, a peck, the step to the next peck, the retract.
 
     ``shift`` is by how much the tool goes aside at the bottom; ``along_x`` is G75.
     """
