@@ -198,7 +198,7 @@ def test_a_refusal_can_be_what_is_expected(shop):
     assert any("no longer refused, was at line 6: G12: I-0.3" in line for line in lines)
 
 
-def test_programs_added_and_gone(pocket):
+def test_programs_added_and_missing(pocket):
     (pocket.programs / "pocket.ngc").rename(pocket.programs / "other.ngc")
     code, lines = pocket.check()
     assert code == 1
@@ -289,7 +289,7 @@ def test_a_recording_that_is_killed_leaves_no_process(endless):
     assert until(lambda: not living(endless.pid), 10)
 
 
-def test_interpreters_that_are_killed_are_told_in_a_line_each(endless):
+def test_interpreters_that_are_killed_are_reported_in_a_line_each(endless):
     while endless.poll() is None:
         for number in set(living(endless.pid)) - {endless.pid}:
             with contextlib.suppress(ProcessLookupError):
@@ -324,7 +324,7 @@ def test_new_versions_of_the_programs_in_another_folder(pocket):
     assert pocket.check()[0] == 0
 
 
-def test_a_tool_that_wears_changes_no_recording_until_asked(shop):
+def test_a_tool_that_wears_changes_no_recording_until_requested(shop):
     ini = shop.write("own.ini", MACHINE, shop.folder)
     table = shop.write("own.tbl", "T1 P1 D6 Z10\n", shop.folder)
     comped = "G21 T1 M6\nG43\nG41.1 D6\nG1 X20 F100\nY20\nX40\nG40\nX50\nM2\n"

@@ -161,7 +161,7 @@ def test_an_arc_is_turned_with_the_work_coordinates(mill):
     assert math.degrees(arc.sweep) == near(270.0)
 
 
-def test_tool_length_is_told_beside_the_position(mill):
+def test_tool_length_is_reported_beside_the_position(mill):
     (move,) = mill.trace_text("T2 M6\nG43\nG1 Z5 F100").moves
     assert move.end[2] == near(5.0)
     assert move.tool_offset[2] == near(20.0)
@@ -276,7 +276,7 @@ def test_what_is_printed_is_kept_apart(mill):
 # State.
 
 
-def test_modes_and_variables_behind_the_program(mill):
+def test_modes_and_variables_after_the_program(mill):
     traced = mill.trace_text("G20\nG91 G18 G61 G95 F.1 S500\nG0 X1")
     for code in ("G0", "G20", "G91", "G18", "G61", "G95"):
         assert code in traced.modes.gcodes
@@ -354,7 +354,7 @@ def test_a_program_without_end_times_out_and_the_next_one_runs(mill):
     assert ends(mill.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
 
 
-def test_an_ini_that_linuxcnc_does_not_read_is_told_and_never_passed_over(ini):
+def test_an_ini_that_linuxcnc_does_not_read_is_reported_and_never_passed_over(ini):
     """2.10 reads nothing of such a file, and its interpreter goes on without the remaps."""
     odd = ini.with_name("odd.ini")
     odd.write_text(ini.read_text() + "a line without its sign\n")

@@ -31,7 +31,7 @@ def ends(capsys, *words):
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_wrong_words_are_told_in_one_line(name, capsys):
+def test_wrong_words_are_reported_in_one_line(name, capsys):
     code, said = ends(capsys, name, "--nonsense", "3")
     assert code == 2
     assert said.startswith(f"g12 {name}: ")
@@ -79,7 +79,7 @@ def files(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run", "trace", "verify", "plot"])
-def test_wrong_files_are_told_in_one_line(name, files, capsys):
+def test_wrong_files_are_reported_in_one_line(name, files, capsys):
     rest = ["-o", "x.png"] if name == "plot" else []
     wrong = [
         (files.folder / "no.ngc", files.ini, (), "no.ngc: no such file"),
@@ -201,7 +201,7 @@ def test_an_output_that_nobody_reads_is_no_error(tmp_path, words):
     assert done.returncode == 141
 
 
-def test_a_pipe_that_breaks_elsewhere_is_told(monkeypatch, capsys):
+def test_a_pipe_that_breaks_elsewhere_is_reported(monkeypatch, capsys):
     def broken(_arguments):
         raise BrokenPipeError(32, "Broken pipe")
 
@@ -216,7 +216,7 @@ def test_a_pipe_that_breaks_elsewhere_is_told(monkeypatch, capsys):
         (["Starting", "./c.hal:57: Pin 'iocontrol.0.lube' does not exist", "Recommend: both"], 1),
     ],
 )
-def test_of_a_log_that_line_is_told_that_tells_most(log, tells, capsys):
+def test_of_a_log_the_most_specific_line_is_reported(log, tells, capsys):
     @arguments.one_line("run")
     def command(_words):
         raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))

@@ -365,7 +365,7 @@ def test_the_copy_is_checked_by_sha256sum(tmp_path):
     assert content_of(copy).keys() == {*PACKAGE, "MANIFEST"}
 
 
-def test_edited_files_of_the_copy_survive_uninstall_and_are_told(tmp_path):
+def test_edited_files_of_the_copy_survive_uninstall_and_are_reported(tmp_path):
     ini = write_config(tmp_path)
     put_in(ini)
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
@@ -378,7 +378,7 @@ def test_edited_files_of_the_copy_survive_uninstall_and_are_told(tmp_path):
         put_in(ini)
 
 
-def test_a_copy_whose_list_is_gone_stays_and_one_behind_a_link_is_not_the_configs(tmp_path):
+def test_a_copy_whose_list_is_missing_stays_and_one_behind_a_link_is_not_the_configs(tmp_path):
     ini = write_config(tmp_path)
     put_in(ini)
     shutil.move(tmp_path / "g12" / "ngc", tmp_path / "elsewhere")
@@ -416,7 +416,7 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
 # Installations that were interrupted, damaged or edited.
 
 
-def test_of_several_old_versions_none_is_left_behind(tmp_path, monkeypatch):
+def test_of_several_old_versions_none_is_left_over(tmp_path, monkeypatch):
     ini, python = own_config(tmp_path)
     before = content_of(tmp_path)
 

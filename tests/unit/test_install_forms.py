@@ -143,7 +143,7 @@ def test_a_form_that_is_nowhere_is_found(tmp_path):
     assert "form_hass_mm.ngc is in none of" in found
 
 
-def test_a_form_in_order_is_told_and_no_finding(tmp_path):
+def test_a_form_in_order_is_reported_and_no_finding(tmp_path):
     assert shown_in(tmp_path, AXIS, f"{TKPKG}{HAAS_PAGE}NGCGUI_SUBFILE = simp.ngc\n") == []
     config = config_of(tmp_path / "mill.ini")
     assert "         form         form_haas_mm" in lines_of_check(check_report(config, []))

@@ -142,7 +142,7 @@ def test_what_is_written(tmp_path):
     assert "[JOINT_0]\nMIN_LIMIT = -5\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACC" in text
 
 
-def test_what_the_user_changed_since_stays_as_a_comment_and_is_told(tmp_path):
+def test_what_the_user_changed_since_stays_as_a_comment_and_is_reported(tmp_path):
     ini = config_in(tmp_path)
     put_in(ini, "polar", features.KINEMATICS)
     ours, theirs = "COORDINATES = X Y Z C\n# <<<", "COORDINATES = X Y Z C A\n# <<<"

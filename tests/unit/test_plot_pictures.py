@@ -98,7 +98,7 @@ def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
     assert heading(program) == ""
 
 
-def test_times_are_told_in_minutes():
+def test_times_are_reported_in_minutes():
     assert (clock(9.96), clock(125.4)) == ("10.0 s", "2 min 5 s")
     assert (clock(59.94), clock(59.96), clock(299.7)) == ("59.9 s", "1 min 0 s", "5 min 0 s")
 
@@ -277,7 +277,7 @@ def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     )
 
 
-def test_a_boss_stands_in_the_side_view():
+def test_a_boss_is_in_the_side_view():
     ring = Point(0, 0).buffer(30).difference(Point(0, 0).buffer(20))
     level = plan_view.Level(-2.0, style.shades(1)[0], [], ring)
     left, right = sorted(removed_at(level, 0.0).geoms, key=lambda part: part.bounds[0])
@@ -285,7 +285,7 @@ def test_a_boss_stands_in_the_side_view():
     assert right.bounds == pytest.approx((20, -2, 30, 0), abs=0.01)
 
 
-def test_what_stands_is_in_the_legend_and_the_view():
+def test_uncut_material_is_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
     told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
     assert told == ["uncut material"]
@@ -300,7 +300,7 @@ def test_a_finding_with_a_place_has_a_sign():
     assert [text for _, text in shown.seen.warnings()] == [found.text()]
 
 
-def test_what_stands_is_cut_through_the_pockets_middle_in_the_side_view():
+def test_uncut_material_is_cut_through_the_pockets_middle_in_the_side_view():
     boxes = cut_through(uncut((50.0, 7.0)), 0.0)
     assert [part.bounds for part in boxes.geoms] == [
         pytest.approx((20, -4, 30, 0)),
@@ -453,7 +453,7 @@ def test_the_window_shows_the_axes_in_which_the_motion_strays(away, way, axes):
     assert clearest_axes(np.array(away, float), np.array(way, float)) == axes
 
 
-def test_the_largest_deviation_is_told_with_its_line():
+def test_the_largest_deviation_is_reported_with_its_line():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
     lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
     assert lines == ["0.012 mm,", "line 1, in X and Y"]

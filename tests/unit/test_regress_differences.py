@@ -107,11 +107,11 @@ REFUSED = recording(*SQUARE, error=Error("G12: no I", 8))
          "modal state at the end: G90 → G91"),
     ],
 )  # fmt: skip
-def test_one_thing_that_differs_is_told(was, now, kind, text):
+def test_one_thing_that_differs_is_reported(was, now, kind, text):
     assert told(was, now) == ([(kind, text)] if kind else [])
 
 
-def test_a_path_that_is_shifted_with_a_block_more_is_told_as_these():
+def test_a_path_that_is_shifted_with_a_block_more_is_reported_as_these():
     points = random.Random(1).sample(range(10_000), 200)
     was = [("feed", (x, x % 7, -1)) for x in points]
     now = [(kind, (x, y + 2, z)) for kind, (x, y, z) in was]
@@ -121,7 +121,7 @@ def test_a_path_that_is_shifted_with_a_block_more_is_told_as_these():
     assert result[0].text == "Y by +2 mm"
 
 
-def test_one_move_that_is_wrong_within_a_shifted_path_is_told_apart():
+def test_one_move_that_is_wrong_within_a_shifted_path_is_reported_alone():
     was = [("feed", (x, x % 7, -1)) for x in range(40)]
     now = [(kind, (x, y + 2, z)) for kind, (x, y, z) in was]
     now[20] = ("feed", (20, 60, -1))
@@ -140,7 +140,7 @@ def test_the_centre_of_a_flat_arc_may_be_anywhere():
     assert len(found(flat(100.0), flat(101.0))) == 1
 
 
-def test_a_move_that_became_others_is_told_with_how_far_they_go_astray():
+def test_a_move_that_became_others_is_reported_with_how_far_they_go_astray():
     was = recording(("feed", (10, 0, 0)), ("feed", (10, 10, 0)))
     now = recording(("feed", (5, 0.25, 0)), ("feed", (9, 0, 0)), ("feed", (10, 10, 0)))
     (difference,) = found(was, now)

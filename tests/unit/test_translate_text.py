@@ -31,8 +31,8 @@ def lines(control, text, **options):
     return result.text.splitlines()
 
 
-def behind(control, text, head=None):
-    """Return the lines behind those of a head."""
+def lines_after(control, text, head=None):
+    """Return the lines after those of a head."""
     head = head or (TURN if control.is_lathe else MILL)
     return lines(control, head + text)[head.count("\n") :]
 
@@ -48,7 +48,7 @@ def sentence(control, text, **options):
 
 
 def test_a_line_stays_a_line_and_further_ones_say_theirs():
-    translated = behind(HAAS, "G154 P2 G0 X1.\n\n(PLAIN)\nG0 X2. M98 P5\nM30\nO5\nM99\n")
+    translated = lines_after(HAAS, "G154 P2 G0 X1.\n\n(PLAIN)\nG0 X2. M98 P5\nM30\nO5\nM99\n")
     assert translated == [
         "o<unset_2> if [[#4011 EQ 0] AND [#4012 EQ 0] AND [#4013 EQ 0]] (G154 P2 overwrites G59.3)",
         "(line 3) (MSG, G154 P2 was never set, it counts as 0: X is #4011)",
@@ -66,7 +66,7 @@ def test_a_line_stays_a_line_and_further_ones_say_theirs():
 
 
 def test_numbers_keep_their_text():
-    assert behind(HAAS, "G01 X+1.500 Y-.50 F010.\nM30\n")[0] == "G01 X+1.500 Y-.50 F010."
+    assert lines_after(HAAS, "G01 X+1.500 Y-.50 F010.\nM30\n")[0] == "G01 X+1.500 Y-.50 F010."
 
 
 @pytest.mark.parametrize(
@@ -87,26 +87,28 @@ def test_numbers_keep_their_text():
     ],
 )
 def test_comments_stay_and_do_nothing(comment, kept):
-    assert behind(HAAS, f"{comment}\nM30\n")[0] == kept
+    assert lines_after(HAAS, f"{comment}\nM30\n")[0] == kept
 
 
 def test_words_that_a_cycle_does_not_use_are_comments_in_their_order():
     for words, kept in (("Q.1 P500", "(Q.1)(P0.5)"), ("P500 Q.1", "(P0.5)(Q.1)")):
-        assert behind(HAAS, f"G81 X1. Z-.5 R.1 {words} F8.")[0] == f"G81 X1. Z-.5 R.1 F8. {kept}"
+        assert (
+            lines_after(HAAS, f"G81 X1. Z-.5 R.1 {words} F8.")[0] == f"G81 X1. Z-.5 R.1 F8. {kept}"
+        )
 
 
 def test_a_comment_that_has_no_room_has_lines_of_its_own():
-    translated = behind(HAAS, f"G0 X1. ({'A' * 300})\nM30\n")
+    translated = lines_after(HAAS, f"G0 X1. ({'A' * 300})\nM30\n")
     assert translated[:3] == ["G0 X1.", f"({'A' * 200}) (line 3)", f"({'A' * 100}) (line 3)"]
 
 
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
 def test_line_ends(end):
-    assert behind(HAAS, "G0 X1.\nM30\n".replace("\n", end)) == ["G0 X1.", "M30"]
+    assert lines_after(HAAS, "G0 X1.\nM30\n".replace("\n", end)) == ["G0 X1.", "M30"]
 
 
 def test_blanks_and_small_letters_do_not_count():
-    assert behind(HAAS, "g 0 x 1 . 5 y - 2 .\nM30\n")[0] == "G0 X1.5 Y-2."
+    assert lines_after(HAAS, "g 0 x 1 . 5 y - 2 .\nM30\n")[0] == "G0 X1.5 Y-2."
 
 
 def test_bytes_of_any_kind_are_text():
@@ -115,21 +117,21 @@ def test_bytes_of_any_kind_are_text():
     assert lines(HAAS, "\ufeff%\nG0 X0\nM30\n")[0].endswith("(%)")
 
 
-def test_what_stands_behind_the_percent_sign_is_a_comment():
+def test_what_is_after_the_percent_sign_is_a_comment():
     assert lines(HAAS, "%O5°(A)\nG0 X0\nM30\n")[0].endswith("(%O5°)(A)")
 
 
 def test_a_minus_sign_is_a_minus_and_a_dash_is_not():
-    assert behind(HAAS, "X\N{MINUS SIGN}1.\nM30\n")[0] == "X-1."
+    assert lines_after(HAAS, "X\N{MINUS SIGN}1.\nM30\n")[0] == "X-1."
     assert sentence(HAAS, "G0 X\N{EN DASH}1.\n").sentence.startswith("X has no value: –1.")
 
 
 def test_several_blocks_on_a_line():
-    assert behind(HAAS, "G0 X1.; Y1.;\nM30\n")[:2] == ["G0 X1.", "Y1. (line 3)"]
+    assert lines_after(HAAS, "G0 X1.; Y1.;\nM30\n")[:2] == ["G0 X1.", "Y1. (line 3)"]
 
 
 def test_a_program_that_nobody_calls_is_a_comment():
-    assert behind(HAAS, "M30\nO5\nG47 X1.\nM99\n")[1:] == [
+    assert lines_after(HAAS, "M30\nO5\nG47 X1.\nM99\n")[1:] == [
         "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)",
     ]  # fmt: skip
 
@@ -149,19 +151,19 @@ def test_least_increments_follow_the_units(tmp_path):
     path = tmp_path / "own.toml"
     path.write_text('based_on = "fanuc-mill"\ndecimals = "least"\n')
     own = read_control(str(path))
-    assert behind(own, "G21 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G21 G0 X1.234"
-    assert behind(own, "G20 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G20 G0 X0.1234"
+    assert lines_after(own, "G21 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G21 G0 X1.234"
+    assert lines_after(own, "G20 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G20 G0 X0.1234"
     assert "before G20 or G21" in sentence(own, "G0 X1234\n").sentence
     path.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
     whole = read_control(str(path))
-    assert behind(whole, "G0 X1234\nM30\n", "(HEAD)\n")[0] == "G0 X1234"
+    assert lines_after(whole, "G0 X1234\nM30\n", "(HEAD)\n")[0] == "G0 X1234"
 
 
 # ---------------------------------------------------------------- codes
 
 
 def test_zeros_of_an_axis_that_the_machine_lacks_are_dropped():
-    written = behind(HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.\nM30\n")
+    written = lines_after(HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.\nM30\n")
     assert written[0] == "G0 X1. (A0.: no A here)(B0: no B here)"
     assert written[1:3] == ["(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]
     blocks = "G28 A0.|G53 A0.|G91 G28 A0|G92 A0.|#1=0\nG0 A#1|G81 X0 Z-1. R.1\nA0."
@@ -173,7 +175,7 @@ def test_an_m_code_that_the_machine_knows_stays():
     known = frozenset(["M31", "M88", "M137"])
     text = f"{MILL}M31\nM88\nM137\nM30\n"
     assert lines(HAAS, text, machine_codes=known)[2:] == ["M31", "M88", "M137", "M30"]
-    assert behind(HAAS, "M31\nM88\nM30\n") == ["(M31)", "M88", "M30"]
+    assert lines_after(HAAS, "M31\nM88\nM30\n") == ["(M31)", "M88", "M30"]
     refused = sentence(HAAS, f"{MILL}M88\nM30\n", machine_codes=frozenset())
     assert (refused.line, refused.sentence[:24]) == (3, "M88 is the machine build")
 
@@ -251,7 +253,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS_LATHE, "G112\nG0 X1.", "G0 in polar mode: its speed needs the units"),
     ],
 )  # fmt: skip
-def test_what_is_refused_is_told(control, block, start):
+def test_what_is_refused_is_reported(control, block, start):
     head = TURN if control.is_lathe else MILL
     refused = sentence(control, f"{head}{block}\nM30\n")
     assert refused.line == 2 + 1 + block.count("\n")
@@ -292,7 +294,7 @@ def test_a_macro_that_asks_for_empty_variables(blocks):
 
 def test_a_jump_leaves_the_lines_between_at_their_numbers():
     text = "N1 G1 X1. F9.\n#1=#1+1\nIF[#1LT3]GOTO1\nX2.\nM30\n"
-    assert behind(HAAS, text) == [
+    assert lines_after(HAAS, text) == [
         "#<jump_2>=0",
         "o<jump_2> do (line 3)",
         "o<jump_2_0> if [#<jump_2> LE 0] (line 3)",
@@ -310,13 +312,16 @@ def test_a_jump_leaves_the_lines_between_at_their_numbers():
     ]
 
 
-def test_spindle_and_coolant_stop_behind_a_cut():
-    assert behind(HAAS, "G3 X1. R1. F9. M5 M9\nM30\n")[:-1] == ["G3 X1. R1. F9.", "M5 M9 (line 3)"]
-    assert behind(HAAS, "G0 X1. M9\nM30\n")[:-1] == ["G0 X1. M9"]
+def test_spindle_and_coolant_stop_after_a_cut():
+    assert lines_after(HAAS, "G3 X1. R1. F9. M5 M9\nM30\n")[:-1] == [
+        "G3 X1. R1. F9.",
+        "M5 M9 (line 3)",
+    ]
+    assert lines_after(HAAS, "G0 X1. M9\nM30\n")[:-1] == ["G0 X1. M9"]
 
 
 def test_the_orientation_of_the_spindle():
-    assert behind(HAAS, "M19\nG0 X1. M19 R90.\nM19 P45\nM30\n")[:4] == [
+    assert lines_after(HAAS, "M19\nG0 X1. M19 R90.\nM19 P45\nM30\n")[:4] == [
         "M19 Q30", "M19 R90. Q30", "G0 X1. (line 4)", "M19 R45 Q30",
     ]  # fmt: skip
 
@@ -346,7 +351,7 @@ def test_a_setting_of_the_control_whose_unit_is_not_said():
         ("M3 S99\nM35", "T2 M6 G43 H2"),  # the spindle is C
     ],
 )
-def test_a_spindle_that_turns_is_started_again_behind_a_tool_change(before, change):
+def test_a_spindle_that_turns_is_started_again_after_a_tool_change(before, change):
     assert change in lines(read_control("doosan-lathe"), f"G0 X50. Z5.\n{before}\nT0202\nM30\n")
 
 
@@ -360,7 +365,7 @@ def test_the_spindle_of_a_bar_that_is_fed_in_a_loop():
 def test_subprograms_with_names():
     okuma = read_control("okuma-lathe")
     text = "G0 X50. Z5.\nCALL OSUB1 Q2\nCALL O12\nM2\nOSUB1\nX40.\nRTS\nO12\nX41.\nRTS\n"
-    assert behind(okuma, text, "(HEAD)\n") == [
+    assert lines_after(okuma, text, "(HEAD)\n") == [
         "G0 X50. Z5.", "M98 P6345645 L2", "M98 P12", "M2", "O6345645 (OSUB1)", "X40.", "M99",
         "O12", "X41.", "M99",
     ]  # fmt: skip
@@ -370,7 +375,7 @@ def test_subprograms_with_names():
 
 
 def test_a_speed_limit_within_surface_speed_is_written_at_once():
-    assert behind(LATHE, "G96 S90 M3\nG50 S900\nM30\n")[1] == "G96 S90 D900 (G50 S900)"
+    assert lines_after(LATHE, "G96 S90 M3\nG50 S900\nM30\n")[1] == "G96 S90 D900 (G50 S900)"
 
 
 def test_the_end_of_a_loop_is_a_way_to_its_beginning():
@@ -383,7 +388,7 @@ def test_the_end_of_a_loop_is_a_way_to_its_beginning():
 # ---------------------------------------------------------------- the order of programs
 
 
-def test_a_main_program_behind_its_subprograms_is_written_first():
+def test_a_main_program_after_its_subprograms_is_written_first():
     text = "%\nO5\nX1.\nM99\nO1 (MAIN)\nG20 G90 G0 X0\nM98 P5\nM30\n%\n"
     assert lines(HAAS, text) == [
         f"{' '.join(HAAS.start)} (%)",
@@ -463,12 +468,12 @@ def test_programs_are_not_compared_each_with_each():
     ],
 )
 def test_the_axes_that_a_plane_code_names_are_a_comment(block, written):
-    assert behind(LATHE, f"{block}\nM30\n")[0] == written
+    assert lines_after(LATHE, f"{block}\nM30\n")[0] == written
 
 
-def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
+def test_the_feed_comes_back_after_a_rapid_of_polar_mode():
     text = "G20 G98 G1 X5. F9.\nG112\nG0 X2. F8.\nG1 X1.\nG0 X2.\nG113\nG99 G1 X2.5\nX3.\nM30\n"
-    written = behind(HAAS_LATHE, text, "(HEAD)\nG0 Z1.\n")
+    written = lines_after(HAAS_LATHE, text, "(HEAD)\nG0 Z1.\n")
     assert [line for line in written if "X" in line] == [
         "G20 G94 G1 X5. F9.",
         "X2. G1 G94 F100",
@@ -487,17 +492,17 @@ def test_the_feed_comes_back_behind_a_rapid_of_polar_mode():
         ("G90 X.3 Z-.5", "G1 Z-0.5 (line 9)"),
     ],
 )
-def test_a_cut_behind_a_rapid_of_polar_mode_has_the_programs_feed(cut, written):
+def test_a_cut_after_a_rapid_of_polar_mode_has_the_programs_feed(cut, written):
     text = f"G1 X5. F9.\nG112\nG1 X4.\nG0 X5.\nG113\nG0 X1. Z1.\n{cut}\nM30\n"
-    found = behind(HAAS_LATHE, text, "(HEAD)\nG20 G98 G0 X6. Z6.\n")
+    found = lines_after(HAAS_LATHE, text, "(HEAD)\nG20 G98 G0 X6. Z6.\n")
     outside = found[found.index("G13.1") : found.index(written) + 1]
     assert "G0 X1. Z1." in outside
     assert any("F9. G94" in line for line in outside)
 
 
 def test_cylinder():
-    translated = behind(LATHE, "G107 C25.\nG1 Z-5. C30.\nU1. W2. H3.\nG41 D1 Z0\nG7.1 C0\nM30\n",
-                        "(HEAD)\nT101\nG0 X50. Z5.\n")  # fmt: skip
+    text = "G107 C25.\nG1 Z-5. C30.\nU1. W2. H3.\nG41 D1 Z0\nG7.1 C0\nM30\n"
+    translated = lines_after(LATHE, text, "(HEAD)\nT101\nG0 X50. Z5.\n")
     assert translated == [
         "G7.1 C25.", "G1 Z-5. C30.", "U1. W2. H3.", "G41 Z0", "G7.1 C0", "M30",
     ]  # fmt: skip
@@ -505,7 +510,7 @@ def test_cylinder():
 
 def test_a_cylinder_onto_which_y_is_mapped():
     text = "G107 Y0 C0 {}\nG1 Y2. F9.\nG2 Y3. Z-1. J1. K0\nV1. W1.\nG107\nX3.\nM30\n"
-    translated = behind(HAAS_LATHE, text.format("R2."), "(HEAD)\nG20 G0 X1. Z1.\n")
+    translated = lines_after(HAAS_LATHE, text.format("R2."), "(HEAD)\nG20 G0 X1. Z1.\n")
     assert translated == [
         "G7.1 C2.",
         "G1 C[[2.] * 57.295779513082 / 2.] F9.",
@@ -515,7 +520,7 @@ def test_a_cylinder_onto_which_y_is_mapped():
         "G2 X3.",
         "M30",
     ]
-    assert behind(HAAS_LATHE, text.format("Q4."))[0] == "G7.1 C[4. / 2]"
+    assert lines_after(HAAS_LATHE, text.format("Q4."))[0] == "G7.1 C[4. / 2]"
     refused = sentence(HAAS_LATHE, "G107 C25.\nM30\n").sentence
     assert refused == "G107 needs Y0, C0 and R or Q, radius or diameter; alone it ends"
     refused = sentence(HAAS_LATHE, "G0 X1.\nG107 Y0 C0 R2.\nG1 C3.\nM30\n").sentence
@@ -524,18 +529,18 @@ def test_a_cylinder_onto_which_y_is_mapped():
 
 def test_the_cylinders_code_and_word_are_those_of_the_machine():
     other = replace(LATHE, cylinder_code=("G107", "diameter"))
-    assert behind(other, "G7.1 C25.\nG7.1 C0\nM30\n") == ["G107 C[2 * 25.]", "G107 C0", "M30"]
+    assert lines_after(other, "G7.1 C25.\nG7.1 C0\nM30\n") == ["G107 C[2 * 25.]", "G107 C0", "M30"]
 
 
 def test_the_polar_codes_are_those_of_the_machine():
     other = replace(LATHE, polar_codes=("G12.3", "G13.3"))
-    assert behind(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
+    assert lines_after(other, "G112\nG1 X40. F5.\nG113\nM30\n")[::2] == ["G12.3", "G13.3"]
 
 
 def test_the_word_of_the_cylinder_is_the_controls_and_the_machines():
     tables = {**LATHE.tables, "cylinder": {"word": "diameter"}}
     other = replace(LATHE, tables=tables, cylinder_code=("G7.1", "radius"))
-    assert behind(other, "G107 C25.\nG107 C0\nM30\n")[0] == "G7.1 C[25. / 2]"
+    assert lines_after(other, "G107 C25.\nG107 C0\nM30\n")[0] == "G7.1 C[25. / 2]"
 
 
 # ---------------------------------------------------------------- the page
@@ -635,7 +640,7 @@ def test_a_feed_of_c_that_cannot_be_known_is_refused(control, text, line, start)
 def test_c_that_does_not_turn_or_slides_that_stand_need_no_other_feed():
     text = "G1 X40. C0 F100.\nX40. C30.\nG0 X50. C40.\n"
     head = "G21 G98\nG0 X50. Z5. C0\n"
-    assert behind(LATHE, f"{text}M30\n", head)[1:] == [*text.splitlines(), "M30"]
+    assert lines_after(LATHE, f"{text}M30\n", head)[1:] == [*text.splitlines(), "M30"]
 
 
 # ---------------------------------------------------------------- all that is missing, at once
@@ -671,7 +676,7 @@ def test_every_refused_block_is_named_with_its_reason():
 
 
 @pytest.mark.parametrize("head", ["(A)\n%\nO5\n", "O1\n%\nO5\n"])
-def test_what_stands_before_the_first_percent_sign_is_no_program(head):
+def test_what_is_before_the_first_percent_sign_is_no_program(head):
     translated = lines(HAAS, f"{head}G20 G0 X1.\nM30\n%\nG0 X9.\n")
     assert translated[head.count("\n") :] == ["G20 G0 X1.", "M30", "(%)", "(not reached: G0 X9.)"]
     assert not any(line.startswith("O") for line in translated)
@@ -686,7 +691,7 @@ def test_what_stands_before_the_first_percent_sign_is_no_program(head):
     ],
 )
 def test_what_cannot_be_words_is_a_remark(text, kept):
-    assert behind(HAAS, f"{text}\nM30\n")[: len(kept)] == kept
+    assert lines_after(HAAS, f"{text}\nM30\n")[: len(kept)] == kept
 
 
 @pytest.mark.parametrize(
@@ -719,7 +724,7 @@ SECTION = "(HEAD)\nG98 G0 X60. Z2. C0\nG12.1\n"
     ],
 )  # fmt: skip
 def test_a_section_as_shops_write_it(text, written):
-    translated = behind(LATHE, f"{text}\nG13.1\nM30\n", SECTION)
+    translated = lines_after(LATHE, f"{text}\nG13.1\nM30\n", SECTION)
     assert translated[: len(written)] == written
 
 
@@ -738,7 +743,7 @@ def test_diameters_of_c_and_the_speed_of_a_live_tool(tmp_path):
     own = tmp_path / "own.toml"
     own.write_text('based_on="fanuc-lathe"\npolar.c="diameter"\nm_codes.M133="M3 $1 S=P"\n')
     text = "M133 P1500\nG1 X50. C8. F9.\n"
-    translated = behind(read_control(str(own)), f"{text}G13.1\nM30\n", SECTION)
+    translated = lines_after(read_control(str(own)), f"{text}G13.1\nM30\n", SECTION)
     assert translated[:2] == ["M3 $1 S1500", "G1 X50. C[8. / 2] F9."]
 
 
@@ -760,7 +765,7 @@ def test_the_live_tool_is_a_spindle_of_the_machine(tmp_path, name, text, wanted,
     (tmp_path / "m.ini").write_text(f"{TWO}[G12]\nLIVE_SPINDLE = {spindle}\n")
     control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
     wanted = wanted if dollar else [re.sub(r" \$\S+", "", line) for line in wanted]
-    assert behind(control, f"{text}\nM30\n", TURN)[:-1] == wanted
+    assert lines_after(control, f"{text}\nM30\n", TURN)[:-1] == wanted
     (tmp_path / "m.ini").write_text(TWO)
     control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
     assert "say [G12] LIVE_SPINDLE" in sentence(control, f"{TURN}{text}\nM30\n").sentence
@@ -789,7 +794,7 @@ def test_p_names_a_spindle_beside_m3_only():
 def test_clamp_and_c_are_the_machines_own(tmp_path, ini, wanted):
     (tmp_path / "m.ini").write_text(TWO + ini)
     control = translate.with_facts_of(read_control("doosan-lathe"), read_ini(tmp_path / "m.ini"))
-    assert behind(control, "M35\nM89\nM90\nM34\nM30\n", TURN)[:-1] == wanted
+    assert lines_after(control, "M35\nM89\nM90\nM34\nM30\n", TURN)[:-1] == wanted
     codes = frozenset(code for code in wanted if code[0] == "M")
     parted = lines(control, f"{TURN}M35 M89\nM30\n", machine_codes=codes)[2:]
     assert parted[:2] == (["M254", "M10 (line 3)"] if codes else ["(M35)(M89)", "M30"])
@@ -797,11 +802,11 @@ def test_clamp_and_c_are_the_machines_own(tmp_path, ini, wanted):
 
 def test_zeros_of_axes_that_the_machine_lacks():
     integrex = read_control("mazak-integrex")
-    assert behind(integrex, "G0 G53 X9. Y0.\nG0 G53 B0.\nM30\n", TURN)[:2] == [
+    assert lines_after(integrex, "G0 G53 X9. Y0.\nG0 G53 B0.\nM30\n", TURN)[:2] == [
         "G0 G53 X9. (Y0.)",
         "G0 (G53)(B0.)",
     ]
-    assert behind(integrex, "G28 V0.\nM30\n", TURN)[0] == "(G28)(V0.)"
+    assert lines_after(integrex, "G28 V0.\nM30\n", TURN)[0] == "(G28)(V0.)"
     assert "axes XZC" in sentence(integrex, f"{TURN}G0 B90.\nM30\n").sentence
     assert "axes XZC" in sentence(integrex, f"{TURN}G0 Y1.\nM30\n").sentence
 
