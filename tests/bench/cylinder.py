@@ -14,6 +14,7 @@ def figures() -> Iterator[Figure]:
     """Yield the rows of the samples on the cylinder, each run once at its own feed of F250."""
     with Machine(SIM / "lathe_mm.ini") as lathe:
         for program in sorted((PROGRAMS / "cylinder").glob("*.ngc")):
+            lathe.reset()
             (section,) = lathe.proof_of_run(program.read_text()).sections
             yield Figure(
                 f"cylinder: real motion against the programmed contour, {program.stem}",

@@ -212,6 +212,7 @@ def deviation_on_face(face):
     """Compare the motion of the hexagon at F3000, G64 P0.002, with what its words command."""
     program = at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
     program[1] += " P0.002"  # of G64
+    face.reset()
     return Figure(
         "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
         face.proof_of_run(program).sections[0].deviation,

@@ -38,6 +38,7 @@ def figures():
 
 def real_deviation(lathe, name, tolerance):
     """Compare the motion of a sample program, sampled at 1 kHz, with what its words command."""
+    lathe.reset()
     proof = lathe.proof_of_run((SAMPLES / f"{name}.ngc").read_text())
     return Figure(
         f"polar: real motion against the programmed contour, {name}",

@@ -158,7 +158,10 @@ class Machine(machine.Machine):
         return self.run(write_program(text, self.folder / "program.ngc"), timeout)
 
     def proof_of_run(self, text) -> Proof:
-        """Run a program, which must end without an error; return the proof of its real motion."""
+        """Run a program, which must end without an error; return the proof of its real motion.
+
+        Verify takes it for granted that the machine stands as it came up: see `reset`.
+        """
         run = self.run_text(text)
         assert (run.error, run.samples.lost) == (None, 0)
         return prove(self.folder / "program.ngc", self.ini, samples=run.samples)
