@@ -45,6 +45,7 @@ NARROW = FLAT.replace("C25", "C6")
 FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
+POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
 
 CASES = [
@@ -59,6 +60,20 @@ CASES = [
     ("lathe", f"o<turn> sub|G0 C0|o<turn> endsub|{FLAT}|o<turn> call|{FLAT}", ""),
     ("lathe", f"{FLAT}|o1 if [1]|G0 X60 C[10 - 10]|o1 endif|{FLAT}", ""),
     ("any lathe", f"T1 M6|S900 M3|G0 X60 Z2|{FLAT}", "zero-line-unknown 5"),
+    ("lathe", f"G0 Z5|{POLYGON}|{FLAT}", "zero-line-turned 7"),
+    ("lathe", f"G0 Z5|{POLYGON}|G0 C0|{FLAT}", ""),
+    ("lathe", f"G0 Z5|{POLYGON}|G0 Z5 C-1050|{FLAT}", ""),
+    ("lathe", f"G0 Z5|{POLYGON}|G28 C0|{FLAT}", "place-not-set 7"),
+    ("lathe", f"G0 Z5|{POLYGON}|G92 C0|{FLAT}", ""),
+    ("lathe", f"G0 Z5|{POLYGON}|{POLYGON}", ""),
+    ("lathe", f"G0 Z10|{ON_FACE}|G0 X60 Z2|{FLAT}", "zero-line-turned 8"),
+    ("lathe", f"G0 Z10|{ON_FACE}|G0 X60 Z2 C260|{FLAT}", ""),
+    ("lathe", f"G0 Z10|{ON_FACE.replace('[3] [30] [20]', '[1] [30] [0]')}|G0 X60 Z2|{FLAT}", ""),
+    ("lathe", f"G0 Z10|{AROUND}|G0 X60 Z2|{FLAT}", "rapid-turned 7, zero-line-left 8"),
+    ("lathe", f"{FLANK}|X44|G7.1 C0|G0 Z2|X60|{FLAT}", "zero-line-left 13"),
+    ("lathe", f"{FLANK}|X44|G7.1 C0|G0 Z2|X60 C90|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G0 C0|{FLANK}|X44|G7.1 C0|G0 Z2|X60|{FLAT}",
+     "rapid-turned 13, zero-line-turned 22"),
     # at the centre
     ("radii", f"{SLOT}|{SLOT}", "rubs 5, rubs 11"),
     ("radii", "G12.1|G1 X-18 F800|Z-1|X-10|G13.1|G0 Z2", ""),
@@ -190,8 +205,7 @@ CASES = [
     ("any lathe", f"o7 sub|G0 C#1|{FLAT.replace('G41', 'G42')}|o7 endsub|T1 M6|S900 M3|"
      f"G0 X60 Z2|o7 call [0]|o7 call [180]",
      "side-crossed 4, side-crossed 4"),
-    ("lathe", "G0 Z5|o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]",
-     "plunge-into-stock 6", "40"),
+    ("lathe", f"G0 Z5|{POLYGON}", "plunge-into-stock 6", "40"),
     ("lathe", "G0 X80|G12.1|G1 C25 F2000|G41 X27 F1000|Z-5|C-25|G40 X80|Z2|C-45|X-80|C-25|"
      "G41 X-27|Z-5|C25|G40 X-80|Z2|G13.1",
      "", "40"),
@@ -306,7 +320,11 @@ MOVED = "positions below are the machine's; the program's zero is at machine"
 AT_X10 = "X0, the spindle's axis, is at machine X10\n"
 SAID = [  # a program, and a part of its report
     ("lathe", f"{FLAT}|{FLAT}",
-     "line 13: C stands where line 11 left it, turned by −39.8° against"),
+     "line 13: C stands where line 11 left it, turned by −39.8° against the cut of line 5: G0"),
+    ("lathe", f"G0 Z5|{POLYGON}|{FLAT}",
+     "line 7: C stands where line 6 left it, turned by 30° against the cut of line 6: G0"),
+    ("lathe", f"{FLANK}|X44|G7.1 C0|G0 Z2|X60|{FLAT}",
+     "line 13: C stands where line 10 left it: the contour begins turned on the part by 90°; G0"),
     ("any lathe", f"T1 M6|G0 X60 Z2|{FLAT}", "its zero line is where C stands, at 0°"),
     ("radii", SLOT, "C turns in place at the centre, by 360° in all: there the tool rubs for 1 s"),
     ("lathe", "G12.1|G1 X100 F2000|G42 X60|Z-5|C-30|X-60|C30|X60|C0|Z2|G40 X100|G13.1",

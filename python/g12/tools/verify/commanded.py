@@ -15,7 +15,8 @@ from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.reading.circles import CircleReader, Target
 from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.reading.executed_subs import executed_everywhere
-from g12.tools.verify.reading.sections import sections, with_zero_lines
+from g12.tools.verify.reading.sections import sections
+from g12.tools.verify.reading.zero_lines import CLines, with_zero_lines
 from g12.tools.verify.subject import Subject
 
 PENS = {POLAR: Pen, CYLINDER: SurfacePen}
@@ -48,8 +49,10 @@ def commanded_by(
     idle = [*_idle_blocks(blocks, codes)]
     idle += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
     cut = [each for each in found if each.end > each.at]
-    cut = with_zero_lines(cut, trace.moves, program, codes, subject.ini)
     shapes, holes = (list(calls(blocks, subject, sub)) for sub in (codes.shape_of, codes.holes_of))
+    if cut:
+        c_lines = CLines(program, codes, subject.ini)
+        cut = with_zero_lines(cut, [*shapes, *holes], trace.moves, c_lines)
     return Commanded(list(reader.targets(blocks)), cut, idle, shapes, holes, clamp_is_traced)
 
 

@@ -56,16 +56,17 @@ class Element:
 
 
 class ZeroLine(NamedTuple):
-    """What has become of C since the section before, or since the program began.
+    """What has become of C since the cut before, or since the program began.
 
-    ``commanded`` says that the program moved it there. ``turned`` is by how many degrees the zero
-    line is turned against that of the section before, which ended in line ``line``; 0 and 0 for
-    the first.
+    ``commanded`` says that the program commanded C since. The cut before ended in line ``line``.
+    ``turned`` is by how many degrees the zero line is turned against that of the last cut on the
+    face, which began in line ``cut``; without one, ``cut`` 0, against the program's C0.
     """
 
     commanded: bool
     turned: float = 0.0
     line: int = 0
+    cut: int = 0
 
 
 BEGUN = ZeroLine(True)

@@ -3,21 +3,15 @@
 
 A copy of the program is traced without the sections' motion: every block there reports its words
 instead. LinuxCNC itself evaluates expressions, loops, calls and conditions.
-
-C stays turned after a polar section. The next one is turned on the part with it, unless the program
-commands C in between, or gives it another zero.
 """
 
-import math
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import accumulate, chain, islice
+from itertools import accumulate, islice
 from pathlib import Path
 from typing import Any
 
-from g12.tools.machine.ini import Ini
-from g12.tools.path.part import C
 from g12.tools.preview.executed_blocks import (
     COMMENTS,
     Block,
@@ -29,9 +23,8 @@ from g12.tools.preview.executed_blocks import (
     reports_after,
     reports_before,
 )
-from g12.tools.preview.moves import Move
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
-from g12.tools.verify.expected.contour import ACTS, BEGUN, Act, Element, SectionContour, ZeroLine
+from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
 from g12.tools.verify.expected.words import kept_state
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.reading.executed_subs import Copies, called_files
@@ -45,7 +38,6 @@ Pens = Mapping[str, Callable[[Block], Any]]
 SUB = re.compile(r"(?:n[0-9.]+)?o<?((?<=<)[^>]+|[0-9.]+)>?(?:sub)?")
 INSIDE = "#<_g12_inside>"  # in the copy: not 0 in a section, also in the subs that it calls
 POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
-SAME_ANGLE = 1e-3  # degree
 
 
 def bare(line: str) -> str:
@@ -241,44 +233,3 @@ def section_of(
         surface=pen.surface,
         file=first.text.file,
     )
-
-
-def with_zero_lines(
-    sections: Sequence[SectionContour],
-    moves: Sequence[Move],
-    program: Path,
-    codes: Codes,
-    ini: Ini,
-) -> list[SectionContour]:
-    """Return the sections of a program, each polar one with what has become of C before it."""
-    if not sections:
-        return []
-    texts = read_lines(program)
-    flagged = codes.with_switches(texts)
-    outside = [text for text, switch, inside in flagged if not (inside or switch)]
-    subs = chain.from_iterable(map(read_lines, called_files(texts, ini)))
-    lines = {text.number for text in (*outside, *subs) if "C" in dict(text.words)}
-    polar = [each for each in sections if not each.surface]
-    found = {
-        each.at: zero_line(previous, each, moves, lines)
-        for previous, each in zip([None, *polar], polar)
-    }
-    return [replace(each, zero_line=found.get(each.at, BEGUN)) for each in sections]
-
-
-def zero_line(
-    previous: SectionContour | None, section: SectionContour, moves: Sequence[Move], lines: set[int]
-) -> ZeroLine:
-    """Return what has become of C since the section before, or the program's beginning."""
-    between = moves[previous.end if previous else 0 : section.at]
-    commanded = any(move.end[C] != move.start[C] or move.line in lines for move in between)
-    if previous is None:
-        return ZeroLine(commanded)
-    angle, other = (moves[each.at].start[C] for each in (section, previous))
-    turned = (angle - other + 180.0) % 360.0 - 180.0
-    offsets = (
-        angle - section.c,
-        moves[previous.end - 1].end[C] - previous.state_after.get("_c", math.nan),
-    )
-    commanded = commanded or abs(offsets[0] - offsets[1]) > SAME_ANGLE
-    return ZeroLine(commanded, turned if abs(turned) > SAME_ANGLE else 0.0, previous.last)

@@ -54,7 +54,7 @@ FINDINGS = {
         "(else go {here} before the line with {code})"
     ),
     "zero-line-turned": (
-        "C stands where line {line} left it, turned by {turned:1}° against that section: "
+        "C stands where line {line} left it, turned by {turned:1}° against the cut of line {cut}: "
         "G0 C0 missing?"
     ),
     "above-start": (
@@ -105,6 +105,10 @@ NOTES = {
     ),
     "zero-line-unknown": (
         "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
+    ),
+    "zero-line-left": (
+        "C stands where line {line} left it: the contour begins turned on the part by {turned:1}°; "
+        "G0 C0 missing?"
     ),
     "not-below-start": "no move goes below the {letter} of {code}",
     "rubs": (

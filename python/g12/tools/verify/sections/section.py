@@ -128,8 +128,9 @@ def judge_words(view: SectionView) -> Iterator[Finding]:
     section, zero, third = view.section, view.section.zero_line, view.section.third
     yield from judge_side(section, view.tool)
     if not zero.commanded and zero.turned:
-        values = {"line": zero.line, "turned": zero.turned}
-        yield Finding("zero-line-turned", section.line, values)
+        values = {"line": zero.line, "turned": zero.turned, "cut": zero.cut}
+        code = "zero-line-turned" if zero.cut else "zero-line-left"
+        yield Finding(code, section.line, values)
     if not zero.commanded and not zero.line:
         yield Finding("zero-line-unknown", section.line, {"angle": view.first.start[C]})
     letter, factor = AXIS_LETTERS[third], 2 if section.surface and section.diameters else 1

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What has become of C before each polar section: where its zero line is on the part.
+
+C stays turned after a section, a shape and holes. The next section is turned on the part with it,
+unless the program commands C in between, or gives it another zero.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.tools.machine.ini import Ini
+from g12.tools.path.part import C
+from g12.tools.preview.executed_blocks import Text, read_lines
+from g12.tools.preview.moves import Move
+from g12.tools.verify.expected.contour import SectionContour, ZeroLine
+from g12.tools.verify.expected.words import SubCall
+from g12.tools.verify.reading.codes import Codes
+from g12.tools.verify.reading.executed_subs import called_files
+
+SAME_ANGLE = 1e-3  # degree
+
+
+class CutBefore(NamedTuple):
+    """A cut that turns C: its moves, its first and last line, whether it is on the face.
+
+    ``zero`` is its zero line and ``offset`` the program's C0 after it, both as the machine's C.
+    """
+
+    own: range
+    line: int
+    last: int
+    on_face: bool
+    zero: float
+    offset: float
+
+
+class CLines:
+    """The lines of a program and of its subs that command C outside of sections."""
+
+    def __init__(self, program: Path, codes: Codes, ini: Ini) -> None:
+        texts = read_lines(program)
+        flagged = codes.with_switches(texts)
+        self._program = _with_c(text for text, switch, inside in flagged if not (inside or switch))
+        subs = map(read_lines, called_files(texts, ini))
+        self._subs = self._program | _with_c(chain.from_iterable(subs))
+
+    def turn(self, move: Move) -> bool:
+        """Tell whether a move's line commands C; that of a sub may be in a file of its own."""
+        return move.line in (self._program if move.line == move.block else self._subs)
+
+
+def _with_c(texts: Iterator[Text]) -> set[int]:
+    return {text.number for text in texts if "C" in dict(text.words)}
+
+
+def with_zero_lines(
+    sections: Sequence[SectionContour],
+    calls: Sequence[SubCall],
+    moves: Sequence[Move],
+    lines: CLines,
+) -> list[SectionContour]:
+    """Return the sections of a program, each polar one with what has become of C before it.
+
+    ``calls`` are those of shapes and holes. The section in a shape is the shape's.
+    """
+    called = [call.moves for call in calls]
+    own = [each for each in sections if not any(each.at in moves_of for moves_of in called)]
+    cuts = [*map(_of_call, calls), *(_of_section(each, moves) for each in own)]
+    cuts.sort(key=lambda cut: cut.own.stop)
+    found = {each.at: zero_line(each, cuts, moves, lines) for each in own if not each.surface}
+    return [replace(each, zero_line=found.get(each.at, each.zero_line)) for each in sections]
+
+
+def _of_call(call: SubCall) -> CutBefore:
+    zero = call.zero[2]
+    return CutBefore(call.moves, call.line, call.line, not call.is_side, zero, zero)
+
+
+def _of_section(section: SectionContour, moves: Sequence[Move]) -> CutBefore:
+    own, block = range(section.at, section.end), moves[section.at].block
+    lines = (block, block) if section.file else (section.line, section.last)
+    zero, c_after = moves[section.at].start[C], section.state_after.get("_c", math.nan)
+    offset = moves[section.end - 1].end[C] - c_after
+    return CutBefore(own, *lines, not section.surface, zero, offset)
+
+
+def zero_line(
+    section: SectionContour, cuts: Sequence[CutBefore], moves: Sequence[Move], lines: CLines
+) -> ZeroLine:
+    """Return what has become of C since the cut before, or since the program's beginning.
+
+    It is turned against the last cut on the face, without one against the program's C0.
+    """
+    before = [cut for cut in cuts if cut.own.stop <= section.at]
+    between = moves[before[-1].own.stop if before else 0 : section.at]
+    commanded = any(move.end[C] != move.start[C] or lines.turn(move) for move in between)
+    if not before:
+        return ZeroLine(commanded)
+    angle, last = moves[section.at].start[C], before[-1]
+    offset = angle - section.c
+    commanded = commanded or abs(offset - last.offset) > SAME_ANGLE
+    face = next((cut for cut in reversed(before) if cut.on_face), None)
+    turned = (angle - (face.zero if face else offset) + 180.0) % 360.0 - 180.0
+    turned = turned if abs(turned) > SAME_ANGLE else 0.0
+    return ZeroLine(commanded, turned, last.last, face.line if face else 0)
