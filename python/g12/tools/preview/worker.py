@@ -32,6 +32,7 @@ CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter move
 INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
+UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
 ARC_AXES = {17: (0, 1, 2), 18: (2, 0, 1), 19: (1, 2, 0)}  # first, second, third axis
 PR_SET_PDEATHSIG = 1  # of Linux: the signal a process gets when its parent dies
 CALL_BY_M98, CALL_OF_REMAP = 2, 4  # call_type of a frame
@@ -190,6 +191,7 @@ class Canon:
         self.parameter_file = request["parameter_file"]
         self.lines = Lines(request["program"])
         self.started = False
+        self.refused: tuple[str, int] | None = None  # what cannot be traced, and the line
         self.moves: list[tuple] = []
         self.messages: list[tuple] = []
         self.events: list[tuple] = []
@@ -296,7 +298,10 @@ class Canon:
         self.cos, self.sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
 
     def set_plane(self, plane: int) -> None:
-        """Note the plane."""
+        """Note the plane; that of U, V and W, which LinuxCNC accepts, is not traced."""
+        if plane in UVW_PLANES:
+            text = f"{UVW_PLANES[plane]}: LinuxCNC accepts it, but U, V and W arcs are not traced"
+            self.refused = text, self.lines.now()
         self.plane = PLANE_NUMBERS[plane]
 
     def set_feed_rate(self, rate: float) -> None:
@@ -564,16 +569,11 @@ def record_errors_of_handlers() -> None:
 
 def interpret(machine: dict, tools: ToolTable, request: dict) -> dict:
     """Interpret one program and return everything it did."""
-    import gcode
-
     canon = Canon(machine, tools, request)
     setup = [f"({FRESH})", "G49", *machine["setup"], *request["setup"], f"({START})"]
     started = time.perf_counter()
-    result, _ = gcode.parse(request["program"], canon, setup)
+    error = interpreted(canon, request["program"], setup)
     seconds = time.perf_counter() - started
-    error = None
-    if result > gcode.MIN_ERROR:
-        error = (gcode.strerror(result), canon.lines.of_error() if canon.started else 0)
     answer: dict[str, Any] = {
         "moves": canon.moves,
         "messages": canon.messages,
@@ -587,6 +587,24 @@ def interpret(machine: dict, tools: ToolTable, request: dict) -> dict:
         "seconds": seconds,
         **state_after(request, canon.length),
     }
+
+
+def interpreted(canon: Canon, program: str, setup: list[str]) -> tuple[str, int] | None:
+    """Let LinuxCNC interpret a program; return the text and the line of an error.
+
+    What ``canon`` refuses is a RuntimeError of LinuxCNC's that does not say why.
+    """
+    import gcode
+
+    try:
+        result, _ = gcode.parse(program, canon, setup)
+    except RuntimeError:
+        if canon.refused:
+            return canon.refused
+        raise
+    if result <= gcode.MIN_ERROR:
+        return None
+    return gcode.strerror(result), canon.lines.of_error() if canon.started else 0
 
 
 def state_after(request: dict, length: tuple) -> dict:
