@@ -404,7 +404,7 @@ def test_a_condition_on_a_position_is_reported_where_a_section_has_called_it(tmp
     sub = ["o<flat> sub", "o2 if [#<_x> GT 1]", "o2 endif", "o<flat> endsub"]
     lines = in_copy(tmp_path, *sub, "G12.1", "o<flat> call", "G13.1")
     label = "o<g12_line_1>"
-    assert lines[1:5] == [f"{label} if [{INSIDE}]", f"{label} else", f"{label} endif", sub[1]]
+    assert lines[1:4] == [f"{label} if [{INSIDE}]", f"{label} endif", sub[1]]
 
 
 # ---------------------------------------------------------------- contours on a cylinder

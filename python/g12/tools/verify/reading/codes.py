@@ -103,16 +103,14 @@ class Codes:
             return "off" if inside or (is_number(radius) and not float(radius)) else "on"
         return found.handler.rpartition("_")[2] if found else ""
 
-    def with_switches(
-        self, texts: Iterable[Text], inside: bool = False
-    ) -> Iterator[tuple[Text, str, bool]]:
+    def with_switches(self, texts: Iterable[Text]) -> Iterator[tuple[Text, str, bool]]:
         """Yield lines, each with how it switches a section, and whether one is on after it.
 
-        No section goes on from one file to the next. ``inside``: the first line is in one.
+        No section goes on from one file to the next.
         """
-        file = None
+        inside, file = False, ""
         for text in texts:
-            inside = inside and file in (None, text.file)
+            inside = inside and file == text.file
             file, switch = text.file, self.switch(text, inside)
             inside = switch == "on" if switch else inside
             yield text, switch, inside

@@ -81,9 +81,11 @@ def lines_of_copy(
         elif not calls:
             yield [line]
         else:
-            label, others = f"o<g12_line_{index}>", [line] if kept is not None else []
-            guarded = [f"{label} if [{INSIDE}]", *report, f"{label} else", *others]
-            yield [*guarded, f"{label} endif", *([] if others else [line])]
+            label = f"o<g12_line_{index}>"
+            motion = [f"{label} endif", line]
+            if kept is not None:
+                motion = [f"{label} else", line, f"{label} endif"]
+            yield [f"{label} if [{INSIDE}]", *report, *motion]
 
 
 def words_kept(text: Text, line: str, switch: str, codes: Codes) -> list[str] | None:
