@@ -37,7 +37,6 @@ def test_a_positive_offset_reduces_the_circle_a_negative_one_enlarges_it(words, 
     [
         ("R.5 D2", "R0.5 is not a word of this cycle, which knows I D F"),
         ("I50", "D is missing: the tool whose radius reduces the circle, D0 for none"),
-        ("I10 D2", "I10 must be greater than the tool radius 10 (D2) by at least 0.00508"),
         ("I0 D0", "I0 must be greater than the tool radius 0 (D0) by at least 0.00508"),
     ],
 )

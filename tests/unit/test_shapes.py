@@ -99,12 +99,6 @@ def test_a_polygon_keeps_its_allowance_for_one_more_round():
 
 @pytest.mark.parametrize("shape", EXAMPLES)
 class TestEveryShape:
-    def test_passes_are_alike_and_no_deeper_than_asked(self, shape):
-        assert planned(shape, depth=5, depth_per_pass=2).levels == (3, pytest.approx(5 / 3))
-        assert planned(shape, depth=6, depth_per_pass=2).levels == (3, 2.0)
-        assert planned(shape, depth=5).levels == planned(shape, depth=5, depth_per_pass=9).levels
-        assert planned(shape, depth=5).levels == (1, 5.0)
-
     def test_passes_that_never_end_are_refused(self, shape):
         assert refusal(shape, depth=1.0001, depth_per_pass=1e-4) == (
             f"{shape}: depth_per_pass 0.0001 makes 10001 passes of depth 1.0001, the most is 10000"

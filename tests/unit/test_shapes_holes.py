@@ -4,15 +4,13 @@
 from math import sqrt
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from g12.errors import Refusal
 from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
 from g12.shapes import holes
 from g12.shapes.entries import ShapeEntries
-from g12.shapes.holes import HoleMachine, shorter_turn
+from g12.shapes.holes import HoleMachine
 from support.planner_context import MM
 
 STANDING = MM._replace(spindle_tool=Tool(1, 3.0), x=30.0, z=10.0, speed=500.0)
@@ -34,13 +32,6 @@ def plan(name, found=STANDING, machine=MACHINE, **values):
     names, planner = PLANS[name]
     given = {**dict.fromkeys(names, LEFT_OUT), **NEEDED[name], **HOLE, **values}
     return planner(ShapeEntries(name, names, given), found, machine)
-
-
-@given(st.floats(-2000, 2000))
-def test_c_turns_the_shorter_way(angle):
-    turn = shorter_turn(angle)
-    assert abs(turn) <= 180
-    assert abs((turn - angle + 180) % 360 - 180) < 1e-9
 
 
 @pytest.mark.parametrize(
