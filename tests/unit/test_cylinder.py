@@ -89,35 +89,6 @@ def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     assert [run.stop for run in runs(contour)] == [True, True, True]
 
 
-@pytest.mark.parametrize(
-    ("direction", "slow"),
-    [("x", "x_acceleration"), ("z", "z_acceleration"), ("c", "c_acceleration")],
-)
-def test_the_slower_axis_decides_where_the_tool_stops(direction, slow):
-    """A right angle at F600, 1000 per second squared, that stops behind it is rounded by 0.07."""
-    corner = empty()
-    if direction == "x":
-        corner.line(z=12.0, line=1, feed=600.0)
-        corner.line(10.0, line=2, feed=600.0)
-    else:
-        corner.line(*((10.0, 0.0) if direction == "c" else (0.0, 10.0)), line=1, feed=600.0)
-        corner.line(10.0, 10.0, line=2, feed=600.0)
-    even = {"tolerance": 0.16, "c_acceleration": math.degrees(1000.0 / RADIUS)}
-    assert [run.stop for run in runs(corner, **even)] == [False, True]
-    slower = {slow: 0.4 * {**MACHINE._asdict(), **even}[slow]}
-    assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
-
-
-def test_a_section_cut_in_two_goes_on_where_the_machine_stands():
-    first = empty(c=350.0)
-    first.line(math.radians(400) * RADIUS, 7.0, line=1, feed=100.0)
-    planned = plan(first, MACHINE)
-    assert planned.position == pytest.approx((22.0, 400.0, 7.0))
-    second = first.continued(planned.end)
-    second.line(z=20.0, line=2, feed=100.0)
-    assert plan(second, MACHINE).steps[0].segments == [(20.0, pytest.approx(400.0), 7.0, 100.0)]
-
-
 def test_an_arc_of_too_many_segments_is_refused():
     contour = empty()
     contour.arc(1, j=9e5, line=3, feed=100.0)

@@ -69,8 +69,6 @@ def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
     ("machine_unit", "millimetre", "tolerance"),
     [
         (1.0, 1.0, 0.005),  # mm machine in G21
-        (1 / INCH, 1 / INCH, 0.005 / INCH),  # mm machine in G20
-        (INCH, 1.0, 0.0002 * INCH),  # inch machine in G21
         (1.0, 1 / INCH, 0.0002),  # inch machine in G20
         (1 / 0.0393700787, 1.0, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
     ],
@@ -140,20 +138,6 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
     assert setup_of().words.beside == setup_of().plan.beside == 0.0
     assert setup_of(Settings(polar_pole="refuse")).plan.pole_refused
     assert not setup_of().plan.pole_refused
-
-
-@pytest.mark.parametrize(
-    ("place", "beyond"),
-    [
-        ((98.9, 9.9, 97.9), None),
-        ((99.5, 0.0, 0.0), (3, "X", 100.5, 100.0)),
-        ((0.0, 11.0, 0.0), (3, "C", 101.0, 100.0)),
-        ((0.0, 0.0, 98.5), (3, "Z", 100.5, 100.0)),
-    ],
-)
-def test_the_travel_is_that_of_the_machine_with_its_offsets(place, beyond):
-    made = setup_of().limits.beyond([BlockMoves(3, "XCZ", [(*place, 1.0)], False)])
-    assert (made and made[:4]) == beyond
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.host.section.output import BLOCK_END, STOP_HERE, Action, PathControl, SectionOutput
+from g12.host.section.output import STOP_HERE, Action, PathControl, SectionOutput
 from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
 
@@ -156,15 +156,6 @@ def test_a_segment_that_another_is_blended_into_is_stopped_by_a_dwell():
     assert done[1:end] == [FIRST, LAST]
 
 
-@pytest.mark.parametrize("path", ["G61", "G61.1"])
-def test_programmed_exact_paths_hold_at_the_end_of_a_block(path):
-    interp = Interpreter(path=round(float(path[1:]) * 10), tolerance=0.05)
-    done = handed_over([run(), run(), run(line=8)], interp).done
-    block = [FIRST, *NEXT]
-    ends = [*block, STOP_HERE, "G64P0.05Q0", path, *RELEASED]
-    assert done == [SMOOTH, *block, *block, STOP_HERE, *ends]
-
-
 def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     done = handed_over([run(), run(line=8)], exact={8}).done
     assert done == [SMOOTH, FIRST, *NEXT, FIRST, *NEXT, STOP_HERE, OLD, *RELEASED]
@@ -179,29 +170,12 @@ def test_c_is_not_wrapped_while_segments_go_out():
     assert handed_over([run()], Interpreter(wrapped=False)).c_axis_wrapped is False
 
 
-def test_axes_and_diameters():
-    steps = [run(axes="Z", segments=[(10.0, 0.0, -2.0, 50.0)]), run(axes="XCZ", segments=LINE[:1])]
-    assert handed_over(steps, x_factor=2.0).done[1:3] == [
-        written(Z=-2, F=50),
-        written(X=20, C=0.5, Z=0, F=250),
-    ]
-
-
 def test_feed_per_revolution_is_left_and_comes_back():
     interp = Interpreter(feed_mode=2)
     modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
     done = handed_over([run()], interp, modes).done
     assert done == ["G94", SMOOTH, FIRST, *NEXT, OLD, "G95F0.2", "G91"]
     assert interp.motion_mode == 30
-
-
-def test_actions_find_the_programs_modes():
-    action = Action(8, "M8", MODES._replace(incremental=True, feed=50.0))
-    interp = handed_over([run(), action, run(line=9)])
-    assert interp.done == [
-        SMOOTH, FIRST, *NEXT, OLD, "F50", "G91", "M8", SMOOTH, FIRST, *NEXT, OLD, *RELEASED,
-    ]  # fmt: skip
-    assert interp.lines[7] == 8
 
 
 def test_comments_need_no_modes():
@@ -221,13 +195,6 @@ def test_saved_state_is_that_of_its_call_level():
     interp = handed_over([Action(8, "M70", MODES, level=3)])
     assert interp.levels[interp.done.index("M70")] == 3
     assert interp.call_level == 1
-
-
-def test_a_block_ends_where_it_is_marked():
-    steps = [run(segments=LINE[:1]), Action(7, BLOCK_END, None), run(segments=LINE[1:])]
-    done = handed_over(steps, exact={7}).done
-    assert [what for what in done if what == "G61.1"] == ["G61.1"]
-    assert done.index("G61.1") < done.index(FIRST)
 
 
 @pytest.mark.parametrize(
