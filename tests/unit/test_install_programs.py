@@ -66,29 +66,22 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     assert text in finding.text
 
 
-@pytest.mark.parametrize(
-    ("own", "lines"),
-    [
-        ("[TRAJ]\nSPINDLES = 2\n", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
-    ],
-)
-def test_a_lathes_programs_need_settings(tmp_path, own, lines):
-    text = LATHE.replace("[TRAJ]\n", own) if "TRAJ" in own else f"{LATHE}\n{own}"
-    ini = write_config(tmp_path, text)
+def test_a_lathes_programs_need_settings(tmp_path):
+    ini = write_config(tmp_path, LATHE.replace("[TRAJ]\n", "[TRAJ]\nSPINDLES = 2\n"))
     before = ini.read_bytes()
     put_in(ini, "programs-doosan-lathe")
-    assert lines in ini.read_text() and ini.read_text().count("POLAR_Z") == 1
+    assert "POLAR_Z = allow\nLIVE_SPINDLE = 1\n" in ini.read_text()
+    assert ini.read_text().count("POLAR_Z") == 1
     put_in(ini, "programs-doosan-lathe")
     assert ini.read_text().count("LIVE_SPINDLE") == 1
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert ini.read_bytes() == before
 
 
-@pytest.mark.parametrize(("name", "key"), [("round", "CYLINDER_X")])
-def test_a_mills_programs_on_a_lathe_need_a_setting(tmp_path, name, key):
+def test_a_mills_programs_on_a_lathe_need_a_setting(tmp_path):
     ini = write_config(tmp_path, LATHE)
     before = ini.read_bytes()
-    put_in(ini, {"face": "programs-mill-on-face", "round": "programs-mill-round-part"}[name])
-    assert f"[G12]\n{key} = allow\nLIVE_SPINDLE = 0\n" in ini.read_text()
+    put_in(ini, "programs-mill-round-part")
+    assert "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n" in ini.read_text()
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert ini.read_bytes() == before
