@@ -420,10 +420,9 @@ def unrolled(*lines, radius="C20", reading="radius", **state):
     return pen, [e for number, line in enumerate(lines, 2) for e in pen.draw(block(line, number))]
 
 
-@pytest.mark.parametrize(("g7", "depth"), [(1, 9.0)])
-def test_x_is_the_height_above_the_axis(g7, depth):
-    pen, (down, up) = unrolled("X18", "U2", _lathe_diameter_mode=g7)
-    assert (down.depth, down.length, up.depth) == (depth, 0.0, depth + (1 if g7 else 2))
+def test_x_is_the_height_above_the_axis():
+    pen, (down, up) = unrolled("X18", "U2", _lathe_diameter_mode=1)
+    assert (down.depth, down.length, up.depth) == (9.0, 0.0, 10.0)
     assert pen.surface == 20.0
 
 
