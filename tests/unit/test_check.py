@@ -117,6 +117,10 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "mill.ini:8: 'mine' is not a Python callable function"),
     (GOOD + "[G12]\nCLEARING = squares\n", {}, "setting",
      "[G12] CLEARING = squares: must be rings or spiral"),
+    *((GOOD + line, {}, "value", says) for line, says in (
+        ("[AXIS_X]\nMAX_VELOCITY = abc\n", "[AXIS_X] MAX_VELOCITY = abc: must be a number"),
+        ("[AXIS_Y]\nMIN_LIMIT = abc\n", "[AXIS_Y] MIN_LIMIT = abc: must be a number"),
+    )),
     (GOOD.replace("X Y Z", "X Z"), {}, "no-axis", "haas needs axis Y; [TRAJ] COORDINATES has X Z"),
     (GOOD, {"diameters": {}}, "no-diameters", ""),
     (GOOD + "[TASK]\nINTERPRETER = libcanterp.so\n", {}, "interpreter", ""),

@@ -23,6 +23,8 @@ from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import spindle_c_findings
+from g12.tools.machine.ini import IniError
+from g12.tools.path.track import limits_of
 from g12.tools.system import COMMAND, PROGRAM
 from g12.tools.translate.blocks.control import ControlError, read_control
 
@@ -381,6 +383,15 @@ def bad_settings(config: Config) -> Iterator[ConfigFinding]:
         yield problem("setting", refusal.message, f"correct the line in [{INI_SECTION}]")
 
 
+def refused_values(config: Config) -> Iterator[ConfigFinding]:
+    """Find values of units, axes and speeds that every command refuses."""
+    try:
+        limits_of(config.ini)
+    except IniError as refused:
+        text = str(refused).removeprefix(f"{config.ini.path}: ")
+        yield problem("value", text, "correct the line: verify, trace and plot refuse this INI")
+
+
 def missing_axes(config: Config) -> Iterator[ConfigFinding]:
     """Find axes that a code needs."""
     axes = config.ini.axes
@@ -528,6 +539,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     handlers_missing,
     handlers_hidden,
     bad_settings,
+    refused_values,
     missing_axes,
     shapes_without_polar,
     no_tool_table,
