@@ -138,6 +138,7 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
     ("G12.1", "G12.1 is refused: only G1, G2 and G3 move inside the section"),
     ("G7.1 C30", "the section is already on: G7.1 C0 ends it"),
     ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
+    ("G7.1 C0 G0 Z5", "G7.1 C0 must be alone in its block"),
     ("G1 A5", "A is refused: the section's words are Z, C, X, W, H and U"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
     ("G2 Z5 K2 R3", "G2: either R or J and K, not both"),

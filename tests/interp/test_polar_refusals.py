@@ -40,6 +40,8 @@ INSIDE = [  # unit/test_section_block_rules.py has every code
     ("G1 @5 ^3", "@ is refused: the section's words are X, C (or Y), Z, U and H"),
     ("G1 X12 Z3", "Z needs a block of its own, or [G12] POLAR_Z = allow"),
     ("G13.1 X5", "G13.1 must be alone in its block"),
+    ("G13.1 G0 Z2", "G13.1 must be alone in its block"),
+    ("G0 G13.1", "G13.1 must be alone in its block"),
     ("M33 M8", "M33 is remapped: inside a section it needs a block of its own"),
     ("M72", "M72: no modes were saved in this section"),
     ("M19 R90 Q0", "M19 needs Q above zero, the longest wait in seconds"),

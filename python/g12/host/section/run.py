@@ -113,6 +113,9 @@ class Section:
     def _refuse(self, reason: str) -> Refusal:
         return self.reader.location.refuse(reason)
 
+    def _refuse_beside_off(self) -> Refusal:
+        return self._refuse(f"{self.codes.off_code} must be alone in its block")
+
     def _line(self, line: TextLine) -> Iterator[int]:
         if self.reader.deletes(line):
             return
@@ -127,6 +130,9 @@ class Section:
         if line.text == "%":
             self._end_of_file()
         location, known = self.reader.location, self.setup.words.words
+        off = [code for letter, code in line.codes if letter == "G" and code in self.codes.off]
+        if off and len(line.codes) > 1:
+            raise self._refuse_beside_off()
         block_rules.check_codes(line.codes, known, self._rapid_allowed, location)
         block_rules.check_letters(line, known, location)
         if "#" in line.text:
@@ -234,9 +240,8 @@ class Section:
 
     def _finish(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
-        off = self.codes.off_code
         if line.relative or not block_rules.alone(block, self.codes.word):
-            raise self._refuse(f"{off} must be alone in its block")
+            raise self._refuse_beside_off()
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
