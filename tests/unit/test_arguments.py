@@ -139,6 +139,11 @@ def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
     assert explained_text("Unknown g code used", lathe) == f"{said} {there}; {see}"
 
 
+def test_a_handler_that_linuxcnc_cannot_call_points_to_check(files):
+    said = "pycall(remap.g13_haas) failed"
+    assert explained_text(said, files.ini) == f"{said}; see {COMMAND} check"
+
+
 def test_events_that_are_not_there(tmp_path, capsys):
     assert ends(capsys, "dynapath", tmp_path / "no.dyn") == (
         2,

@@ -15,6 +15,7 @@ from g12.tools.system import COMMAND
 UNKNOWN_CODE = "Unknown g code used"
 OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
 POLAR_CODES = ("G12.1", "G13.1")
+PYTHON_FAILED = re.compile(r"pycall\(.*\) failed")
 PACKAGE_MESSAGE = re.compile(r"^g12: (.*)$", re.MULTILINE)  # printed at its start
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
@@ -56,7 +57,9 @@ def explained_text(text: str, ini: Path) -> str:
         present = " ".join(codes) or "none"
         return f"{text}: of G12, G13 and G7.1 this INI has {present}; see {COMMAND} check"
     errors = errors_at_start(ini) if set(POLAR_CODES) & set(codes) else ""
-    return f"{text}: {errors}" if errors else text
+    if errors:
+        return f"{text}: {errors}"
+    return f"{text}; see {COMMAND} check" if PYTHON_FAILED.match(text) else text
 
 
 def errors_at_start(ini: Path) -> str:
