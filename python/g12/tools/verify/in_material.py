@@ -192,9 +192,10 @@ def _is_cut_before(section: SectionContour, workpiece: Workpiece) -> bool:
 def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield one note of the holes that are assumed."""
     if workpiece.holes:
-        line, place, _ = workpiece.holes[0]
+        line, place, *_ = workpiece.holes[0]
         more = also_in({hole.line for hole in workpiece.holes} - {line})
-        values = {"at": tuple(zip("XYZ", place)), "more": more}
+        why = " or ".join(dict.fromkeys(hole.why for hole in workpiece.holes))
+        values = {"at": tuple(zip("XYZ", place)), "why": why, "more": more}
         yield Finding("bored-assumed", line, values, place)
 
 

@@ -47,11 +47,12 @@ Solids = Iterator[tuple[BaseGeometry, float]]
 
 
 class AssumedHole(NamedTuple):
-    """A hole that is assumed: the line that does, where it is entered to, its radius."""
+    """A hole that is assumed: the line that does and why, where it is entered to, its radius."""
 
     line: int
     place: tuple[float, float, float]
     radius: float
+    why: str
 
 
 class Approach(NamedTuple):
@@ -108,7 +109,7 @@ def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
     for _, target in circles:
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
-            yield AssumedHole(target.line, (x, y, z), target.wall.bore)
+            yield AssumedHole(target.line, (x, y, z), target.wall.bore, "the word R names it")
 
 
 def holes_entered(
@@ -134,7 +135,8 @@ def holes_entered(
             below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
             if below or material.touched(end, radius(index), 0):
                 x, y, z = map(float, end[0])
-                found.append(AssumedHole(moves[index].block, (x, y, z), radius(index)))
+                line, why = moves[index].block, "a rapid goes into it"
+                found.append(AssumedHole(line, (x, y, z), radius(index), why))
         if not found:
             break
     return found

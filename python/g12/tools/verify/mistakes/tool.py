@@ -121,7 +121,7 @@ def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Itera
     for _, group in groupby(enumerate(found), lambda pair: pair[1] - pair[0]):
         indices = [index for _, index in group]
         speeds = [path.part_feed(index) for index in indices]
-        values = {"least": min(speeds), "most": max(speeds)}
+        values = {"feeds": (min(speeds), max(speeds))}
         yield Finding("native-c", moves[indices[0]].block, values, moves[indices[0]].end[:3])
 
 

@@ -57,11 +57,12 @@ def judge_travel(
         ends.setdefault(extent.zero, []).extend((extent.low, extent.high))
     widths = {zero: np.ptp(both, axis=0) for zero, both in ends.items()}
     for (_, target), extent in zip(circles, extents):
-        if not extent.is_placed:
-            yield Finding("travel-unplaced", target.line, file=target.file)
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
-        for code, values in _overruns(extent, width, ini):
+        overruns = list(_overruns(extent, width, ini))
+        if not (extent.is_placed or "travel" in dict(overruns)):
+            yield Finding("travel-unplaced", target.line, file=target.file)
+        for code, values in overruns:
             yield Finding(code, target.line, values, file=target.file)
 
 

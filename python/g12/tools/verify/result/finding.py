@@ -71,7 +71,8 @@ def is_known(sentence: str, values: Mapping[str, Any]) -> bool:
 class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
-    ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed, ``xyz``
+    ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed,
+    ``feeds`` a least and a greatest, once where they are the same in words, ``xyz``
     a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
     one with its letters, ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
     that was measured, ``turns`` angles, ``words`` entries by name, ``twice`` a radius as
@@ -88,6 +89,9 @@ class _Writer(string.Formatter):
                 letter + (plain(at, 3) if letter == "C" else unit.text(at)) for letter, at in words
             ),
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
+            "feeds": lambda ends: " to ".join(
+                dict.fromkeys(f"{unit.text(feed)} {unit.name}/min" for feed in ends)
+            ),
             "xyz": lambda value: _words_of_place(value, unit),
             "twice": lambda value: unit.text(2 * value),
             "turns": lambda angles: ", ".join(plain(angle, 3) for angle in angles),

@@ -78,8 +78,8 @@ FINDINGS = {
 }
 NOTES = {
     "bored-assumed": (
-        "verify assumes a bored hole down to {at:place}, because a rapid goes into it or the "
-        "word R names it{more}; give the real stock with --stock"
+        "verify assumes a bored hole down to {at:place}, because {why}{more}; "
+        "give the real stock with --stock"
     ),
     "core-stands": (
         "{area:mm2} stand in its middle when it is cut{more}: right only where that is bored "
@@ -131,7 +131,7 @@ NOTES = {
     "feed-cut-down": "F asks for {feed:feed}, the machine's limits allow {most:feed}",
     "native-c": (
         "C turns together with X or Z outside of a section, where F counts for X and Z alone: "
-        "the part's edge sees {least:feed} to {most:feed}"
+        "the part's edge sees {feeds:feeds}"
     ),
     "return-level": (
         "{code} outside of a section is a return level of drilling cycles to LinuxCNC, "
@@ -187,7 +187,7 @@ NOT_JUDGED = {
         "whether it is within the travel: no work offset is set; --var gives the machine's"
     ),
     "tool-spindle": (
-        "whether the driven tool turns: the program has no M3 or M4 with an S; "
+        "whether the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; "
         "look for the code that starts it on your machine"
     ),
     "plain-moves": (
