@@ -16,11 +16,13 @@ from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.units import UNITS
+from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.expected.circle_mill import EventWords
 from g12.tools.verify.expected.haas import HaasWords
 from g12.tools.verify.pocket import measure_pocket
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
-from g12.tools.verify.workpiece import Program, assumed_workpiece
+from g12.tools.verify.subject import Subject
+from g12.tools.verify.workpiece import assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 TOLERANCE = 0.005
@@ -60,8 +62,13 @@ def measure(moves, wanted, real_shift=None):
     pace = partial(pace_of, path=path)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
     loaded = {1: 2 * wanted.cutter.loaded}
-    workpiece = assumed_workpiece(Program(moves, MILL, [(block, wanted)], [], loaded, real))
-    return measure_pocket(block, wanted, moves, workpiece.material, TOLERANCE, pace, real)
+    trace, words = (
+        replace(Hand().trace(), moves=moves, diameters=loaded),
+        Commanded([(block, wanted)]),
+    )
+    subject = Subject(None, None, trace, MILL, commanded=words, drawn=(path, real))
+    material = assumed_workpiece(subject).material
+    return measure_pocket(block, wanted, moves, material, TOLERANCE, pace, real)
 
 
 def codes(moves, wanted, **options):

@@ -10,14 +10,15 @@ from g12.tools.path.follow import follow
 from g12.tools.path.part import Part, disc
 from g12.tools.path.track import track
 from g12.tools.preview.executed_blocks import Block
+from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.expected.haas import HaasWords
-from g12.tools.verify.in_material import assumptions, rapids_through
+from g12.tools.verify.in_material import assumptions, judge_rapids
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
-from g12.tools.verify.workpiece import Program, assumed_workpiece
+from g12.tools.verify.subject import Subject
+from g12.tools.verify.workpiece import assumed_workpiece
 from support.made_moves import LIMITS, Hand, samples_of
 
 MILL = Part(turning=False)
-DIAMETERS = {1: 6.0}
 RINGS = [5, 9, 13, 17]  # of the tool's centre: the wall is at 20
 
 
@@ -43,10 +44,13 @@ class Pockets(Hand):
     def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
         run = follow(path, self.moves, real(path), 1.0) if real else None
-        return assumed_workpiece(Program(self.moves, MILL, self.asked, [], DIAMETERS, run))
+        words = Commanded(self.asked)
+        subject = Subject(None, None, self.trace(), MILL, commanded=words, drawn=(path, run))
+        return assumed_workpiece(subject)
 
     def found(self, real=None):
-        return list(rapids_through(self.in_material(real)))
+        judged = judge_rapids(self.in_material(real))
+        return [found for found in judged if found.is_finding]
 
     def assumed(self):
         return [note.text() for note in assumptions(self.in_material())]
@@ -177,9 +181,9 @@ def test_below_z0_it_is_open_where_the_first_rapid_comes_down():
     assert program.found() == [] and len(program.assumed()) == 1
 
 
-@pytest.mark.parametrize(("face", "count"), [(0.0, 0), (0.5, 2)])
-def test_where_the_machine_is_says_nothing_without_a_work_offset(face, count):
+@pytest.mark.parametrize(("face", "lines"), [(0.0, []), (0.5, [3])])
+def test_where_the_machine_is_says_nothing_without_a_work_offset(face, lines):
     program = start().mill(face=face).rapid(z=-40).rapid(x=150).rapid(z=2).rapid(x=50)
     down = len(program.moves) - 4
     program.moves[down] = program.moves[down]._replace(by_machine=True)
-    assert len(program.found()) == count
+    assert [hit.line for hit in program.found()] == lines

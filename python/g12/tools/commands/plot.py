@@ -33,12 +33,14 @@ from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of
 from g12.tools.plot.side_holes import drilled_surface
 from g12.tools.preview.ended import ended, ended_text, explained
-from g12.tools.preview.moves import message_lines
+from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
-from g12.tools.preview.tracer import trace
+from g12.tools.preview.tracer import Tracer, trace
 from g12.tools.progress import working
+from g12.tools.verify.commanded import Commanded, commanded_by
+from g12.tools.verify.proof import prove_subject
 from g12.tools.verify.result.sentences import NOTES
-from g12.tools.verify.seen import seen_in
+from g12.tools.verify.seen import seen_of_proof
 from g12.tools.verify.subject import subject_of
 
 EXAMPLES = """\
@@ -97,6 +99,12 @@ def texts_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
     return [*dict.fromkeys(warnings), *x0, *notes, *message_lines(trace.messages)]
 
 
+def words_of(program: Path, ini: Ini, options: argparse.Namespace, found: Trace) -> Commanded:
+    """Return what the words of a traced program command."""
+    with Tracer(ini, tools=options.tools) as tracer:
+        return commanded_by(tracer, program, found, options.tools, options.var)
+
+
 def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:
     """Draw a program as LinuxCNC reads it; return its scene."""
     with working(f"interpreting {program.name}"):
@@ -111,10 +119,11 @@ def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
     samples = samples_of_run(program, options, found, ini)
     with working(f"drawing {options.output.name}"):
-        subject = subject_of(program, ini, found, samples)
+        commanded = Commanded() if found.error else words_of(program, ini, options, found)
+        subject = subject_of(program, ini, found, samples, commanded)
         scene = scene_of(subject, options.units, options.feeds)
         if not found.error:
-            seen = seen_in(subject, options.tools, options.var, stock_of(options))
+            seen = seen_of_proof(prove_subject(subject, stock=stock_of(options)))
             surface = seen.surface or drilled_surface(subject, options.tools, options.var)
             seen = seen._replace(surface=surface)
             scene = replace(scene, override=options.override, seen=seen)

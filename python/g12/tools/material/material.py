@@ -29,9 +29,11 @@ LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
 RAPID_STEP = 0.5  # between the evaluated points of a rapid
 BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
 NOTHING = Polygon()
-ALWAYS = -1  # move number of openings that exist before the program
+ALWAYS = -1  # move number of what exists before the program
+ANY = (-math.inf, math.inf)
 
 Bounds = Sequence[float]  # least and greatest of both coordinates of the plane
+Levels = tuple[float, float]  # the lowest and the highest
 Drawn = Callable[[], np.ndarray]  # points (n, 2) along a path
 
 
@@ -50,11 +52,32 @@ class Touch(NamedTuple):
     points: np.ndarray
 
 
-class _Area:
-    """An area, computed at its first use: swept by a cutter, or given."""
+class Solid(NamedTuple):
+    """An area that is material below a ``level``, for the moves after one and up to another."""
 
-    def __init__(self, bounds: Bounds, draw: Drawn, radius: float, known: dict) -> None:
-        self.bounds, self._draw, self._radius, self._known = bounds, draw, radius, known
+    shape: BaseGeometry
+    level: float
+    since: int = ALWAYS
+    until: float = math.inf
+
+
+class Opening(NamedTuple):
+    """An area that is free down to a ``level``, for the moves after one.
+
+    ``perhaps`` says that material may remain there.
+    """
+
+    shape: BaseGeometry
+    level: float = -math.inf
+    since: int = ALWAYS
+    perhaps: bool = False
+
+
+class _Sweep:
+    """The area that a cutter sweeps along a path, computed at its first use."""
+
+    def __init__(self, draw: Drawn, radius: float, known: dict) -> None:
+        self._draw, self._radius, self._known = draw, radius, known
 
     @cached_property
     def shape(self) -> BaseGeometry:
@@ -68,61 +91,59 @@ class _Area:
         return translate(self._known[key], *start)
 
 
-class _Given(NamedTuple):
-    """A given area, valid up to a move."""
-
-    shape: BaseGeometry
-    until: float = math.inf
-
-    @property
-    def bounds(self) -> Bounds:
-        return self.shape.bounds
-
-
-class _Cuts:
+class _Areas:
     """Areas with their levels and moves, for a search by bounds."""
 
     def __init__(self) -> None:
-        self.areas: list[_Area | _Given] = []
+        self._areas: list[Solid | Opening | _Sweep] = []
         self._rows: list[tuple[float, ...]] = []
 
-    def add(self, area: _Area | _Given, level: float, move: int) -> None:
-        self.areas.append(area)
-        self._rows.append((*area.bounds, level, move))
-        self.__dict__.pop("_table", None)
+    def add(
+        self,
+        area: Solid | Opening | _Sweep,
+        bounds: Bounds,
+        level: float,
+        since: int,
+        until: float = math.inf,
+    ) -> None:
+        if bounds:  # an empty area has none
+            self._areas.append(area)
+            self._rows.append((*bounds, level, since, until))
+            self.__dict__.pop("_table", None)
 
     @cached_property
     def _table(self) -> np.ndarray:
-        return np.array(self._rows).reshape(-1, 6).T
+        return np.array(self._rows).reshape(-1, 7).T
 
-    def within(self, bounds: Bounds, level: float, before: float) -> np.ndarray:
-        """Return the indices of cuts that may lie within bounds, down to a level, before a move."""
-        x0, y0, x1, y1, levels, moves = self._table
-        found = (x0 <= bounds[2]) & (x1 >= bounds[0]) & (y0 <= bounds[3]) & (y1 >= bounds[1])
-        return np.flatnonzero(found & (levels <= level + SAME_LEVEL) & (moves < before))
+    def near(self, region: BaseGeometry, levels: Levels, move: float | None) -> list[BaseGeometry]:
+        """Return the areas that may meet a region, between levels, at a move or at any."""
+        if region.is_empty:
+            return []
+        low_x, low_y, high_x, high_y = region.bounds
+        x0, y0, x1, y1, level, since, until = self._table
+        found = (x0 <= high_x) & (x1 >= low_x) & (y0 <= high_y) & (y1 >= low_y)
+        found &= (levels[0] <= level) & (level <= levels[1])
+        if move is not None:
+            found &= (since < move) & (move <= until)
+        return [self._areas[index].shape for index in np.flatnonzero(found)]
 
 
 class Material:
     """The remaining material of a part; see the head of this file."""
 
-    def __init__(self, period: float = 0.0) -> None:
-        self._solids, self._cuts = _Cuts(), _Cuts()
+    def __init__(
+        self, solids: Iterable[Solid], openings: Iterable[Opening] = (), period: float = 0.0
+    ) -> None:
+        self._solids, self._cuts, self._perhaps_cut = _Areas(), _Areas(), _Areas()
         self._period = period
         self._known: dict = {}
         self.top = -math.inf
-
-    def add(
-        self, area: BaseGeometry, top: float, since: int = ALWAYS, until: float = math.inf
-    ) -> None:
-        """Make an area solid below a top, for the moves after one and up to another."""
-        if not area.is_empty:
-            self._solids.add(_Given(area, until), -top, since)
-            self.top = max(self.top, top)
-
-    def open(self, area: BaseGeometry, level: float = -math.inf, since: int = ALWAYS) -> None:
-        """Remove material down to a level, for all moves or for those after one."""
-        if not area.is_empty:
-            self._cuts.add(_Given(area), level, since)
+        for solid in solids:
+            self._solids.add(solid, solid.shape.bounds, *solid[1:])
+            self.top = max(self.top, -math.inf if solid.shape.is_empty else solid.level)
+        for each in openings:
+            cuts = self._perhaps_cut if each.perhaps else self._cuts
+            cuts.add(each, each.shape.bounds, each.level, each.since)
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3)."""
@@ -130,7 +151,7 @@ class Material:
             return
         if _goes_along_z(points):
             points = points[points[:, 2].argmin()][None]
-        for portion in portions(points):
+        for portion in _portions(points):
             for line in self._unrolled(portion.line, radius):
                 bounds = (*line.min(axis=0), *line.max(axis=0))
                 self.cut_level(move, bounds, portion.low, partial(np.asarray, line), radius)
@@ -142,39 +163,34 @@ class Material:
         if level < self.top:
             x0, y0, x1, y1 = bounds
             within = (x0 - radius, y0 - radius, x1 + radius, y1 + radius)
-            self._cuts.add(_Area(within, draw, radius, self._known), level, move)
+            self._cuts.add(_Sweep(draw, radius, self._known), within, level, move)
 
     def standing(
-        self, region: BaseGeometry, level: float, before: float = math.inf
+        self, region: BaseGeometry, level: float, before: float = math.inf, perhaps: bool = False
     ) -> BaseGeometry:
-        """Return the material in a region just below a level, before a move."""
-        if not self._period:
-            return self._standing(region, level, before)
+        """Return the material in a region just below a level, before a move.
+
+        With ``perhaps`` that which may remain counts.
+        """
         found = [
-            translate(self._standing(part, level, before), away)
-            for part, away in self._turned(region)
+            translate(self._standing(portion, level + SAME_LEVEL, before, perhaps), away)
+            for portion, away in self._turned(region)
         ]
         return unary_union(found) if len(found) > 1 else found[0]
 
-    def _standing(self, region: BaseGeometry, level: float, before: float) -> BaseGeometry:
-        bounds = region.bounds
-        if not bounds:
+    def _standing(
+        self, region: BaseGeometry, level: float, before: float, perhaps: bool
+    ) -> BaseGeometry:
+        solids = self._solids.near(region, (level, math.inf), before)
+        if not solids:
             return NOTHING
-        solid = [
-            index
-            for index in self._solids.within(bounds, -level - 2 * SAME_LEVEL, before)
-            if before <= self._solids.areas[index].until
-        ]
-        if not solid:
-            return NOTHING
-        region = region.intersection(self._shapes(self._solids, solid))
-        away = self._cuts.within(bounds, level, before)
-        return region.difference(self._shapes(self._cuts, away)) if len(away) else region
+        cuts = self._cuts.near(region, (-math.inf, level), before)
+        cuts += () if perhaps else self._perhaps_cut.near(region, (-math.inf, level), before)
+        region = region.intersection(unary_union(solids))
+        return region.difference(unary_union(cuts)) if cuts else region
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
         """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
-        if not self._period:
-            return [line]
         turns = self._turns(line[:, 0].min() - radius, line[:, 0].max() + radius)
         return [line - (turn * self._period, 0.0) for turn in turns]
 
@@ -191,54 +207,51 @@ class Material:
         return [(translate(region, -away).intersection(first_turn), away) for away in ways]
 
     def _turns(self, least: float, most: float) -> range:
-        """Return the turns of a surface between two positions around it."""
+        """Return the turns of a surface between two positions around it; of a plane one."""
+        if not self._period:
+            return range(1)
         return range(math.floor(least / self._period), math.floor(most / self._period) + 1)
 
-    def _shapes(self, cuts: _Cuts, indices: Iterable[int]) -> BaseGeometry:
-        return unary_union([cuts.areas[index].shape for index in indices])
-
     def is_cut(self, region: BaseGeometry, level: float, before: float) -> bool:
-        """Return whether a portion of a region was cut down to a level before a move."""
-        return any(
-            len(self._cuts.within(part.bounds, level, before))
-            for part, _ in self._turned(region)
-            if not part.is_empty
-        )
+        """Return whether a portion of a region may be cut down to a level before a move."""
+        levels = (-math.inf, level + SAME_LEVEL)
+        return any(self._cuts.near(each, levels, before) for each, _ in self._turned(region))
 
-    def covers(self, region: BaseGeometry) -> bool:
-        """Tell whether all of a region is solid at some level or cut at some move."""
-        rest = [part for part, _ in self._turned(region)]
-        for known in (self._solids, self._cuts):
-            rest = [self._without(known, part) for part in rest if not part.is_empty]
-        return sum(part.area for part in rest) <= LEAST_AREA
+    def covers(self, points: np.ndarray, radius: float) -> bool:
+        """Tell whether all that a cutter sweeps below the top is solid or cut at some move."""
+        swept_area = swept([each.line for each in self._meeting(points)], radius)
+        rest = [portion for portion, _ in self._turned(swept_area)]
+        for areas in (self._solids, self._cuts):
+            rest = [each.difference(unary_union(areas.near(each, ANY, None))) for each in rest]
+        return sum(each.area for each in rest) <= LEAST_AREA
 
-    def _without(self, known: _Cuts, region: BaseGeometry) -> BaseGeometry:
-        near = known.within(region.bounds, math.inf, math.inf)
-        return region.difference(self._shapes(known, near)) if len(near) else region
+    def touched(
+        self, points: np.ndarray, radius: float, before: float, perhaps: bool = False
+    ) -> Touch | None:
+        """Return the material that a cutter goes through along points (n, 3), None if none.
 
-    def touched(self, points: np.ndarray, radius: float, before: float) -> Touch | None:
-        """Return the material that a cutter goes through along points (n, 3), None if none."""
-        if radius <= ALLOWED or points[:, 2].min() > self.top - SAME_LEVEL:
-            return None
+        With ``perhaps`` it may go through it.
+        """
         found, where = [], []
-        for portion in portions(going(points)):
-            area = self._under(portion, radius - ALLOWED, before)
+        for portion in self._meeting(points) if radius > ALLOWED else ():
+            region = swept([portion.line], radius - ALLOWED)
+            area = self.standing(region, portion.high, before, perhaps)
             if area.area > LEAST_AREA:
                 found.append(area)
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
 
-    def _under(self, portion: Portion, radius: float, before: float) -> BaseGeometry:
-        if portion.high > self.top - SAME_LEVEL:
-            return NOTHING
-        return self.standing(swept([portion.line], radius), portion.high, before)
+    def _meeting(self, points: np.ndarray) -> Iterator[Portion]:
+        """Yield the portions of a toolpath (n, 3) that lie below the top."""
+        if points[:, 2].min() <= self.top - SAME_LEVEL:
+            yield from (p for p in _portions(_going(points)) if p.high <= self.top - SAME_LEVEL)
 
 
 def _goes_along_z(points: np.ndarray) -> bool:
     return bool(np.ptp(points[:, :2], axis=0).max() < ALLOWED)
 
 
-def going(points: np.ndarray) -> np.ndarray:
+def _going(points: np.ndarray) -> np.ndarray:
     """Return the points (n, 3) that can meet new material: of a vertical path the lowest."""
     if not _goes_along_z(points):
         return points
@@ -246,7 +259,7 @@ def going(points: np.ndarray) -> np.ndarray:
     return points[lowest : lowest + 1] if lowest or len(points) == 1 else points[:0]
 
 
-def portions(points: np.ndarray) -> Iterator[Portion]:
+def _portions(points: np.ndarray) -> Iterator[Portion]:
     """Yield a toolpath (n, 3) in portions, each within a narrow band of levels."""
     if len(points) < 2 or np.ptp(points[:, 2]) < SAME_LEVEL:
         if len(points):

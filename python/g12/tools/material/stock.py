@@ -42,6 +42,11 @@ class Stock(NamedTuple):
     corner: tuple[float, ...] | None = None
     bore: float = 0.0
 
+    @property
+    def is_whole(self) -> bool:
+        """Whether it is a bar or a block: of a bore alone only the pockets are known."""
+        return bool(self.diameter or self.size)
+
     def shape(self, zero: np.ndarray, pockets: Sequence[Circle]) -> BaseGeometry:
         """Return its area as seen along Z; ``zero`` is the program's.
 

@@ -3,10 +3,11 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.preview.executed_blocks import Block, Text
-from g12.tools.preview.moves import Move
+from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.cylinder import SurfacePen
@@ -17,7 +18,6 @@ from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.reading.executed_subs import executed_everywhere
 from g12.tools.verify.reading.sections import sections
 from g12.tools.verify.reading.zero_lines import CLines, with_zero_lines
-from g12.tools.verify.subject import Subject
 
 PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 
@@ -26,7 +26,8 @@ class Commanded(NamedTuple):
     """What a program commands; each circle has its block.
 
     ``idle`` are the line and the code of each cycle that moves nothing, though it should.
-    ``clamp_is_traced`` says that events show the codes of C's clamp.
+    ``clamp_is_traced`` says that events show the codes of C's clamp. ``moves_there`` are the moves
+    with the work offsets of the machine's var file, None where they differ by more than those.
     """
 
     circles: Sequence[tuple[Block, Target]] = ()
@@ -35,36 +36,47 @@ class Commanded(NamedTuple):
     shapes: Sequence[SubCall] = ()
     holes: Sequence[SubCall] = ()
     clamp_is_traced: bool = False
+    moves_there: Sequence[Move] | None = None
+
+    @property
+    def on_face(self) -> list[SectionContour]:
+        """The sections on the face."""
+        return [section for section in self.sections if not section.surface]
 
 
 def commanded_by(
-    tracer: Tracer, subject: Subject, tools: Tools, parameters: Parameters
+    tracer: Tracer, program: Path, trace: Trace, tools: Tools, parameters: Parameters
 ) -> Commanded:
-    """Return what a program's words command."""
-    codes, program, trace = Codes(subject.ini), subject.program, subject.trace
+    """Return what the words of a traced program command."""
+    ini, moves, codes = tracer.ini, trace.moves, Codes(tracer.ini)
     blocks, clamp_is_traced = executed_everywhere(tracer, program, trace, codes, tools, parameters)
-    reader = CircleReader(codes, subject.ini, trace.moves, trace.diameters)
-    pens = {kind: partial(pen, ini=subject.ini) for kind, pen in PENS.items()}
+    reader = CircleReader(codes, ini, moves, trace.diameters)
+    pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
-    idle = [*_idle_blocks(blocks, codes)]
-    idle += [(each.line, each.code) for each in found if each.elements and each.at == each.end]
+    still = [(each.line, each.code) for each in found if each.elements and each.at == each.end]
     cut = [each for each in found if each.end > each.at]
-    shapes, holes = (list(calls(blocks, subject, sub)) for sub in (codes.shape_of, codes.holes_of))
+    subs = (codes.shape_of, codes.holes_of)
+    shapes, holes = (list(_calls(blocks, tracer, trace, sub)) for sub in subs)
     if cut:
-        c_lines = CLines(program, codes, subject.ini)
-        cut = with_zero_lines(cut, [*shapes, *holes], trace.moves, c_lines)
-    return Commanded(list(reader.targets(blocks)), cut, idle, shapes, holes, clamp_is_traced)
+        cut = with_zero_lines(cut, [*shapes, *holes], moves, CLines(program, codes, ini))
+    return Commanded(
+        list(reader.targets(blocks)),
+        cut,
+        [*_idle_blocks(blocks, codes), *still],
+        shapes,
+        holes,
+        clamp_is_traced,
+        _moves_there(tracer, program, moves, parameters),
+    )
 
 
-def calls(
-    blocks: Sequence[Block], subject: Subject, named: Callable[[Text], str]
+def _calls(
+    blocks: Sequence[Block], tracer: Tracer, trace: Trace, named: Callable[[Text], str]
 ) -> Iterator[SubCall]:
     """Yield each call of the subs that are ``named`` which moves anything."""
-    for block in blocks:
-        if named(block.text) and block.end > block.at:
-            first = subject.trace.moves[block.at]
-            radius = subject.trace.diameters.get(first.tool, 0.0) / 2
-            yield SubCall(block, first, radius, subject.ini)
+    for block in (each for each in blocks if named(each.text) and each.end > each.at):
+        first = trace.moves[block.at]
+        yield SubCall(block, first, trace.diameters.get(first.tool, 0.0) / 2, tracer.ini)
 
 
 def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str]]:
@@ -76,15 +88,11 @@ def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, s
             yield block.text.number, block.text.call
 
 
-def moves_there(tracer: Tracer, subject: Subject, parameters: Parameters) -> Sequence[Move] | None:
-    """Return the moves with the work offsets that the machine's var file holds.
-
-    None where they are others for more than the offsets.
-    """
-    stored = subject.ini.file("RS274NGC", "PARAMETER_FILE")
+def _moves_there(
+    tracer: Tracer, program: Path, moves: Sequence[Move], parameters: Parameters
+) -> Sequence[Move] | None:
+    stored = tracer.ini.file("RS274NGC", "PARAMETER_FILE")
     if parameters is not None or not (stored and stored.is_file()):
-        return subject.trace.moves
-    trace = tracer.trace(subject.program, parameters=stored)
-    moves = subject.trace.moves
-    same = [move.block for move in trace.moves] == [move.block for move in moves]
-    return trace.moves if same else None
+        return moves
+    there = tracer.trace(program, parameters=stored).moves
+    return there if [move.block for move in there] == [move.block for move in moves] else None

@@ -26,8 +26,7 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
-from g12.tools.verify.commanded import Commanded, commanded_by, moves_there
-from g12.tools.verify.compare.plane import x0_of
+from g12.tools.verify.commanded import commanded_by
 from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.mistakes.tool import (
     judge_feeds,
@@ -136,42 +135,23 @@ def prove(
     """
     with Tracer(ini, tools=tools) as tracer:
         trace = ended(program, explained(tracer.trace(program, parameters=parameters), ini.path))
-        subject = subject_of(program, ini, trace, samples)
-        return prove_traced(tracer, subject, tools, parameters, tolerance, stock, tell)
+        commanded = commanded_by(tracer, program, trace, tools, parameters)
+    subject = subject_of(program, ini, trace, samples, commanded)
+    return prove_subject(subject, tolerance, stock, tell)
 
 
-def prove_traced(
-    tracer: Tracer,
+def prove_subject(
     subject: Subject,
-    tools: Tools = None,
-    parameters: Parameters = None,
     tolerance: float | None = None,
     stock: StockText | None = None,
     tell: Report = silent,
 ) -> Proof:
-    """Return the proof of a program that has been traced; see ``prove``."""
-    commanded = commanded_by(tracer, subject, tools, parameters)
-    there = moves_there(tracer, subject, parameters)
-    for first in [each for each in commanded.sections if not each.surface][:1]:
-        subject = subject.about(x0_of(first, subject.trace.moves[first.at]))
+    """Return the proof of a program whose words were read; see ``prove``."""
     allowed = _tolerances_of(subject, tolerance)
-    workpiece = workpiece_of(subject, commanded, stock)
-    cuts = measured(subject, commanded, workpiece, allowed, tell)
+    workpiece = workpiece_of(subject, stock)
+    cuts = compared(subject, workpiece, allowed, tell)
     tell("looking for rapids through material")
-    known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
-    unmeasured = _unmeasured_in(subject, known)
-    run = {cut.line for kind in cuts for cut in kind if not cut.file}
-    run |= {line for line, _ in (*unmeasured, *commanded.idle)}
-    found = [
-        *(each for kind in cuts for cut in kind for each in cut.judged),
-        *judge_material(workpiece),
-        *(Finding("not-measured", line, {"code": code}) for line, code in unmeasured),
-        *(Finding("not-cut", line, {"code": code}) for line, code in commanded.idle),
-        *judge_travel(commanded.circles, there, subject.trace.events, subject.ini),
-        *_mistakes(subject, cuts, known),
-        *judge_unrun(read_lines(subject.program), Codes(subject.ini), run),
-    ]
-    judged = sorted(found, key=lambda finding: finding.line)
+    judged = sorted(_judged(subject, workpiece, cuts), key=lambda finding: finding.line)
     return Proof(subject, workpiece, allowed, cuts, judged)
 
 
@@ -183,14 +163,13 @@ def _tolerances_of(subject: Subject, tolerance: float | None) -> Tolerances:
     return Tolerances(WALL, ini.settings.tolerance(ini.mm) * ini.mm + RUN * bool(subject.samples))
 
 
-def measured(
-    subject: Subject, commanded: Commanded, workpiece: Workpiece, allowed: Tolerances, tell: Report
-) -> Cuts:
-    """Return what is measured of a program's cuts."""
-    moves, real, ini, polar = subject.trace.moves, subject.real, subject.ini, allowed.polar
+def compared(subject: Subject, workpiece: Workpiece, allowed: Tolerances, tell: Report) -> Cuts:
+    """Return each cut with what was made of it against what its words command."""
+    commanded, moves, real, ini = subject.commanded, subject.moves, subject.real, subject.ini
     pace = partial(pace_of, path=subject.path, real=real)
     axes = axes_of_section(ini) if commanded.sections or commanded.shapes else None
     clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], commanded.clamp_is_traced)
+    polar = allowed.polar
     return Cuts(
         [
             measure_pocket(*circle, moves, workpiece.material, allowed.pocket, pace, real)
@@ -208,12 +187,28 @@ def measured(
     )
 
 
+def _judged(subject: Subject, workpiece: Workpiece, cuts: Cuts) -> Iterator[Finding]:
+    """Yield what was found of each cut, of the material, and of the words."""
+    commanded, trace, ini = subject.commanded, subject.trace, subject.ini
+    known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
+    unmeasured = _unmeasured_in(subject, known)
+    yield from (each for kind in cuts for cut in kind for each in cut.judged)
+    yield from judge_material(workpiece)
+    yield from (Finding("not-measured", line, {"code": code}) for line, code in unmeasured)
+    yield from (Finding("not-cut", line, {"code": code}) for line, code in commanded.idle)
+    yield from judge_travel(commanded.circles, commanded.moves_there, trace.events, ini)
+    yield from _mistakes(subject, cuts, known)
+    run = {cut.line for kind in cuts for cut in kind if not cut.file}
+    run |= {line for line, _ in (*unmeasured, *commanded.idle)}
+    yield from judge_unrun(read_lines(subject.program), Codes(ini), run)
+
+
 def _unmeasured_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
     """Return each line and code that makes moves of a cycle which is not measured."""
     codes = Codes(subject.ini)
     found = (
         (move.block, move.remap)
-        for index, move in enumerate(subject.trace.moves)
+        for index, move in enumerate(subject.moves)
         if index not in known and codes.knows(move.remap)
     )
     return list(dict.fromkeys(found))
@@ -221,7 +216,7 @@ def _unmeasured_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
 
 def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
     """Yield what the rules about words find; ``known`` are the moves of cuts."""
-    trace, ini, moves = subject.trace, subject.ini, subject.trace.moves
+    trace, ini, moves = subject.trace, subject.ini, subject.moves
     cuts = [*found.pockets, *found.sections, *found.holes]
     yield from judge_tool_length(cuts, moves, trace.lengths, trace.events)
     yield from judge_feeds(cuts, moves, limits_of(ini))

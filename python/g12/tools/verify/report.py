@@ -197,7 +197,7 @@ def _zero_text(proof: Proof, unit: Unit) -> str:
     Positions in a section are as far from the spindle as the program's; those on a cylinder are
     the program's. X0 must be the spindle's axis.
     """
-    zero = proof.workpiece.program.zero()
+    zero = proof.subject.zero
     words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
     text = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
     moved = in_words(text, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""

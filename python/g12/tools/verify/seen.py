@@ -7,13 +7,10 @@ Lengths are millimetres in machine coordinates.
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from g12.tools.material.stock import StockText
 from g12.tools.path.part import Z
-from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.units import MM, Unit
-from g12.tools.verify.proof import Proof, prove_traced
+from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.subject import Subject
 from g12.tools.verify.workpiece import Workpiece
 
 
@@ -52,17 +49,6 @@ class Seen(NamedTuple):
             yield each.line, each.text(unit)
 
 
-def seen_in(
-    subject: Subject,
-    tools: Tools = None,
-    parameters: Parameters = None,
-    stock: StockText | None = None,
-) -> Seen:
-    """Return what a picture of a traced program shows beside the cuts."""
-    with Tracer(subject.ini, tools=tools) as tracer:
-        return seen_of_proof(prove_traced(tracer, subject, tools, parameters, stock=stock))
-
-
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts.
 
@@ -74,5 +60,5 @@ def seen_of_proof(proof: Proof) -> Seen:
         proof.given,
         tuple(each.line for each in proof.judged if each.code == "spindle-stands"),
         radii[0] if radii and all(radii) else 0.0,
-        float(proof.workpiece.program.zero()[Z]),
+        float(proof.subject.zero[Z]),
     )

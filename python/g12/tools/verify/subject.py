@@ -1,24 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A program on a machine, as it was traced and perhaps as it ran, and as its parts see it."""
+"""A program on a machine: as traced, as its words command, as it ran, and as its parts see it."""
 
+from bisect import bisect_right
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from operator import itemgetter
 from pathlib import Path
 from typing import Self
 
+import numpy as np
+
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
-from g12.tools.path.part import Part, part_of_program
+from g12.tools.path.part import Part, X, Z, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
-from g12.tools.preview.moves import Trace
+from g12.tools.preview.moves import Move, Trace
+from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.compare.plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.expected.words import BlockInMm
 from g12.tools.verify.sections.view import SectionView, view_of
 
 SAME_X0 = 1e-6  # mm
+SAME_LEVEL = 1e-3
+NOTHING = Commanded()
 
 
 @dataclass(frozen=True)
@@ -34,9 +42,15 @@ class Subject:
     trace: Trace
     part: Part
     samples: Samples | None = None
+    commanded: Commanded = NOTHING
     own: range | None = None
     drawn: tuple[Track, Followed | None] | None = None
     _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: all of it is looked at
+
+    @property
+    def moves(self) -> list[Move]:
+        """The program's moves."""
+        return self.trace.moves
 
     @cached_property
     def path(self) -> Track:
@@ -44,14 +58,14 @@ class Subject:
         if self.drawn:
             return self.drawn[0]
         limits, speed = limits_of(self.ini), self.trace.modes.speed
-        return track(self.part, self.trace.moves, limits, speed, own=self.own)
+        return track(self.part, self.moves, limits, speed, own=self.own)
 
     @cached_property
     def real(self) -> Followed | None:
         """The motion of the run, laid on the path."""
         if self.drawn or not self.samples:
             return self.drawn[1] if self.drawn else None
-        return follow(self.path, self.trace.moves, self.samples, self.ini.mm)
+        return follow(self.path, self.moves, self.samples, self.ini.mm)
 
     def about(self, centre: float, own: range | None = None) -> Self:
         """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
@@ -66,14 +80,126 @@ class Subject:
     def view(self, section: SectionContour, axes: SectionAxes, tolerance: float) -> SectionView:
         """Return a section that moves as its part sees it."""
         own, radius = range(section.at, section.end), section.surface
-        x0 = x0_of(section, self.trace.moves[section.at])
+        x0 = x0_of(section, self.moves[section.at])
         there = self.on_surface(radius, own) if radius else self.about(x0, own)
         return view_of(section, self.trace, there.path, there.real, axes, tolerance)
 
     def _on(self, part: Part, own: range | None) -> Self:
         return replace(self, part=part, own=None if self.samples else own)
 
+    # ------------------------------------------------------------ its moves
 
-def subject_of(program: Path, ini: Ini, trace: Trace, samples: Samples | None = None) -> Subject:
-    """Return a traced program as its part sees it, and a run of it."""
-    return Subject(program, ini, trace, part_of_program(ini, trace), samples)
+    def points(self, index: int, part: Part) -> np.ndarray:
+        """Return the tool's points (n, 3) on a part along a move, as programmed or as they ran."""
+        sampled = self.real.positions[self.real.during(index)] if self.real else ()
+        return part.points(sampled) if len(sampled) else part.polyline(self.moves[index])
+
+    def end(self, index: int) -> tuple[float, float, float]:
+        """Return the point of the part at which a move ends."""
+        x, y, z = map(float, self.part.points(np.array(self.moves[index].end))[0])
+        return x, y, z
+
+    def line(self, index: int) -> int:
+        """Return the program's line of a move, of one in another file the line that calls it.
+
+        A cycle's own lines are in its subroutine, those of a section may be in a sub's own file.
+        """
+        move, sections = self.moves[index], self.commanded.sections
+        own = (each for each in sections if each.at <= index < each.end and not each.file)
+        return move.line if any(move.remap == each.code for each in own) else move.block
+
+    def cutter(self, index: int) -> float:
+        """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
+        loaded = self.trace.diameters.get(self.moves[index].tool, 0.0) / 2
+        return loaded or self._named_cutters.get(index, 0.0)
+
+    @cached_property
+    def _named_cutters(self) -> dict[int, float]:
+        circles = self.commanded.circles
+        return {i: to.cutter.radius for block, to in circles for i in range(block.at, block.end)}
+
+    @cached_property
+    def widest_cutter(self) -> float:
+        """The largest radius of a cutter."""
+        return max(map(self.cutter, range(len(self.moves))), default=0.0)
+
+    @cached_property
+    def sideways(self) -> list[set[bool]]:
+        """Whether the tool of each move points at the axis, as in its cuts before and after.
+
+        Next to a cut it points as in that one. There are two answers where cuts differ, none for a
+        tool of a lathe that cuts neither a section nor a hole.
+        """
+        commanded = self.commanded
+        if not (self.part.turning or commanded.sections or commanded.holes):
+            return [{False}] * len(self.moves)
+        cuts = [(each.at, each.end, each.surface > 0.0) for each in commanded.sections]
+        cuts += [(each.moves.start, each.moves.stop, each.is_side) for each in commanded.holes]
+        of_tool: dict[int, list[tuple[int, int, bool]]] = {}
+        for cut in sorted(cuts):
+            of_tool.setdefault(self.moves[cut[0]].tool, []).append(cut)
+        found = []
+        for index, move in enumerate(self.moves):
+            own = of_tool.get(move.tool, [])
+            last = bisect_right(own, index, key=itemgetter(0)) - 1
+            following = bisect_right(own, index, key=itemgetter(1))
+            near = own[max(last, 0) : following + 1]
+            beside = {side for at, end, side in near if index in (at - 1, end)}
+            found.append(beside or {side for *_, side in near})
+        return found
+
+    @cached_property
+    def ends_known(self) -> np.ndarray:
+        """Whether each move ends where the program says: a trace begins anywhere.
+
+        Where the program's zero is that of the machine, only a work offset would tell where G53,
+        G28 and G30 lead.
+        """
+        axes = [X, Z] if self.part.turning else [Z]
+        starts, ends = (
+            np.array([getattr(move, name) for move in self.moves]).reshape(-1, 9)[:, axes]
+            for name in ("start", "end")
+        )
+        offset = any(abs(target.wall.face) > SAME_LEVEL for _, target in self.commanded.circles)
+        lost = np.array([move.by_machine and not offset for move in self.moves], bool)
+        moved = starts != ends
+        last = np.maximum.accumulate(np.where(moved, np.arange(len(moved))[:, None], -1), axis=0)
+        return ~np.where(last < 0, moved.any(axis=0), lost[last]).any(axis=1)
+
+    # ------------------------------------------------------------ its zero
+
+    @cached_property
+    def zero(self) -> np.ndarray:
+        """The program's zero where it first cuts; on a lathe X is that of the spindle.
+
+        A section on a cylinder does not define it.
+        """
+        commanded = self.commanded
+        for section in commanded.on_face:
+            return np.array([0.0, 0.0, self.moves[section.at].start[Z] - section.height])
+        for block, _ in commanded.circles:
+            return BlockInMm(block, self.moves[block.at]).zero()
+        return np.array([0.0, 0.0, next((call.zero[1] for call in commanded.holes), 0.0)])
+
+    @property
+    def z0(self) -> float:
+        """The machine Z of the program's Z0; where all is cut on cylinders that of the first."""
+        commanded = self.commanded
+        if commanded.sections and not (commanded.on_face or commanded.circles or commanded.holes):
+            first = commanded.sections[0]
+            return self.moves[first.at].start[Z] - first.start.imag
+        return float(self.zero[Z])
+
+
+def subject_of(
+    program: Path,
+    ini: Ini,
+    trace: Trace,
+    samples: Samples | None = None,
+    commanded: Commanded = NOTHING,
+) -> Subject:
+    """Return a traced program, and a run of it, about the X0 of its first section on the face."""
+    subject = Subject(program, ini, trace, part_of_program(ini, trace), samples, commanded)
+    for first in commanded.on_face[:1]:
+        return subject.about(x0_of(first, trace.moves[first.at]))
+    return subject

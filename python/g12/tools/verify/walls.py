@@ -18,7 +18,9 @@ surface.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +28,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split, transform, unary_union
 
-from g12.tools.material.material import SAME_LEVEL, Material
+from g12.tools.material.material import SAME_LEVEL, Material, Opening, Solid
 from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
@@ -34,6 +36,7 @@ from g12.tools.verify.compare.plane import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.sections.outline import LENGTHLESS, Outline, outlines_of, vectors
+from g12.tools.verify.subject import Subject
 
 WALL = 2.0  # how thick the wall of a pocket is, at least
 SAME_PLACE = 0.05
@@ -41,18 +44,8 @@ BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 FAR = 1e6  # round a cylinder
 
-Circles = Sequence[tuple[Block, Target]]
-Radius = Callable[[int], float]  # of the cutter of a move
-Solids = Iterator[tuple[BaseGeometry, float]]
-
-
-class AssumedHole(NamedTuple):
-    """A hole that is assumed: the line that does and why, where it is entered to, its radius."""
-
-    line: int
-    place: tuple[float, float, float]
-    radius: float
-    why: str
+Solids = Iterator[tuple[BaseGeometry, float]]  # areas, each with the level of its top
+Approached = Sequence[tuple[Target, "Approach"]]
 
 
 class Approach(NamedTuple):
@@ -68,25 +61,33 @@ class Approach(NamedTuple):
     move: int | None
 
 
-def add_circles(material: Material, circles: Circles, approaches: Sequence[Approach]) -> None:
-    """Make solid what circles are cut in."""
-    faces: dict[float, float] = {}
-    for (_, target), approach in zip(circles, approaches):
-        face = target.wall.face
-        known = approach.came > approach.floor + SAME_LEVEL
-        if known and face not in faces and approach.floor < face - SAME_LEVEL:
-            below = approach.fed is not None and approach.floor < approach.fed - SAME_LEVEL
-            faces[face] = min(face, approach.fed) if below else face
-    starts = sorted(each.came if each.fed is None else each.fed for each in approaches)
-    for (_, target), approach in zip(circles, approaches):
-        wall, floor = target.wall, approach.floor + SAME_LEVEL
-        top = faces.get(wall.face, -math.inf)
-        top = top if floor < top else next((start for start in starts if start > floor), None)
-        if top is not None:
-            material.add(disc(wall.origin, wall.radius + (WALL if wall.inside else 0.0)), top)
+class AssumedHole(NamedTuple):
+    """A hole that is assumed: the line that does and why, the point that is entered, its area."""
+
+    line: int
+    place: tuple[float, float, float]
+    opening: Opening
+    why: str
 
 
-def approach_to(block: Block, moves: Sequence[Move]) -> Approach:
+class SurfaceKey(NamedTuple):
+    """A part's surface: a cylinder's radius and where it is along X, or 0 and a face's Z."""
+
+    radius: float
+    face: float
+
+
+def flat_circles(subject: Subject) -> list[tuple[Block, Target]]:
+    """Return the circles in the plane XY, each with its block."""
+    return [each for each in subject.commanded.circles if each[1].wall.plane == Z]
+
+
+def approached(subject: Subject) -> Approached:
+    """Return the circles in the plane XY, each with how the tool comes down to it."""
+    return [(target, _approach_to(block, subject.moves)) for block, target in flat_circles(subject)]
+
+
+def _approach_to(block: Block, moves: Sequence[Move]) -> Approach:
     """Return how the tool comes down to a circle, in its block or before it."""
     sideways = [
         i for i in range(block.at, block.end) if moves[i].kind != "rapid" and is_sideways(moves[i])
@@ -104,90 +105,100 @@ def approach_to(block: Block, moves: Sequence[Move]) -> Approach:
     return Approach(came, fed, floor, rapid)
 
 
-def holes_of_words(circles: Circles) -> Iterator[AssumedHole]:
-    """Yield the holes that words say there are: R of Yasnac."""
-    for _, target in circles:
+def solids_of_circles(circles: Approached) -> Iterator[Solid]:
+    """Yield what circles are cut in."""
+    tops: dict[float, float] = {}  # by the program's Z0
+    for target, (came, fed, floor, _) in circles:
+        face = target.wall.face
+        if face not in tops and floor < min(came, face) - SAME_LEVEL:
+            tops[face] = min(face, fed) if fed is not None and floor < fed - SAME_LEVEL else face
+    starts = sorted(each.came if each.fed is None else each.fed for _, each in circles)
+    for target, approach in circles:
+        wall, floor = target.wall, approach.floor + SAME_LEVEL
+        top = tops.get(wall.face, -math.inf)
+        top = top if floor < top else next((start for start in starts if start > floor), None)
+        if top is not None:
+            yield Solid(disc(wall.origin, wall.radius + (WALL if wall.inside else 0.0)), top)
+
+
+def solids_of_holes(subject: Subject) -> Iterator[Solid]:
+    """Yield what holes are drilled in: the face round them."""
+    for call in (each for each in subject.commanded.holes if not each.is_side):
+        face = call.zero[1]
+        for index in call.moves:
+            move = subject.moves[index]
+            if move.kind != "rapid" and move.end[Z] < min(face, move.start[Z]):
+                yield Solid(disc(subject.end(index), subject.cutter(index) + WALL), face)
+
+
+def assumed_holes(subject: Subject, circles: Approached, material: Material) -> list[AssumedHole]:
+    """Return the holes of words (R of Yasnac), and those that the program enters by rapid.
+
+    It does so if its first circle is entered by rapid.
+    """
+    holes = []
+    for target, _ in circles:
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
-            yield AssumedHole(target.line, (x, y, z), target.wall.bore, "the word R names it")
+            opening = Opening(disc((x, y), target.wall.bore), z)
+            holes.append(AssumedHole(target.line, (x, y, z), opening, "the word R names it"))
+    return holes + _holes_entered(subject, circles, material)
 
 
-def holes_entered(
-    circles: Circles,
-    approaches: Sequence[Approach],
-    moves: Sequence[Move],
-    material: Material,
-    radius: Callable[[int], float],
-) -> list[AssumedHole]:
-    """Return the holes that a program comes down into by rapid, if it does so at its first circle.
-
-    ``radius`` gives that of a move's cutter.
-    """
+def _holes_entered(subject: Subject, circles: Approached, material: Material) -> list[AssumedHole]:
     found: list[AssumedHole] = []
     positions: list[complex] = []
-    for (_, target), approach in zip(circles, approaches):
-        place, index = complex(*target.wall.origin[:2]), approach.move
-        if any(abs(place - other) < SAME_PLACE for other in positions):
+    for target, (came, _, _, index) in circles:
+        position = complex(*target.wall.origin[:2])
+        if any(abs(position - other) < SAME_PLACE for other in positions):
             continue
-        positions.append(place)
+        positions.append(position)
         if index is not None:
-            end = np.array([moves[index].end[:3]])
-            below = not found and end[0, Z] < min(target.wall.face, approach.came) - SAME_LEVEL
-            if below or material.touched(end, radius(index), 0):
-                x, y, z = map(float, end[0])
-                line, why = moves[index].block, "a rapid goes into it"
-                found.append(AssumedHole(line, (x, y, z), radius(index), why))
+            x, y, z = end = subject.moves[index].end[:3]
+            below = not found and z < min(target.wall.face, came) - SAME_LEVEL
+            if below or material.touched(np.array([end]), subject.cutter(index), 0):
+                opening = Opening(disc((x, y), subject.cutter(index)))
+                line, why = subject.moves[index].block, "a rapid goes into it"
+                found.append(AssumedHole(line, (x, y, z), opening, why))
         if not found:
             break
     return found
 
 
-class SurfaceKey(NamedTuple):
-    """A part's surface: a cylinder's radius and where it is along X, or 0 and a face's Z."""
-
-    radius: float
-    face: float
-
-
-def add_sections(
-    material: Material,
-    sections: Sequence[SectionContour],
-    moves: Sequence[Move],
-    radius: Radius,
-    surface: SurfaceKey | None = None,
-) -> None:
-    """Make solid what sections on a face are cut in, or those on one ``surface`` of a cylinder."""
-    keys = [surface_key(section, moves) for section in sections]
-    solids, axis = (_cylinder_solids, X) if surface else (_face_solids, Z)
-    for section, key, span in zip(sections, keys, _spans(sections, keys, moves, axis)):
-        if surface in (None, key):
-            for area, top in solids(section, moves, radius(section.at)):
-                material.add(area, top, *span)
+def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, list[Solid]]]:
+    """Return what sections on the face are cut in, and those on each surface of a cylinder."""
+    face: list[Solid] = []
+    cylinders: dict[SurfaceKey, list[Solid]] = {}
+    for section, key, until in (*_spans(subject, Z), *_spans(subject, X)):
+        solids, own = _face_solids, face
+        if key.radius:
+            solids, own = _cylinder_solids, cylinders.setdefault(key, [])
+        found = solids(section, subject.moves, subject.cutter(section.at))
+        own += [Solid(area, top, section.at, until) for area, top in found]
+    return face, cylinders
 
 
-def surface_key(section: SectionContour, moves: Sequence[Move]) -> SurfaceKey:
-    """Return the surface of a section: a cylinder's radius, and where it is along X or Z."""
-    face = plane_of(section, moves[section.at]).face
-    return SurfaceKey(round(section.surface, 6), round(face, 6))
-
-
-def _spans(
-    sections: Sequence[SectionContour], keys: Sequence[SurfaceKey], moves: Sequence[Move], axis: int
-) -> Iterator[tuple[int, float]]:
-    """Yield the moves for which the material of each section counts: from it on.
+def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, SurfaceKey, float]]:
+    """Yield the sections with a tool along an axis, and up to which move their material counts.
 
     It is another part, or another end of it, where a section has another key: up to the retract
     before that.
     """
-    for at, (section, key) in enumerate(zip(sections, keys)):
-        others = (i for i in range(at + 1, len(sections)) if keys[i] != key)
-        other = next(others, None)
-        if other is None:
-            yield section.at, math.inf
-            continue
-        last, begin = sections[other - 1].end, sections[other].at
-        up = (i for i in range(last - 1, begin) if moves[i].end[axis] > key.face - SAME_LEVEL)
-        yield section.at, next(up, begin)
+    moves = subject.moves
+    sections = [each for each in subject.commanded.sections if each.third == axis]
+    groups = [(key, list(own)) for key, own in groupby(sections, partial(_surface_key, moves))]
+    for (key, own), (_, following) in pairwise([*groups, (None, [])]):
+        until = math.inf
+        if following:
+            begin, top = following[0].at, key.face - SAME_LEVEL
+            up = (i for i in range(own[-1].end - 1, begin) if moves[i].end[axis] > top)
+            until = next(up, begin)
+        yield from ((section, key, until) for section in own)
+
+
+def _surface_key(moves: Sequence[Move], section: SectionContour) -> SurfaceKey:
+    face = plane_of(section, moves[section.at]).face
+    return SurfaceKey(round(section.surface, 6), round(face, 6))
 
 
 def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
@@ -212,7 +223,7 @@ def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) 
 def _cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
     """Yield what a section on a cylinder is cut in, with its top."""
     first = moves[section.at]
-    top = min(surface_key(section, moves).face, first.start[X])
+    top = min(_surface_key(moves, section).face, first.start[X])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     levels = [move.end[Z] for move in cut if move.end[X] < top - SAME_LEVEL]
     if levels:
