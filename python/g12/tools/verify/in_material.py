@@ -4,13 +4,13 @@
 A rapid is held to the material where the tool's position and the material there are known. Without
 a stock the part is known where the program cuts, and as far as a wall is assumed around that.
 
-Lengths are mm, areas mm². Places are those of the part: on a lathe's face they turn with C, on a
+Lengths are mm, areas mm². Points are those of the part: on a lathe's face they turn with C, on a
 cylinder they are those of its unrolled surface. Only cutters with a diameter count, on a lathe
 those that cut sections.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +29,6 @@ from g12.tools.verify.walls import beyond, flat_circles
 from g12.tools.verify.workpiece import PartView, Workpiece
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
-Place = tuple[float, float, float]
 
 
 def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
@@ -92,7 +91,7 @@ def _in_view(
     points = subject.points(index, view.part)
     touch = ends and material.touched(points if begins else points[-1:], cutter, index)
     if touch:
-        at, to = (_place_at(point) for point in touch.points[[0, -1]])
+        at, to = touch.points[[0, -1]].tolist()
         values = {
             "at": _words_of(subject, view, at),
             "to": _words_of(subject, view, to),
@@ -112,8 +111,10 @@ def _in_view(
         yield Finding("rapid-after-cuts", subject.line(index))
 
 
-def _words_of(subject: Subject, view: PartView, point: Place) -> tuple[tuple[str, float], ...]:
-    """Return a place of the part as words: X Y Z of a mill, X C Z of a lathe."""
+def _words_of(
+    subject: Subject, view: PartView, point: Sequence[float]
+) -> tuple[tuple[str, float], ...]:
+    """Return a point of the part as words: X Y Z of a mill, X C Z of a lathe."""
     if not view.part.turning:
         return tuple(zip("XYZ", point))
     commanded = subject.commanded
@@ -125,11 +126,6 @@ def _words_of(subject: Subject, view: PartView, point: Place) -> tuple[tuple[str
     else:
         x, z, c = math.hypot(*point[:2]), point[2], math.degrees(math.atan2(point[1], point[0]))
     return ("X", double * x), ("C", c), ("Z", z)
-
-
-def _place_at(point: np.ndarray) -> Place:
-    x, y, z = map(float, point)
-    return x, y, z
 
 
 # ---------------------------------------------------------------- what is assumed

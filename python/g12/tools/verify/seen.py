@@ -15,7 +15,7 @@ from g12.tools.verify.workpiece import Workpiece
 
 
 class Seen(NamedTuple):
-    """The findings, the stock if one is given, and lines of cuts whose spindle stands.
+    """The findings, the stock if one is given, and lines of cuts whose spindle does not turn.
 
     ``surface`` is the radius of the cylinder that the program cuts on, 0 without one. ``z0`` is
     how high the program's Z0 is where it first cuts, as far as that is known.
@@ -34,7 +34,7 @@ class Seen(NamedTuple):
 
     @property
     def uncut(self) -> list[Finding]:
-        """What stands in pockets: its ``shape`` seen along Z, and the ``floor`` below it."""
+        """The uncut material in pockets: its ``shape`` along Z, and the ``floor`` below it."""
         return [each for each in self.findings if "floor" in each.values]
 
     @property

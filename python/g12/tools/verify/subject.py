@@ -45,7 +45,7 @@ class Subject:
     commanded: Commanded = NOTHING
     own: range | None = None
     drawn: tuple[Track, Followed | None] | None = None
-    _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: all of it is looked at
+    _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: each has all of it
 
     @property
     def moves(self) -> list[Move]:

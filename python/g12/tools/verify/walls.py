@@ -13,7 +13,7 @@ grooves are cut, and a wall farther along Z, but not in front of the program's Z
 there. All of it is solid below the program's Z0 (the surface), or below the level from which a
 section is fed down to where that is lower.
 
-Lengths are mm in machine coordinates; of sections places are those of the face or of the unrolled
+Lengths are mm in machine coordinates; of sections points are those of the face or of the unrolled
 surface.
 """
 

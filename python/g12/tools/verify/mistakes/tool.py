@@ -66,7 +66,7 @@ def judge_tool_length(
     lengths: Mapping[int, float],
     events: Sequence[Event],
 ) -> Iterator[Finding]:
-    """Yield where a cut is made with another length than the loaded tool's; ``lengths`` in mm."""
+    """Yield the cuts that are made with another length than the loaded tool's (``lengths``, mm)."""
     compensated = any(abs(move.tool_offset[Z]) > SIZE for move in moves)
     reported: set[tuple[int, float]] = set()
     for cut in cuts:

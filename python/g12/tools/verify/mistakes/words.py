@@ -19,7 +19,7 @@ STRAIGHT_BACK = -0.999999  # cosine of the angle between the two directions, at 
 
 
 def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
-    """Yield the first G28 and the first G30 of a lathe of which the var file has no place.
+    """Yield the first G28 and the first G30 of a lathe whose position the var file does not have.
 
     It is a rapid to machine zero, not to a tool change.
     """
@@ -46,7 +46,7 @@ def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding
 def judge_unrun(texts: Sequence[Text], codes: Codes, run: Collection[int]) -> Iterator[Finding]:
     """Yield one note of the cycles, sections and calls that are not in a program's ``run`` lines.
 
-    It ends before them, goes another way, or deletes their blocks.
+    It ends before them, jumps over them, or deletes their blocks.
     """
     unrun = {
         text.number: name
