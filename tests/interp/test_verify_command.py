@@ -216,6 +216,16 @@ def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
         assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says
 
 
+def test_plot_says_the_notes_of_verify(written, tmp_path, capsys):
+    text = HEAD + "G13 I7 K20 Q6 Z-3 D4\nG0 Z1\nX20\nG13 I7 K20 Q6 Z-3 D4\nM2\n"
+    assert main(["plot", written(text), "--ini", MILL, "-o", str(tmp_path / "x.svg")]) == 0
+    plotted = capsys.readouterr().out.splitlines()
+    main(["verify", written(text), "--ini", MILL])
+    notes = capsys.readouterr().out.partition("\nnotes\n")[2].partition("\n\n")[0].splitlines()
+    assert len(notes) == 3
+    assert [f"note, {note.strip()}" for note in notes] == plotted[1:]
+
+
 @pytest.mark.parametrize(
     "cut", [["G12.1", "G1 X40 C3", "G13.1"], ["G7.1 C20", "G1 X30", "C90", "X50", "G7.1 C0"]]
 )
@@ -234,7 +244,7 @@ def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, cap
     assert main(["plot", written(GOOD), "--ini", MILL, "-o", str(path), *extra]) == 0
     assert path.stat().st_size > 5000
     said = capsys.readouterr()
-    assert said.out == f"{path} written\n"
+    assert said.out.splitlines()[0] == f"{path} written"
     assert said.err == ""
 
 

@@ -37,9 +37,10 @@ from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import Tracer, trace
 from g12.tools.progress import working
+from g12.tools.units import Unit
 from g12.tools.verify.commanded import Commanded, commanded_by
 from g12.tools.verify.proof import prove_subject
-from g12.tools.verify.result.sentences import NOTES
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.seen import seen_of_proof
 from g12.tools.verify.subject import subject_of
 
@@ -86,17 +87,19 @@ def main(arguments: list[str]) -> int:
 
 def texts_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
     """Return the texts of the picture's red signs, notes and messages, with the user's lines."""
-    warnings = (
-        f"in red, line {opened.source_line(line)}: {text}"
-        for line, text in scene.seen.warnings(scene.unit)
-    )
-    notes = (
-        f"note, line {opened.source_line(line)}: {NOTES['spindle-stands']}"
-        for line in scene.seen.still[:1]
-    )
+    findings = (f"in red, {said(each, scene.unit, opened)}" for each in scene.seen.findings)
+    notes = (f"note, {said(each, scene.unit, opened)}" for each in scene.seen.notes)
     x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
     trace = trace_in_source(scene.subject.trace, opened)
-    return [*dict.fromkeys(warnings), *x0, *notes, *message_lines(trace.messages)]
+    return [*dict.fromkeys(findings), *x0, *dict.fromkeys(notes), *message_lines(trace.messages)]
+
+
+def said(finding: Finding, unit: Unit, opened: OpenedProgram) -> str:
+    """Return the line and the sentence of a finding, with the user's lines."""
+    text = finding.text(unit)
+    if finding.file:
+        return f"line {finding.line} of {finding.file}: {text}"
+    return f"line {opened.source_line(finding.line)}: {opened.in_source(text)}"
 
 
 def words_of(program: Path, ini: Ini, options: argparse.Namespace, found: Trace) -> Commanded:

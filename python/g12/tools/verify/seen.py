@@ -4,18 +4,16 @@
 Lengths are millimetres in machine coordinates.
 """
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 from g12.tools.path.part import Z
-from g12.tools.units import MM, Unit
 from g12.tools.verify.proof import Proof
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.workpiece import Workpiece
 
 
 class Seen(NamedTuple):
-    """The findings, the stock if one is given, and lines of cuts whose spindle does not turn.
+    """The findings, the stock if one is given, and the notes, which no picture shows.
 
     ``surface`` is the radius of the cylinder that the program cuts on, 0 without one. ``z0`` is
     how high the program's Z0 is where it first cuts, as far as that is known.
@@ -23,7 +21,7 @@ class Seen(NamedTuple):
 
     findings: tuple[Finding, ...] = ()
     stock: Workpiece | None = None
-    still: tuple[int, ...] = ()
+    notes: tuple[Finding, ...] = ()
     surface: float = 0.0
     z0: float = 0.0
 
@@ -43,11 +41,6 @@ class Seen(NamedTuple):
         drawn = [*map(id, self.rapids), *map(id, self.uncut)]
         return [each for each in self.findings if each.place is not None and id(each) not in drawn]
 
-    def warnings(self, unit: Unit = MM) -> Iterator[tuple[int, str]]:
-        """Yield what there is to warn of: the line, and a sentence."""
-        for each in self.findings:
-            yield each.line, each.text(unit)
-
 
 def seen_of_proof(proof: Proof) -> Seen:
     """Return what a picture of a program that was measured shows beside the cuts.
@@ -58,7 +51,7 @@ def seen_of_proof(proof: Proof) -> Seen:
     return Seen(
         tuple(each for each in proof.judged if each.is_finding),
         proof.given,
-        tuple(each.line for each in proof.judged if each.code == "spindle-stands"),
+        tuple(each for each in proof.judged if each.is_note),
         radii[0] if radii and all(radii) else 0.0,
         float(proof.subject.zero[Z]),
     )
