@@ -316,6 +316,12 @@ def test_with_a_work_offset_no_z_is_known_before_the_first_one(system, change, c
     assert codes("any mill", blocks, parameters=offsets) == ""
 
 
+def test_cuts_are_listed_as_they_are_run(proof_of):
+    blocks = f"G0 Z10|{ON_FACE}|G0 X60 Z5|{POLYGON}|G0 Z2 C0|{FLAT}|G0 Z10|{AROUND}"
+    lines = as_text(proof_of("lathe", blocks), MM).splitlines()[:4]
+    assert [line.split()[1] for line in lines] == ["6", "8", "10", "19"]
+
+
 MOVED = "positions below are the machine's; the program's zero is at machine"
 AT_X10 = "X0, the spindle's axis, is at machine X10\n"
 SAID = [  # a program, and a part of its report

@@ -207,12 +207,17 @@ def _zero_text(proof: Proof, unit: Unit) -> str:
 
 def _paragraphs_of(proof: Proof, unit: Unit) -> Iterator[str]:
     """Yield every measure of each pocket, shape and section, and of the stock."""
-    for kind in PRINTED:
-        for cut in getattr(proof.cuts, kind):
-            yield paragraph_of(kind, cut, proof, unit)
+    for kind, cut in _in_order(proof):
+        yield paragraph_of(kind, cut, proof, unit)
     if proof.given:
         values = _stock_values(proof.given)
         yield paragraph(f"stock: {values['text']}", rows_of(STOCK, values, unit))
+
+
+def _in_order(proof: Proof) -> list[tuple[str, MeasuredCut]]:
+    """Return each cut with its kind, as the program runs them."""
+    cuts = ((kind, cut) for kind in PRINTED for cut in getattr(proof.cuts, kind))
+    return sorted(cuts, key=lambda pair: pair[1].own.start)
 
 
 def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
@@ -304,19 +309,18 @@ def _cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
     The section in a shape's sub is measured with its shape.
     """
     of_shapes = {each.own for shape in proof.cuts.shapes for each in _sections_of(shape, proof)}
-    for kind in PRINTED:
+    for kind, cut in _in_order(proof):
         allowed = unit.fine(_allowed_of(kind, proof))
-        for cut in getattr(proof.cuts, kind):
-            if kind == "sections" and cut.own in of_shapes:
-                continue
-            what = in_words(FORMS[kind][0], {**cut.values, **_what_words(kind, cut)}, unit)
-            inside = _sections_of(cut, proof) if kind == "shapes" else []
-            worst = max(each.deviation for each in (cut, *inside))
-            off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
-            off = "not judged" if math.isnan(worst) else off
-            seconds = [each.values.get("seconds") for each in inside or [cut]]
-            time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
-            yield _line_text(proof, cut.line, cut.file, cut.last), _code_text(cut), what, off, time
+        if kind == "sections" and cut.own in of_shapes:
+            continue
+        what = in_words(FORMS[kind][0], {**cut.values, **_what_words(kind, cut)}, unit)
+        inside = _sections_of(cut, proof) if kind == "shapes" else []
+        worst = max(each.deviation for each in (cut, *inside))
+        off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
+        off = "not judged" if math.isnan(worst) else off
+        seconds = [each.values.get("seconds") for each in inside or [cut]]
+        time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
+        yield _line_text(proof, cut.line, cut.file, cut.last), _code_text(cut), what, off, time
 
 
 def _sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
