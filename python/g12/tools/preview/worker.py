@@ -431,14 +431,12 @@ class Canon:
     def _start(self, tip: tuple) -> tuple:
         """Return the start of a move to ``tip``: a G43 before it moves the tip, not the axes.
 
-        An axis that the move does not command starts where it ends. Any other starts where the last
-        move ended.
+        An axis that the move does not command starts exactly where it ends.
         """
         shift, self.shift = self.shift, NO_OFFSET
-        axes = zip(self.position, shift, self._resolved(tip))
-        return tuple(
-            end if abs(before + by - end) < CART_FUZZ else before for before, by, end in axes
-        )
+        moved = map(float.__add__, self.position, shift)
+        pairs = zip(moved, self._resolved(tip))
+        return tuple(end if abs(start - end) < CART_FUZZ else start for start, end in pairs)
 
     def _read_position_after_tool_change(self) -> None:
         """Shift the tip after a block with M6, when the interpreter queries its position.
