@@ -123,6 +123,17 @@ CASES = [
      "length-deeper 11"),
     ("mill", f"G49|G0 Z1|{LOW}", "length-not-used 8"),
     ("any mill", f"G10 L1 P4 Z20 R5|T4 M6|S900 M3|G43|G0 Z1|{LOW}", ""),
+    ("any mill", f"T4 M6|S900 M3|G43|G43.2 H1|G0 Z1|{LOW}", "length-commanded 7"),
+    ("any mill", f"T4 M6|S900 M3|G43.1 Z24|G0 Z1|{LOW}", "length-commanded 6"),
+    # a length that changes before a cycle, with no move between
+    ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43|G13 I9 Z-2 D4|G0 Z9", ""),
+    ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43.1 Z30|G13 I9 Z-2 D4|G0 Z9", ""),
+    ("any mill", "T4 M6|S900 M3|G43|G0 X0 Y0 Z50|G43.2 H3|G13 I9 Z-2 D4", "length-commanded 7"),
+    ("any mill", "T4 M6|S900 M3|G43|G0 X0 Y0 Z5|G49|G13 I9 Z-2 D4|G0 Z9", "length-not-used 7"),
+    ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G91 G43|G13 I9 Z-22 D4|G0 Z9", ""),
+    # what the preview executes otherwise than a machine may
+    ("mill", f"{LOW}|/X40|G0 Z1|X40|{LOW}|/G0 Z9", "block-delete 7"),
+    ("mill", f"M61 Q3|{LOW}", "tool-unread 6"),
     # feeds, return levels, C
     ("mill", f"G95 F60|{LOW}|G94", "feed-per-revolution 7"),
     ("mill", f"F.2|{LOW}", "feed-per-minute 7"),

@@ -38,6 +38,7 @@ from g12.tools.verify.mistakes.tool import (
 from g12.tools.verify.mistakes.travel import judge_travel
 from g12.tools.verify.mistakes.words import (
     judge_home,
+    judge_preview,
     judge_return_levels,
     judge_reversals,
     judge_unrun,
@@ -218,14 +219,15 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     """Yield what the rules about words find; ``known`` are the moves of cuts."""
     trace, ini, moves = subject.trace, subject.ini, subject.moves
     cuts = [*found.pockets, *found.sections, *found.holes]
-    yield from judge_tool_length(cuts, moves, trace.lengths, trace.events)
+    texts = read_lines(subject.program)
+    yield from judge_tool_length(cuts, moves, trace.lengths, trace.events, texts)
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
     yield from judge_reversals([each.commanded for each in found.sections])
+    yield from judge_preview(texts)
     yield from not_judged(moves, known)
     if part_of(ini).turning:
-        texts = read_lines(subject.program)
         yield from judge_native_c(moves, known, subject.path)
         yield from judge_return_levels(texts, Codes(ini))
         yield from judge_home(texts, ini)

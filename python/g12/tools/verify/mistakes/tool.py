@@ -13,12 +13,15 @@ from itertools import groupby
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X, Z
 from g12.tools.path.track import Limits, Track
+from g12.tools.preview.executed_blocks import Text
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL, SIZE
 
 USER_CODE = re.compile(r"M1\d\d P.*")  # may turn a spindle of its own
+COMMANDED = (43.1, 43.2)  # a length, or an addition to it, that the program chooses
+LENGTHS = (*COMMANDED, 43.0, 49.0)  # LinuxCNC reports all but G49 as G43
 SPEED = re.compile(r"S[\d.]+")
 MOST_PER_TURN = 3.0  # mm per revolution: above it the number was meant per minute
 LEAST_PER_MINUTE = 1.0  # mm/min: below it the number was meant per revolution
@@ -65,6 +68,7 @@ def judge_tool_length(
     moves: Sequence[Move],
     lengths: Mapping[int, float],
     events: Sequence[Event],
+    texts: Sequence[Text],
 ) -> Iterator[Finding]:
     """Yield the cuts that are made with another length than the loaded tool's (``lengths``, mm)."""
     compensated = any(abs(move.tool_offset[Z]) > SIZE for move in moves)
@@ -75,11 +79,15 @@ def judge_tool_length(
         if abs(deeper) < SIZE or (first.tool, deeper) in reported:
             continue
         reported.add((first.tool, deeper))
-        texts = (event.text for event in reversed(events) if event.at <= at)
-        last = next((text for text in texts if text.startswith(("tool ", "G43", "G49"))), "")
+        changes = (event.text for event in reversed(events) if event.at <= at)
+        last = next((text for text in changes if text.startswith(("tool ", "G43", "G49"))), "")
         code = "length-deeper" if deeper > 0.0 else "length-higher"
         code = code if compensated and last != "G49" else "length-not-used"
+        codes = [each for text in texts if text.number < cut.line for each in text.codes]
+        written = next((each for each in reversed(codes) if each in LENGTHS), 0.0)
+        code = "length-commanded" if written in COMMANDED else code
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
+        values |= {"code": f"G{written:g}", "where": "deeper" if deeper > 0.0 else "higher"}
         yield Finding(code, cut.line, values, file=cut.file)
 
 

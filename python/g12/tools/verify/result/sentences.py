@@ -126,6 +126,10 @@ NOTES = {
         "no G43: the tool table's length of T{tool}, {off:fine}, is not used; "
         "right only where Z was touched off with this tool"
     ),
+    "length-commanded": (
+        "the tool length in force, {length:mm} by {code}, is not that of T{tool} in the table: "
+        "it cuts {off:fine} {where} than with G43"
+    ),
     "feed-per-revolution": "F is {feed:mm} per revolution here (G95): was it meant per minute?",
     "feed-per-minute": "F is {feed:feed} here (G94): was it meant per revolution?",
     "feed-cut-down": "F asks for {feed:feed}, the machine's limits allow {most:feed}",
@@ -189,6 +193,12 @@ NOT_JUDGED = {
     "tool-spindle": (
         "whether the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; "
         "look for the code that starts it on your machine"
+    ),
+    "block-delete": (
+        "the program with block delete off: a preview skips what begins with /: line {lines}"
+    ),
+    "tool-unread": (
+        "the tool of M61, which LinuxCNC's preview does not read: line {lines}; use T and M6"
     ),
     "plain-moves": (
         "feed moves outside of cycles and sections: {count} of the program's lines, "
