@@ -32,6 +32,9 @@ LAUNCH = (
     "import sys; sys.path[0] = {folder!r}; import worker; sys.path.pop(0); "
     "worker.serve({descriptor})"
 )
+# LinuxCNC prints it where a REMAP line needs the machine's Python, which did not load. What its
+# interpreter does after it is undefined: it dies, or goes on.
+PYTHON_REQUIRED = "Python plugin required for"
 NO_BYTECODE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
 ProgramPath = str | os.PathLike
@@ -145,9 +148,10 @@ class Tracer:
         self._connection = Connection(here.detach())
         self._connection.send(self._machine)
         answer = self._answer(60.0)
-        if answer["error"]:
+        error, _ = answer["error"] or ("", 0)
+        if error or PYTHON_REQUIRED in answer["printed"]:
             self.close()
-            raise TraceFailure(f"{self.ini.path}: {answer['printed']}{answer['error'][0]}")
+            raise TraceFailure(f"{self.ini.path}: {answer['printed']}{error}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
         self.diameters, self.lengths = sizes_in_mm(answer["tool_sizes"], self.ini.mm)
 
