@@ -237,6 +237,8 @@ CASES = [
     ("helix", "G13 X30 I10 K20 Q6 Z-3 D4|G0 Z1|G12 X90 Y9 I10 K20 Q6 Z-3|G0 Z1", ""),
     ("mitsubishi", "G0 X0 Y0 Z5|Z-5|G12 I30 D10|G0 X100|G12 I30 D10|G0 Z5",
      "bored-assumed 5, rapid-through 7, rapid-beside 7"),
+    ("mill", f"o7 sub|{P}|G0 X60|G0 Z1|o7 endsub|o7 call",
+     "rapid-through 8, rapid-beside 8"),
     # feeds and path control before, in and behind a section
     ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94|G13.1|G0 Z5", "above-zero 6"),
     ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94 F300|G95|G13.1|G0 Z5", "above-zero 6"),

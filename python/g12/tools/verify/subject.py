@@ -17,11 +17,13 @@ from g12.tools.path.samples import Samples
 from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
+from g12.tools.preview.executed_blocks import read_lines
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.compare.plane import x0_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import BlockInMm
+from g12.tools.verify.reading.executed_subs import called_files
 from g12.tools.verify.sections.view import SectionView, view_of
 
 SAME_X0 = 1e-6  # mm
@@ -105,8 +107,18 @@ class Subject:
         A cycle's own lines are in its subroutine, those of a section may be in a sub's own file.
         """
         move, sections = self.moves[index], self.commanded.sections
+        cycles = ((block, target) for block, target in self.commanded.circles if not target.file)
+        cycle = next((each.line for block, each in cycles if block.at <= index < block.end), 0)
         own = (each for each in sections if each.at <= index < each.end and not each.file)
-        return move.line if any(move.remap == each.code for each in own) else move.block
+        if cycle or move.line == move.block:
+            return cycle or move.line
+        is_own = any(move.remap == each.code for each in own) if move.remap else self._is_one_file
+        return move.line if is_own else move.block
+
+    @cached_property
+    def _is_one_file(self) -> bool:
+        """Whether every sub that the program calls is in the program itself."""
+        return not called_files(read_lines(self.program), self.ini)
 
     def cutter(self, index: int) -> float:
         """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""

@@ -158,7 +158,7 @@ def _holes_entered(subject: Subject, circles: Approached, material: Material) ->
             below = not found and z < min(target.wall.face, came) - SAME_LEVEL
             if below or material.touched(np.array([end]), subject.cutter(index), 0):
                 opening = Opening(disc((x, y), subject.cutter(index)))
-                line, why = subject.moves[index].block, "a rapid goes into it"
+                line, why = subject.line(index), "a rapid goes into it"
                 found.append(AssumedHole(line, (x, y, z), opening, why))
         if not found:
             break
