@@ -157,6 +157,8 @@ CASES = [
     # rapids
     ("mill", f"{CLEARED}|G0 Z1|X40|Z-2|Z1", "rapid-beside 9"),
     ("mill", f"{CLEARED}|G0 Z-2|Z1", ""),
+    ("mill", f"X-100|Z-1|X0|{LOW}|G0 Z1", "rapid-beside 7"),
+    ("mill", f"G91 X30 Z-2|G90|{LOW}|G0 Z1", "rapid-beside 6"),
     ("mill", f"{CLEARED}|G0 Z-2|G53 G0 X90 Z0", "rapid-by-machine 8"),
     ("mill", f"{CLEARED}|G0 Z1|G53 G0 X90 Z0", ""),
     ("any mill", f"T4 M6|S900 M3|G43|G0 X0 Y0|Z1|{LOW}|G53 G0 Z0|T3 M6|G43|G0 X60|Z1",

@@ -217,9 +217,13 @@ class Material:
         levels = (-math.inf, level + SAME_LEVEL)
         return any(self._cuts.near(each, levels, before) for each, _ in self._turned(region))
 
-    def covers(self, points: np.ndarray, radius: float) -> bool:
-        """Tell whether all that a cutter sweeps below the top is solid or cut at some move."""
-        swept_area = swept([each.line for each in self._meeting(points)], radius)
+    def covers(self, points: np.ndarray, radius: float, below: float = -math.inf) -> bool:
+        """Tell whether all that a cutter sweeps below the top is solid or cut at some move.
+
+        The top may be higher than that of the material: ``below`` where there may be more.
+        """
+        lines = [each.line for each in _below(max(below, self.top), points)]
+        swept_area = swept(lines, radius)
         rest = [portion for portion, _ in self._turned(swept_area)]
         for areas in (self._solids, self._cuts):
             rest = [each.difference(unary_union(areas.near(each, ANY, None))) for each in rest]
@@ -233,7 +237,7 @@ class Material:
         With ``perhaps`` it may go through it.
         """
         found, where = [], []
-        for portion in self._meeting(points) if radius > ALLOWED else ():
+        for portion in _below(self.top, points) if radius > ALLOWED else ():
             region = swept([portion.line], radius - ALLOWED)
             area = self.standing(region, portion.high, before, perhaps)
             if area.area > LEAST_AREA:
@@ -241,10 +245,11 @@ class Material:
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
 
-    def _meeting(self, points: np.ndarray) -> Iterator[Portion]:
-        """Yield the portions of a toolpath (n, 3) that lie below the top."""
-        if points[:, 2].min() <= self.top - SAME_LEVEL:
-            yield from (p for p in _portions(_going(points)) if p.high <= self.top - SAME_LEVEL)
+
+def _below(top: float, points: np.ndarray) -> Iterator[Portion]:
+    """Yield the portions of a toolpath (n, 3) that lie below a top."""
+    if points[:, 2].min() <= top - SAME_LEVEL:
+        yield from (p for p in _portions(_going(points)) if p.high <= top - SAME_LEVEL)
 
 
 def _goes_along_z(points: np.ndarray) -> bool:

@@ -105,7 +105,8 @@ def _in_view(
         if points[0, Z] < material.top - SAME_LEVEL:
             yield Finding("rapid-by-machine", subject.line(index))
     elif begins and not (workpiece.stock and workpiece.stock.is_whole):
-        if cutter and not material.covers(points, cutter):
+        below = -math.inf if view.surface else workpiece.z0
+        if cutter and not material.covers(points, cutter, below):
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))

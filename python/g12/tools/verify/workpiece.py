@@ -8,7 +8,7 @@ every cylinder whose unrolled surface is cut. Lengths are mm in machine coordina
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from itertools import groupby
 from typing import NamedTuple
 
@@ -74,6 +74,12 @@ class Workpiece:
     def material(self) -> Material:
         """The material in the plane XY, or of a lathe's face."""
         return self.views[0].material
+
+    @cached_property
+    def z0(self) -> float:
+        """The highest Z0 of the circles, below which there may be material."""
+        walls = [target.wall for _, target in flat_circles(self.subject)]
+        return max((wall.face for wall in walls), default=-math.inf)
 
     @property
     def bottom(self) -> float | None:

@@ -177,7 +177,7 @@ NOT_JUDGED = {
         "where the tool comes from is not known"
     ),
     "rapid-beside": (
-        "rapids below the part's top, beside what is cut: line {lines}; "
+        "rapids below the part's top or Z0, beside what is cut: line {lines}; "
         "--stock gives what stands there"
     ),
     "rapid-after-cuts": (
