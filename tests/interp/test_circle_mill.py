@@ -27,7 +27,7 @@ def cut(tracer, *blocks, **options):
 
 
 def event_of(traced):
-    """Return the moves behind the approach of BEFORE, in inches."""
+    """Return the moves after the approach of BEFORE, in inches."""
     return cut_geometry.moving(traced.moves)[1:]
 
 

@@ -152,7 +152,7 @@ POCKETS = "G20 G90 G0 X0 Y0\nT2 M6\nG0 Z.1\nG12 I.4 Z-.2 D2 F20\nG0 Z.1\nG12 I.1
 
 @pytest.fixture
 def filtered(ini, tmp_path, capsys):
-    """Return a function: output and errors of a command on a program behind any filter."""
+    """Return a function: output and errors of a command on a program after any filter."""
 
     def tell(name, program, command, *words):
         part = ini.parent / "parts" / "mill_inch.inc"

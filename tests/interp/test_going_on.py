@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`rs274 -n 0` goes on after an error: a refused block is followed by the next line, once.
 
-It names the INI behind Python's start: a section finds the machine's axes there all the same.
+It names the INI after Python's start: a section finds the machine's axes there all the same.
 """
 
 import os
@@ -76,7 +76,7 @@ SECTIONS = [
 @pytest.mark.parametrize(("section", "message"), SECTIONS)
 @pytest.mark.parametrize("called", [False, True])
 def test_a_section(tmp_path, section, message, called):
-    """The line behind the one that was read last: a refused section is not moved in its middle."""
+    """The line after the one that was read last: a refused section is not moved in its middle."""
     before = ["o<own> call"] if called else ["G1 X30"]
     program = [LATHE, "G0 X20 Z5 C0", *SUB, "G12.1", "G13.1", *before, "G0 X1", *section, "G0 X2"]
     passed, refused = rapids(tmp_path, "lathe_mm", [line.replace(" Y30", "") for line in program])

@@ -105,7 +105,7 @@ CUT = {  # what stands in a section, and where its blocks end; #1 is 1, and what
     "expressions": (["G1 X[10 + 2] C[sin[30] * 4]", "X-[3]C-#7", "Xatan[1]/[1] C+1"],
                     [(12, 2), (-3, -7), (45, 1)], ["#7=7"]),
     "no blanks": (["g01x14c3", "n7x 1 0 c-2.", "G1X+8C.5"], [(14, 3), (10, -2), (8, 0.5)]),
-    "assignments act behind": (["#1=8 G1 X#1 #<a>=2", "X#1 C#<a>"], [(12, 0), (8, 2)],
+    "assignments act after": (["#1=8 G1 X#1 #<a>=2", "X#1 C#<a>"], [(12, 0), (8, 2)],
                                ["#1=12", "#<a>=0"]),
     "assignments beside U": (["#1=8 G1 U[#1-16]", "X#1 Y[2*#1]"], [(16, 0), (8, 16)], ["#1=12"]),
     "U and H": (["G1 U-8 H3", "U2", "H-1.5"], [(12, 3), (14, 3), (14, 1.5)]),
@@ -286,7 +286,7 @@ PYTHON = "py,this.params[7] = this.current_x"
     [(f"({PYTHON})", 15), (f";{PYTHON}", 15), (f" ;{PYTHON}", 0), (f"G4 P0 ;{PYTHON}", 0)],
 )
 def test_python_comments_act_in_their_place(lathe, line, found):
-    """LinuxCNC runs one behind a semicolon if the line begins with it."""
+    """LinuxCNC runs one after a semicolon if the line begins with it."""
     for program in (
         [FIRST, "#7=0", "G1 X15 F100", line, "G1 X9", "(DEBUG,#7)", "M2"],
         section("G1 X15", line, "G1 X9", before=["#7=0"], after=["(DEBUG,#7)"]),

@@ -53,9 +53,9 @@ def call(shape, **entries):
     return f"o<{shape}> call {' '.join(f'[{value}]' for value in values)}"
 
 
-def program(*calls, tool=3, first=FIRST, start="G0 X40 Z5 C0", feed="F100", behind=()):
+def program(*calls, tool=3, first=FIRST, start="G0 X40 Z5 C0", feed="F100", after=()):
     """Return a program of calls, the first of them in line 5."""
-    return [first, f"T{tool} M6", start, feed, *calls, *behind, "M2"]
+    return [first, f"T{tool} M6", start, feed, *calls, *after, "M2"]
 
 
 def trace(lathe, shape, tool=3, **entries):
@@ -167,7 +167,7 @@ def test_every_mode_is_what_it_was(lathe, shape):
         start="G0 X80 Z5 C0",
         feed="G91 F100",
     )
-    traced = lathe.trace_text(program(call(shape), behind=("X2", "G1 X2"), **modes))
+    traced = lathe.trace_text(program(call(shape), after=("X2", "G1 X2"), **modes))
     assert traced.error is None, traced.error
     plain = lathe.trace_text(program(**modes))
     *_, rapid, fed = traced.moves

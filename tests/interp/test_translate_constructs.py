@@ -131,7 +131,7 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G1 U-5.\nW-2.\nX40. W-1.\nU2. Z0", "G1 X45\nZ3\nX40 Z2\nX42 Z0"),
     ("fanuc-lathe", "G3 U10. W-5. R5.\nG1", "G3 X60 Z0 R5\nG1"),
     ("fanuc-lathe", "G1 H10.", "G1 C10"),
-    # a slide and C at a feed: the control's own time, feed and feed mode again behind it
+    # a slide and C at a feed: the control's own time, feed and feed mode again after it
     ("fanuc-lathe", "G98 G1 F100.\nH3. Z1.", "G94 G1 F100\nG93 C3 Z1 F20\nG94 F100"),
     ("fanuc-lathe", "G98 G1 F100.\nX56. Z9. H12.\nG0 C0\nG1 Z5.",
      "G94 G1 F100\nG93 X56 Z9 C12 F[100/13]\nG94 F100 G0 C0\nG1 Z5"),

@@ -83,7 +83,7 @@ def test_the_face_in_pecks_with_modal_blocks(tracer):
     assert [m.feed for m in found.moves if m.kind == "feed"] == near([120] * 42)
     assert found.moves[-1].kind == "rapid" and found.moves[-1].end[X] == near(25)
     stops = sum(event.text.startswith("dwell") for event in found.events)
-    assert stops == 1 + 3 * 7  # before, above each hole, in it, and behind it
+    assert stops == 1 + 3 * 7  # before, above each hole, in it, and after it
 
 
 def test_the_recorded_program_is_what_translate_makes():

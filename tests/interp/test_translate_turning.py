@@ -104,7 +104,7 @@ def check_roughing(part, moves, depth, start):
         elif number <= last:
             assert (thin - depths <= depth + SLIP).all(), ("too deep a cut", move)
         np.minimum.at(uncut, cells, depths)
-    assert (uncut <= part.high + 0.03).all(), "left behind the last cut"
+    assert (uncut <= part.high + 0.03).all(), "left after the last cut"
     return before
 
 

@@ -241,7 +241,7 @@ CASES = [
      "bored-assumed 5, rapid-through 7, rapid-beside 7"),
     ("mill", f"o7 sub|{P}|G0 X60|G0 Z1|o7 endsub|o7 call",
      "rapid-through 8, rapid-beside 8"),
-    # feeds and path control before, in and behind a section
+    # feeds and path control before, in and after a section
     ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94|G13.1|G0 Z5", "above-zero 6"),
     ("radii", "G0 X30|G12.1|G95 F.5|G1 X20 C5|G94 F300|G95|G13.1|G0 Z5", "above-zero 6"),
     ("radii", "G0 X30|G61|G12.1|G1 X20 C5 F500|G13.1|G0 X30 C0|G64|G12.1|G1 X15 C-5|X9|G13.1|G0 Z5",

@@ -12,7 +12,7 @@ from support.sim_machines import PROGRAMS, SIM
 
 LATHES = {unit: SIM / f"lathe_{unit}_headless.ini" for unit in ("mm", "inch")}
 PROGRAM = str(PROGRAMS / "polar" / "shapes.ngc")
-FORMS = {  # the entries of a form behind its first six
+FORMS = {  # the entries of a form after its first six
     "form_polygon_mm": [6, 20, 3, 26, 1, 2, 0.3, 600, 0, 15],
     "form_slot_inch": [0.5, 1, 0.1, 0, 0.01, 20, 10, 30],
     "form_face_pocket_mm": [8, 3, 12, 2, 0, 0, 600, 0],

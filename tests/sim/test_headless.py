@@ -20,7 +20,7 @@ from support.sim_machines import ROOT, SIM, trace_text, with_package
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
 MARK = ";py,from interpreter import this; this.sequence_number = 1\n"
-PATIENCE = 15.0  # s that a container gives LinuxCNC to end by itself, and again behind SIGTERM
+PATIENCE = 15.0  # s that a container gives LinuxCNC to end by itself, and again after SIGTERM
 
 
 running = kept_machine("mill_mm")

@@ -239,7 +239,7 @@ def test_single_steps_on_the_face(lathe):
         status = lathe.stat()
         stood.append(complex(status.position[X], status.position[Y]))
         heights.append(status.position[2])
-        if 2 in heights and heights[-1] == 5:  # behind G13.1, no longer where it starts from
+        if 2 in heights and heights[-1] == 5:  # after G13.1, no longer where it starts from
             break
     assert np.abs(np.array(stood)[:, None] - CORNERS).min(axis=0).max() <= 0.001
     assert lathe.errors() == []

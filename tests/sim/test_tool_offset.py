@@ -79,6 +79,6 @@ def test_in_mdi_the_face_is_where_the_tool_is(tmp_path):
         lathe.mdi("G1 X0 Y9")
         points = on_the_part(lathe.samples(), 8.0)
         drawn = [Straight(30 + 8j, 20 + 20j), Straight(20 + 20j, 9j)]
-        assert distance(points, drawn).max() <= 0.04  # C may lag by 0.1 degree behind a stop
+        assert distance(points, drawn).max() <= 0.04  # C may lag by 0.1 degree after a stop
         lathe.mdi("G1 X0 Y7")
         lathe.wait_for_error("kinematicsInverse")

@@ -27,7 +27,7 @@ TRIED = {  # by file
 COUNTED = "soak: "  # begins the name of a report's property
 
 
-@pytest.hookimpl(trylast=True)  # behind the choice of -k
+@pytest.hookimpl(trylast=True)  # after the choice of -k
 def pytest_collection_modifyitems(items):
     properties = [item for item in items if hasattr(item.obj, "hypothesis")]
     files = Counter(item.path for item in properties)

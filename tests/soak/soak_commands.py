@@ -98,7 +98,7 @@ def check_said(capsys, code, what):
     assert code in (0, 1, 2), what
     for shown in ("Traceback", "fault of the package"):
         assert shown not in said.out + said.err, f"{what}: {said}"
-    if code == 2:  # behind what a slow command says of its progress
+    if code == 2:  # after what a slow command says of its progress
         assert said.err.splitlines()[-1].startswith("g12 "), f"{what}: {said}"
     return said
 

@@ -53,7 +53,7 @@ def test_aborts_with_kinematics(name, request):
 
 
 def test_aborts_and_errors_in_mdi(request):
-    tried = Tried(request, "aborts and errors of G12.1 in MDI, and the line behind")
+    tried = Tried(request, "aborts and errors of G12.1 in MDI, and the line after")
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
         for number in range(often(100)):
             try:

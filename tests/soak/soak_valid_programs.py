@@ -24,7 +24,7 @@ def written(folder, kind, seed, count):
 
 
 def with_offset_pin(text):
-    """Return an INI that tells the kinematics where the tool stands, behind its other HAL files."""
+    """Return an INI that tells the kinematics where the tool stands, after its other HAL files."""
     *_, last = (line for line in text.splitlines() if line.startswith("HALFILE"))
     return text.replace(last, f"{last}\nHALFILE = {KINEMATICS}/polar_tool_offset.hal")
 

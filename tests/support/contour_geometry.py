@@ -135,7 +135,7 @@ def distance_from_path(points, path):
 
 
 def outward(shapes, by):
-    """Return each shape set ``by`` to the left, with the arc about the corner behind it."""
+    """Return each shape set ``by`` to the left, with the arc about the corner after it."""
     moved = [[shape.aside(by)] for shape in shapes]
     for group, shape, following in zip(moved, shapes, shapes[1:]):
         before, after = shape.headings()[1], following.headings()[0]

@@ -49,7 +49,7 @@ def refused_for(machine, reasons, timeout=5):
     while not any(reason in said for reason in reasons) or ("polar mode" in said) > (ADDED in said):
         assert time.monotonic() < end, said
         said += "".join(error.text for error in machine.errors())
-    time.sleep(0.2)  # LinuxCNC aborts by itself behind it, and nothing shows when
+    time.sleep(0.2)  # LinuxCNC aborts by itself after it, and nothing shows when
     machine.wait_idle()
     machine.errors()
 

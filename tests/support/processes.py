@@ -14,7 +14,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 def start_in_terminal(*command, ignored=(), **options):
     """Return a running command in a session of its own, which obeys all signals not ``ignored``.
 
-    The tests themselves may run where an interrupt is ignored, behind ``&`` or in a service.
+    The tests themselves may run where an interrupt is ignored, with ``&`` or in a service.
     """
 
     def set_signals():

@@ -46,9 +46,9 @@ def rolled(on, off, overlap):
     corners = [start, *SQUARE[1:], SQUARE[0], end]
     far, near = arc_on.start, arc_off.end
     front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
-    behind = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
+    after = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
     return [*front, arc_on, *(Straight(*pair) for pair in zip(corners, corners[1:])), arc_off,
-            *behind]  # fmt: skip
+            *after]  # fmt: skip
 
 
 @pytest.mark.parametrize("overlap", [0.0, 2.0])
@@ -63,16 +63,16 @@ def test_leads_have_up_to_three_moves(on, off, closes, overlap):
         assert ends_of(shapes) == (True, 10 + 0j, 10 + 0j)
 
 
-@pytest.mark.parametrize("behind", [False, True])
+@pytest.mark.parametrize("after", [False, True])
 @pytest.mark.parametrize(
     ("lead", "radius", "closes"),
     [(39.0, 6.0, True), (41.0, 6.0, False), (41.0, 4.9, True), (41.0, 5.1, False)],
 )
-def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, behind):
+def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, after):
     """The square is 20 round; anything shorter is the spur of an open contour."""
     corners = [5 + 0j, 0j, 5j, 5 + 5j]
     first, second, third, last = closed(corners)
-    if behind:
+    if after:
         last = Straight(last.start, last.end - 1j * lead)
     else:
         first = Straight(first.start + lead, first.end)
@@ -147,7 +147,7 @@ def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
 
 @pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])
 def test_two_moves_meet_in_the_second_half_of_the_last(share, closes):
-    """An arc that goes through the line before it, so far behind their joint."""
+    """An arc that goes through the line before it, so far after their joint."""
     centre = 5 + 15j / math.tan(0.45 * math.pi)
     bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, centre, -0.9 * math.pi / share)]
     assert closing(bow).closed is closes

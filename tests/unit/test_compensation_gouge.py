@@ -110,11 +110,11 @@ def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
     assert "cannot follow both lines 3 and 8" in cut(narrow, RIGHT, 2.6)[0]
 
 
-def extended(front, behind):
+def extended(front, after):
     """Return the square from the middle of no side: both ends may stick out by some length."""
     first, *_, last = sides = closed(SQUARE)
     sides[0] = Straight(first.start + 1j * front, first.end)
-    sides[-1] = Straight(last.start, last.end + behind)
+    sides[-1] = Straight(last.start, last.end + after)
     return sides
 
 
@@ -150,11 +150,11 @@ def test_a_lead_to_the_corner_where_a_contour_closes_crosses_nothing(turned):
         assert cut([*closed(around), Straight(around[0], off)], LEFT, 3.0) == ("", [])
 
 
-@pytest.mark.parametrize(("front", "behind"), [(40.0, -0.015), (-0.015, 40.0)])
-def test_a_contour_closes_though_rounding_left_a_gap(front, behind):
+@pytest.mark.parametrize(("front", "after"), [(40.0, -0.015), (-0.015, 40.0)])
+def test_a_contour_closes_though_rounding_left_a_gap(front, after):
     """Here of three tolerances, between the end of a side and the one that runs on beyond it."""
-    assert cut(extended(front, behind), LEFT, 3.0) == ("", [])
-    assert cut(extended(front, behind), RIGHT, 3.0)[0]
+    assert cut(extended(front, after), LEFT, 3.0) == ("", [])
+    assert cut(extended(front, after), RIGHT, 3.0)[0]
 
 
 @pytest.mark.parametrize(("gap", "told"), [(0.059, False), (0.061, True)])
@@ -390,7 +390,7 @@ AIR = 5.0
 
 
 def parts(*paths):
-    """Return paths cut one behind the other, through the air between them.
+    """Return paths cut one after the other, through the air between them.
 
     Each has its corners and the Z at each of them, or at all of them.
     """
@@ -444,9 +444,9 @@ def test_the_tool_cuts_what_is_as_high_as_its_tip_or_higher(paths, deep):
 )
 def test_a_pass_behind_a_wall_clears_it_where_it_is_as_deep(heights, deep):
     """Between both a tool comes down, half a millimetre into the wall: there it must be gone."""
-    behind = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
+    after = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
     between = [-33 + 30j, -33 + 2.5j]
-    text = refusal(parts((WALL, -2.0), (between, -3.0), (behind, heights)))
+    text = refusal(parts((WALL, -2.0), (between, -3.0), (after, heights)))
     assert ("cannot follow both lines 3 and 4" in text) is deep
 
 

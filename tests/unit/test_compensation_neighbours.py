@@ -53,9 +53,9 @@ def section(*parts, ramp=None):
         contour.line(z=heights[0], line=line, feed=300.0)
         contour.compensation(drawn.side, drawn.radius, line=line + 1)
         contour.line(first.start.real, first.start.imag, line=line + 1, feed=300.0)
-        for behind, (z, shape) in enumerate(zip(heights, drawn.shapes), line + 2):
-            contour.line(z=z, line=behind, feed=300.0)
-            add(contour, shape, line=behind, feed=300.0)
+        for after, (z, shape) in enumerate(zip(heights, drawn.shapes), line + 2):
+            contour.line(z=z, line=after, feed=300.0)
+            add(contour, shape, line=after, feed=300.0)
         line += 2 + len(drawn.shapes)
         contour.compensation(40, 0.0, line=line)
         contour.line(end.real, end.imag, line=line, feed=300.0)
@@ -181,7 +181,7 @@ def test_a_closed_contour_may_begin_anywhere(one, other):
 def near(gap, *depths, begins=0):
     """Return a boss of eight sides, one of them 10 from the centre, and a round one beside it.
 
-    It begins so many lines behind the middle of the far side.
+    It begins so many lines after the middle of the far side.
     """
     corners = [cmath.rect(10 / math.cos(math.pi / 8), math.pi * (2 * k + 1) / 8) for k in range(8)]
     sides = polygon([*corners[3::-1], *corners[:3:-1]])  # in nine lines

@@ -188,7 +188,7 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side,
 
 
 def runs_behind(shape, other, side, radius):
-    """Return whether a shape runs behind all that its tool cuts of another one, the same way.
+    """Return whether a shape runs after all that its tool cuts of another one, the same way.
 
     These are passes of a spiral: they may cut into each other.
     """
@@ -198,8 +198,8 @@ def runs_behind(shape, other, side, radius):
     is_cut = distance_from_path(places, tool) < radius - 2 * TOLERANCE
     places, ways = places[is_cut, None], ways[is_cut, None]
     arms = (passes - places) / (left * ways)
-    behind = (-2 * radius < arms.real) & (arms.real < 0) & (abs(arms.imag) < radius)
-    return (behind & ((passing / ways).real > 0.9)).any(axis=1).all()
+    trailing = (-2 * radius < arms.real) & (arms.real < 0) & (abs(arms.imag) < radius)
+    return (trailing & ((passing / ways).real > 0.9)).any(axis=1).all()
 
 
 def along(shape, step):
@@ -211,9 +211,9 @@ def along(shape, step):
 
 def in_line(shapes, index):
     """Return a shape and the next one if they are nearly in line: such are cut as one."""
-    shape, *behind = shapes[index : index + 2]
-    turns = [cmath.phase(cmath.rect(1, b.headings()[0] - shape.headings()[1])) for b in behind]
-    return [shape, *(b for b, turn in zip(behind, turns) if abs(turn) < 0.01)]
+    shape, *trailing = shapes[index : index + 2]
+    turns = [cmath.phase(cmath.rect(1, b.headings()[0] - shape.headings()[1])) for b in trailing]
+    return [shape, *(b for b, turn in zip(trailing, turns) if abs(turn) < 0.01)]
 
 
 def near_sides(shapes, index, radius, with_next):

@@ -300,7 +300,7 @@ def test_c_and_the_slide_can_follow_by_hand(library, radius, speed):
     turning, planner, c_most = left / radius, 1000.0, math.radians(3600)
     assert left <= speed
     assert turning <= math.radians(360)
-    if (planner + left * turning) / radius > c_most:  # then no more than a lag stays behind a stop
+    if (planner + left * turning) / radius > c_most:  # then no more than a lag stays after a stop
         assert turning**2 / (2 * c_most) <= math.radians(0.1001)
     assert left * turning <= 0.293 * 1000  # beside 0.707 of the slide's acceleration on an arc
     before = by_hand(Kinematics(library), radius + 0.01, speed=speed)

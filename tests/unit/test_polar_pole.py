@@ -30,7 +30,7 @@ def led(*path, reach=REACH, refused=False):
 
 
 def ends(parts):
-    """Return the ends of moves, one behind the other, and check that they are."""
+    """Return the ends of moves, one after the other, and check that they are."""
     for one, other in zip(parts, parts[1:]):
         assert (one.end, one.z1) == (pytest.approx(other.start, abs=1e-12), pytest.approx(other.z0))
     first, places = parts[0], [(part.end.real, part.end.imag, part.z1) for part in parts]

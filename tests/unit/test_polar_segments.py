@@ -208,7 +208,7 @@ def is_whole(line, law):
 @pytest.mark.parametrize("first", [-1.0, -0.04, 0.0, 0.3, 0.98, 2.5])
 @pytest.mark.parametrize("foot", [2.0, -30.0])
 def test_a_short_line_is_one_segment_while_that_keeps_the_limits(law, first, foot):
-    """It begins as far behind the foot of the pole's perpendicular, and back again."""
+    """It begins as far after the foot of the pole's perpendicular, and back again."""
     start = complex(foot, first * abs(foot))
     low, high = 1e-3, 50.0
     while high - low > 1e-4 * low:

@@ -203,7 +203,7 @@ def test_reports_are_filled_in(comment, text):
 
 
 def test_a_report_is_cut_to_a_line_that_linuxcnc_reads_and_no_shorter():
-    """A blank behind a # at its end, or a parameter would begin there."""
+    """A blank after a # at its end, or a parameter would begin there."""
     assert len(comment_text("print," + "#" * 300, VALUES.get)) == LONGEST_BLOCK
     assert len(comment_text("print," + "x" * 300, VALUES.get)) == LONGEST_BLOCK - 1
 

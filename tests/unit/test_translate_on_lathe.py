@@ -153,8 +153,8 @@ def test_heights_and_diameters_are_above_zero(option, value, capsys):
 def shown(page, heading):
     """Return the lines of an example on a page, before and after."""
     before, after = page.split(f"{heading}:\n")[1].split("\nbecomes")[:2]
-    behind = after.split("\n\n")[1]
-    return [re.findall("^    (.*)", text, re.MULTILINE) for text in (before, behind)]
+    rest = after.split("\n\n")[1]
+    return [re.findall("^    (.*)", text, re.MULTILINE) for text in (before, rest)]
 
 
 def test_what_the_page_shows_is_what_is_printed():

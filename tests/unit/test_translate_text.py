@@ -730,7 +730,7 @@ def test_a_section_as_shops_write_it(text, written):
 
 def test_what_a_section_lacks_is_named():
     refused = sentence(LATHE, f"{SECTION}G41 G1 X50. F9.\nG40 Z9.\nG13.1\nM30\n")
-    assert (refused.line, refused.sentence[:29]) == (6, "G40 stands behind the last mo")
+    assert (refused.line, refused.sentence[:29]) == (6, "G40 is after the last move of")
     haas = replace(HAAS_LATHE, tables={**HAAS_LATHE.tables, "polar": {"rapid": "feed"}})
     text = "G21 G0 X60. Z2.\nG107 Y0 C0 R20.\nG0 Y1.\nM30\n"
     assert sentence(haas, text) == (

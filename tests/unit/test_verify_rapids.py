@@ -70,9 +70,9 @@ FOUND = {
     # a pocket that is not below Z0 has its top where it began to feed, the lowest of several
     "below such a top": (start(z=10).mill(depth=5.0).rapid(z=7).rapid(x=150), [3]),
     "at such a top": (start(z=10).mill(depth=5.0).rapid(z=10).rapid(x=150), []),
-    "at the feed behind own rapids": (
+    "at the feed after own rapids": (
         start(z=30).mill([17], depth=5.0, down=7).rapid(z=7).rapid(x=150), []),
-    "below the feed behind own rapids": (
+    "below the feed after own rapids": (
         start(z=30).mill([17], depth=5.0, down=7).rapid(z=6).rapid(x=150), [3]),
     "at the lowest of two": (
         start(z=30).mill(depth=5.0).rapid(z=10).rapid(x=150).mill(depth=5.0).rapid(z=10)

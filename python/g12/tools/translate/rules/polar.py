@@ -86,7 +86,7 @@ def turn_off(draft: Draft, code: ForeignWord) -> None:
     if draft.state.polar != "off":
         if draft.state.delayed:
             raise NotTranslated(
-                f"G40 stands behind the last move of the section: write a move in X or C with it "
+                f"G40 is after the last move of the section: write a move in X or C with it "
                 f"before {code.code}"
             )
         kept = _slides_kept(draft, X_OF[outside] / X_OF[inside])
