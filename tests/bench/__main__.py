@@ -11,10 +11,10 @@ import sys
 import bench
 
 
-def modules(asked):
+def modules(requested):
     """Import the modules of this package that measure something, or those asked for."""
     found = [info.name for info in pkgutil.iter_modules(bench.__path__) if info.name[:2] != "__"]
-    names = asked or found
+    names = requested or found
     return [importlib.import_module(f"bench.{name}") for name in sorted(names)]
 
 

@@ -46,7 +46,7 @@ def ini(tmp_path_factory):
 
 
 @pytest.fixture
-def told(ini, tmp_path, capsys):
+def reported(ini, tmp_path, capsys):
     """Return a function: exit code, output and errors of a command on a program."""
 
     def tell(name, text, *words):
@@ -59,36 +59,36 @@ def told(ini, tmp_path, capsys):
     return tell
 
 
-def test_moves_have_the_lines_of_the_users_file(told):
-    code, out, errors = told("trace", POCKET)
+def test_moves_have_the_lines_of_the_users_file(reported):
+    code, out, errors = reported("trace", POCKET)
     assert (code, errors) == (0, "")
     assert [int(line.split()[0]) for line in out.splitlines()[:5]] == [1, 4, 6, 7, 8]
 
 
-def test_a_pocket_is_proved_on_the_line_of_the_users_file(told):
-    code, out, errors = told("verify", POCKET, "--json")
+def test_a_pocket_is_proved_on_the_line_of_the_users_file(reported):
+    code, out, errors = reported("verify", POCKET, "--json")
     assert (code, errors) == (0, "")
     assert [pocket["line"] for pocket in json.loads(out)["pockets"]] == [8]
-    code, out, _ = told("verify", POCKET)
+    code, out, _ = reported("verify", POCKET)
     assert "line 8  G12 (haas)" in out
 
 
 @pytest.mark.parametrize("command", ["trace", "verify"])
-def test_an_error_has_the_line_of_the_users_file(told, command):
-    code, _, errors = told(command, POCKET.replace("I.6", "I.1"))
+def test_an_error_has_the_line_of_the_users_file(reported, command):
+    code, _, errors = reported(command, POCKET.replace("I.6", "I.1"))
     assert code == (2 if command == "verify" else 1)
     assert errors.startswith(f"g12 {command}: PROGRAM:8: G12: I0.1 must be greater than")
 
 
 @pytest.mark.parametrize("command", ["trace", "verify"])
-def test_what_the_filter_refuses_is_told(told, command):
-    code, out, errors = told(command, POCKET.replace("M98 P10", "G150 P10"))
+def test_what_the_filter_refuses_is_told(reported, command):
+    code, out, errors = reported(command, POCKET.replace("M98 P10", "G150 P10"))
     assert (code, out) == (2 if command == "verify" else 1, "")
     assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
 
 
-def test_a_picture_is_drawn(told, tmp_path):
-    code, _, _ = told("plot", POCKET, "-o", str(tmp_path / "part.svg"))
+def test_a_picture_is_drawn(reported, tmp_path):
+    code, _, _ = reported("plot", POCKET, "-o", str(tmp_path / "part.svg"))
     assert (code, (tmp_path / "part.svg").exists()) == (0, True)
 
 

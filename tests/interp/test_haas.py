@@ -29,8 +29,8 @@ def cut(tracer, *blocks):
 def test_a_tool_of_the_table_has_its_unit_where_the_programs_is_another(inch, metric):
     for tracer, unit, radius in ((inch, "G21", "3.175 mm"), (metric, "G20", "0.125 in")):
         traced = tracer.trace_text([FIRST.replace("G20", unit), "G13 I.05 Z-1 D1"])
-        told = f"G13 line 2: I0.05 must be greater than the tool radius {radius} (D1)"
-        assert traced.error.text == told
+        reported = f"G13 line 2: I0.05 must be greater than the tool radius {radius} (D1)"
+        assert traced.error.text == reported
 
 
 # ---------------------------------------------------------------- modes, units, work offsets

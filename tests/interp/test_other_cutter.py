@@ -20,8 +20,8 @@ def test_one_message_for_each_tool(machine):
         (2, "G12: the cycle uses D2, diameter 10; the loaded tool T1 has 6"),
         (8, "G13: the cycle uses D1, diameter 0.23622 in; the loaded tool T2 has 0.393701 in"),
     ]
-    told = next(event for event in traced.events if "the cycle uses D2" in event.text)
-    assert [move.block for move in traced.moves[: told.at]] == []
+    reported = next(event for event in traced.events if "the cycle uses D2" in event.text)
+    assert [move.block for move in traced.moves[: reported.at]] == []
     radii = [move.radius for move in traced.moves if move.block == 2 and move.kind == "arc"]
     assert max(radii) == pytest.approx(15.0)
 

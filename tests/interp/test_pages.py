@@ -41,8 +41,8 @@ def test_the_first_program_of_a_page_cuts_what_it_says(page, tmp_path, capsys):
     program.write_text(program_of(page), encoding="utf-8")
     ini = SIM / f"{machine}_headless.ini"
     assert main(["verify", str(program), "--ini", str(ini), "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert len(told["pockets"]) + len(told["sections"]) == cuts
+    reported = json.loads(capsys.readouterr().out)
+    assert len(reported["pockets"]) + len(reported["sections"]) == cuts
 
 
 @pytest.mark.parametrize(("number", "flats"), [(1, [[27.0] * 3]), (2, [[], []])])
@@ -52,11 +52,11 @@ def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, flats, tm
     program.write_text(programs_in(text)[number], encoding="utf-8")
     words = [str(program), "--ini", str(SIM / "lathe_mm_headless.ini"), "--stock", "40"]
     assert main(["verify", *words, "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert [[asked for asked, _ in part["across_flats"]] for part in told["sections"]] == [
-        pytest.approx(sizes) for sizes in flats
-    ]
-    assert [part["reached"][0] for part in told["sections"]] == pytest.approx(
+    reported = json.loads(capsys.readouterr().out)
+    assert [
+        [requested for requested, _ in part["across_flats"]] for part in reported["sections"]
+    ] == [pytest.approx(sizes) for sizes in flats]
+    assert [part["reached"][0] for part in reported["sections"]] == pytest.approx(
         [13.5] * len(flats), abs=0.005
     )
-    assert [each for each in told["notes"] if "stock" in each["code"]] == []
+    assert [each for each in reported["notes"] if "stock" in each["code"]] == []

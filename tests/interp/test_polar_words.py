@@ -177,8 +177,10 @@ def test_both_pairs_of_codes_on_one_machine():
 # ---------------------------------------------------------------- the machine's INI
 
 
-@pytest.mark.parametrize(("turns", "wrapped", "told"), [(1, 0, []), (2, 0, ["2.0"]), (2, 1, [])])
-def test_turns_that_c_has_to_unwind_are_reported_once(turns, wrapped, told):
+@pytest.mark.parametrize(
+    ("turns", "wrapped", "reported"), [(1, 0, []), (2, 0, ["2.0"]), (2, 1, [])]
+)
+def test_turns_that_c_has_to_unwind_are_reported_once(turns, wrapped, reported):
     circle = ["G0 X20 C0", "G12.1", *["G2 I-20"] * turns, "G13.1"]
     overrides = {"AXIS_C": {"WRAPPED_ROTARY": wrapped}}
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
@@ -186,5 +188,5 @@ def test_turns_that_c_has_to_unwind_are_reported_once(turns, wrapped, told):
     assert traced.error is None
     says = "G12.1: C has turned {} times, and G0 C0 unwinds all of it. With [AXIS_C] {} it takes"
     assert [message.text for message in traced.messages] == [
-        says.format(times, "WRAPPED_ROTARY = 1") + " the short way" for times in told
+        says.format(times, "WRAPPED_ROTARY = 1") + " the short way" for times in reported
     ]

@@ -191,8 +191,8 @@ def test_lengths_are_the_same_in_g7_and_g8_but_for_x(lathe, shape, mode, setting
     with tracer(POLAR_X=setting) as own:
         traced = own.trace_text(program(call(shape, **entries), first=first))
     assert traced.error is None, traced.error
-    wanted = trace(lathe, shape, **{**entries, "x": 10} if entries else {})
-    assert np.abs(last_ends(traced) - last_ends(wanted)).max() < 1e-6
+    expected = trace(lathe, shape, **{**entries, "x": 10} if entries else {})
+    assert np.abs(last_ends(traced) - last_ends(expected)).max() < 1e-6
 
 
 # ---------------------------------------------------------------- refusals
@@ -244,7 +244,7 @@ def test_without_a_feed_anywhere(lathe):
 
 
 @pytest.mark.parametrize(
-    ("entries", "told"),
+    ("entries", "reported"),
     [
         (dict(width=0.25, length=1), "width 0.25 must not be less than the cutter's 6.35 mm"),
         (dict(width=7, allowance=0.5),
@@ -253,10 +253,10 @@ def test_without_a_feed_anywhere(lathe):
          "allowance 5 must be at most 4.7625, what one round of the cutter of 6.35 mm takes"),
     ],
 )  # fmt: skip
-def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another(entries, told):
+def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another(entries, reported):
     with Tracer(SIM / "lathe_inch.ini", tools={1: 0.25}) as inch:
         text = program(call("polar_slot", **entries), tool=1, start="G0 X40 Z5 C0")
-        assert refused(inch, text) == f"polar_slot line 5: {told}"
+        assert refused(inch, text) == f"polar_slot line 5: {reported}"
 
 
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])

@@ -27,8 +27,8 @@ INCH = 25.4
     ],
 )
 def test_a_stock_is_read_as_it_is_said(text, turning, found):
-    for value, wanted in zip(read_stock(text, turning, MM)[1:], found):
-        assert value == wanted or value == pytest.approx(wanted)
+    for value, expected in zip(read_stock(text, turning, MM)[1:], found):
+        assert value == expected or value == pytest.approx(expected)
 
 
 def test_a_number_without_a_unit_is_in_the_one_shown():

@@ -18,7 +18,7 @@ INI = SIM / "mill_mm.ini"
 
 
 @pytest.fixture
-def told(tmp_path, capsys):
+def reported(tmp_path, capsys):
     """Return a function: exit code, lines and errors of a command on a program."""
 
     def tell(name, text, *words, ini=INI):
@@ -31,9 +31,9 @@ def told(tmp_path, capsys):
     return tell
 
 
-def test_moves_are_listed(told):
+def test_moves_are_listed(reported):
     text = "G20 G90\nG0 X1\nG1 Y1 F10\nG2 X2 I.5 (half)\n(MSG,there)\nM2\n"
-    code, lines, errors = told("trace", text, "--digits", "1")
+    code, lines, errors = reported("trace", text, "--digits", "1")
     assert (code, errors) == (0, "")
     assert lines == [
         "     2 rapid X25.4",
@@ -43,12 +43,12 @@ def test_moves_are_listed(told):
     ]
 
 
-def test_a_var_file_gives_the_work_offsets_to_start_with(told, tmp_path):
+def test_a_var_file_gives_the_work_offsets_to_start_with(reported, tmp_path):
     stored = tmp_path / "shop.var"
     stored.write_text("5220\t1\n5221\t10\n5241\t20\n")
     text = "G21 G90 G54\nG0 X1\nG55\nG0 X2\nM2\n"
     ends = [
-        [line.split()[-1] for line in told("trace", text, "--digits", "0", *words)[1]]
+        [line.split()[-1] for line in reported("trace", text, "--digits", "0", *words)[1]]
         for words in ([], ["--var", str(stored)])
     ]
     assert ends == [["X1", "X2"], ["X11", "X22"]]
@@ -65,28 +65,30 @@ def test_a_var_file_gives_the_work_offsets_to_start_with(told, tmp_path):
 @pytest.mark.parametrize(
     ("name", "words"), [("trace", []), ("verify", []), ("plot", ["-o", "no.png"])]
 )
-def test_a_program_with_an_error_is_named(told, name, words, text, error, tmp_path, monkeypatch):
+def test_a_program_with_an_error_is_named(
+    reported, name, words, text, error, tmp_path, monkeypatch
+):
     monkeypatch.chdir(tmp_path)  # a refused program is drawn up to there
-    code, _, errors = told(name, text, *words)
+    code, _, errors = reported(name, text, *words)
     assert code == (2 if name == "verify" else 1)
     assert errors.startswith(f"g12 {name}: {error}")
     assert errors.count("\n") == 1
 
 
-def test_a_machine_that_does_not_load_is_one_line(told, tmp_path):
+def test_a_machine_that_does_not_load_is_one_line(reported, tmp_path):
     ini = tmp_path / "own.ini"
     ini.write_text("[RS274NGC]\nREMAP = G12 modalgroup=1 ngc=nowhere\n[TRAJ]\nCOORDINATES = XYZ\n")
-    code, lines, errors = told("trace", "M2\n", ini=ini)
+    code, lines, errors = reported("trace", "M2\n", ini=ini)
     assert (code, lines) == (1, [])
     assert "nowhere" in errors
     assert errors.count("\n") == 1
 
 
-def test_a_number_that_is_none_is_one_line(told, tmp_path):
+def test_a_number_that_is_none_is_one_line(reported, tmp_path):
     ini = tmp_path / "own.ini"
     ini.write_text("[TRAJ]\nCOORDINATES = XZC\n[AXIS_X]\nMAX_VELOCITY = fast\n")
     words = ["-o", str(tmp_path / "no.png")]
-    code, _, errors = told("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
+    code, _, errors = reported("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
     assert code == 2
     assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
 

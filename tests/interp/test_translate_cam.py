@@ -67,9 +67,9 @@ def test_there_are_ten_programs_and_one_of_holes_for_each_post():
 @pytest.mark.parametrize("post", POSTS)
 def test_a_posted_program_cuts_its_drawing(lathe, post, part):
     moves = moves_of(lathe(post), post, part)
-    made, wanted = on_the_part(moves), wanted_path(PARTS[part])
-    assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], wanted).max() < TOLERANCE
-    assert distances(wanted[::SOME], made[made[:, 2] < TOP]).max() < TOLERANCE
+    made, expected = on_the_part(moves), wanted_path(PARTS[part])
+    assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], expected).max() < TOLERANCE
+    assert distances(expected[::SOME], made[made[:, 2] < TOP]).max() < TOLERANCE
     assert rapids_turn_above_the_part(moves)
 
 

@@ -180,10 +180,10 @@ def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, 
     kind = control_of(control).machine
     (_, head), tail = HEADS[kind], TAILS[kind]
     end = "M30\n" if "\nM30\n" in foreign else ""
-    wanted = tracer.trace_text(f"{head}{own}\n{tail}{end}", alone=True)
-    assert_same_part(traced, wanted)
-    assert traced.modes.gcodes == wanted.modes.gcodes
-    assert traced.modes.feed == pytest.approx(wanted.modes.feed)
+    expected = tracer.trace_text(f"{head}{own}\n{tail}{end}", alone=True)
+    assert_same_part(traced, expected)
+    assert traced.modes.gcodes == expected.modes.gcodes
+    assert traced.modes.feed == pytest.approx(expected.modes.feed)
 
 
 def test_alarms_and_stops_with_a_message(tracers):

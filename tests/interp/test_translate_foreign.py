@@ -78,8 +78,8 @@ def test_the_yasnac_manuals_example_unedited(tracers, tmp_path):
     tracer = tracers("yasnac-mill")
     setup = ["G21 T10 M6", "G0 X5 Y6 Z40"]
     translated = tracer.trace_text(translation(MANUALS / "yasnac.nc", own), setup=setup)
-    wanted = ["G17 G21 G91 G94", "G0 Z-40", "G12 I50 R40 D10 F300", "G0 Z40", "M2"]
-    assert_same_part(translated, tracer.trace_text(wanted, setup=setup))
+    expected = ["G17 G21 G91 G94", "G0 Z-40", "G12 I50 R40 D10 F300", "G0 Z40", "M2"]
+    assert_same_part(translated, tracer.trace_text(expected, setup=setup))
 
 
 @pytest.fixture(scope="module")
@@ -125,8 +125,8 @@ def near_each(rows):
 
 def test_the_haas_page_on_g10_unedited(tracers):
     text = translation(MANUALS / "haas_g10.nc", "haas-mill", "--units", "inch")
-    asked = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
-    after = [f"#{number}={value}" for number, value in enumerate(asked, 100)]
+    requested = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
+    after = [f"#{number}={value}" for number, value in enumerate(requested, 100)]
     text = text.rsplit("M2", 1)[0] + "\n".join(["G0 G54 X0", "G43 H5", *after, ""])
     traced = tracers("haas-mill").trace_text(text, parameters={5221: 1.0}, numbered=range(100, 105))
     assert traced.error is None

@@ -126,7 +126,7 @@ def test_the_side_and_its_clamp(tracer, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("control", "text", "wanted"),
+    ("control", "text", "expected"),
     [
         # R away from the part: whatever it means there, F from where the tool stands is right
         ("fanuc-lathe", "G83 X40. C0. Z-12. R5. F120.\nC90.\nG80",
@@ -142,8 +142,8 @@ def test_the_side_and_its_clamp(tracer, tmp_path):
          [(20, -5, c, 10) for c in (3, 9)]),
     ],
 )  # fmt: skip
-def test_holes_in_the_face(tracer, control, text, wanted):
-    assert holes(traced(tracer, text, read_control(control))) == [near(each) for each in wanted]
+def test_holes_in_the_face(tracer, control, text, expected):
+    assert holes(traced(tracer, text, read_control(control))) == [near(each) for each in expected]
 
 
 @pytest.mark.parametrize(

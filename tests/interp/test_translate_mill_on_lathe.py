@@ -65,10 +65,10 @@ def test_round_the_part(lathe, part):
 
 
 def assert_cut(made, part):
-    wanted = wanted_path(part)
-    assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], wanted).max() < TOLERANCE
+    expected = wanted_path(part)
+    assert distances(made[made[:, 2] < DEEPEST_RAPID][::SOME], expected).max() < TOLERANCE
     low = made[made[:, 2] < TOP]
-    assert distances(wanted[wanted[:, 2] < DEEPEST_RAPID][::SOME], low).max() < TOLERANCE
+    assert distances(expected[expected[:, 2] < DEEPEST_RAPID][::SOME], low).max() < TOLERANCE
 
 
 HOLES = """G21 G90 G54

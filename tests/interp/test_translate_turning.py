@@ -164,10 +164,10 @@ def test_roughing_leaves_the_allowance_and_finishing_is_the_contour(
     assert (uncut - high <= depth + SLIP).all()
     assert (uncut - high > depth / 2).any()  # the last level does not lie on the contour
     finished = moves_of(tracer, f"{HEAD['fanuc-lathe']}{start}\n{cycle}\n{blocks}\nG70 P10 Q20")
-    wanted = traced_moves(tracer, f"G7 G18 G21 G90 G94 F99\n{start}\n{drawn}\nM2\n")[1:]
-    own = finished[len(moves) + 1 :][: len(wanted)]
-    assert len(own) == len(wanted)
-    for move, there in zip(own, wanted):
+    expected = traced_moves(tracer, f"G7 G18 G21 G90 G94 F99\n{start}\n{drawn}\nM2\n")[1:]
+    own = finished[len(moves) + 1 :][: len(expected)]
+    assert len(own) == len(expected)
+    for move, there in zip(own, expected):
         assert move.end == near(there.end)
         assert move.kind == there.kind
         if move.kind == "arc":
@@ -254,9 +254,9 @@ def test_a_cycle_is_these_moves(tracer, control, foreign, own):
     head = unit if control in HEAD else unit.replace("G99", "G95").replace("G21 ", "")
     result = translate_program(f"{head}{foreign}\nM30\n", control_of(control))
     assert result.refused == []
-    wanted = f"G7 G18 G90 {unit.replace('G99', 'G95')}{own}\nM30\n"
+    expected = f"G7 G18 G90 {unit.replace('G99', 'G95')}{own}\nM30\n"
     assert_same_part(
-        tracer.trace_text(result.text, alone=True), tracer.trace_text(wanted, alone=True)
+        tracer.trace_text(result.text, alone=True), tracer.trace_text(expected, alone=True)
     )
 
 

@@ -491,5 +491,7 @@ def test_the_travel_with_the_offsets_of_the_var_file(stored, blocks, expected, p
         changed = {"RS274NGC": {"PARAMETER_FILE": str(tmp_path / "its.var")}}
     judged = proof_of("mill", blocks, changed=changed).judged
     found = [(each.code, each.values) for each in judged if "travel" in each.code]
-    told = [f"{code} {v['axis']}{v['position']:.0f}" if "axis" in v else code for code, v in found]
-    assert ", ".join(told) == expected
+    reported = [
+        f"{code} {v['axis']}{v['position']:.0f}" if "axis" in v else code for code, v in found
+    ]
+    assert ", ".join(reported) == expected

@@ -63,19 +63,19 @@ def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
     program = written("G21 G18 G8 G40 G90 G94\nT3 M6\nG0 X30 Z2 C0\no<flat> call\nM2\n")
     lathe = str(machines / "lathe_mm_headless.ini")
     code, out, _ = verify(capsys, program, "--ini", lathe)
-    told = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
+    reported = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
     assert code == 1 and out.endswith("verdict: 1 finding\n")
-    assert (told["good"], told["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
+    assert (reported["good"], reported["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
 
 
 def test_json_has_the_same_in_millimetres(written, capsys):
     code, out, _ = verify(capsys, written(WIDE), "--ini", MILL, "--json", "--units", "inch")
-    told = json.loads(out)
-    (pocket,) = told["pockets"]
-    assert (code, told["good"], told["real"], told["sections"]) == (1, False, False, [])
+    reported = json.loads(out)
+    (pocket,) = reported["pockets"]
+    assert (code, reported["good"], reported["real"], reported["sections"]) == (1, False, False, [])
     assert pocket["radius"] == pytest.approx(40) and pocket["reached"] == pytest.approx(40)
     assert pocket["stepover"] == pytest.approx(15, abs=0.01) and pocket["left"] > 100
-    assert [found["line"] for found in told["findings"]] == [4]
+    assert [found["line"] for found in reported["findings"]] == [4]
 
 
 def test_json_tells_the_way_down(written, capsys):
@@ -111,8 +111,10 @@ def test_what_a_section_gains_from_kinematics(written, capsys):
     _, out, _ = verify(capsys, written(hexagon), "--ini", LATHE)
     assert "kinematics" not in out
     round_part = str(PROGRAMS / "cylinder" / "helix.ngc")
-    told = json.loads(verify(capsys, round_part, "--ini", LATHE, "--json")[1])
-    assert told["sections"] and not any(each["seconds_planned"] for each in told["sections"])
+    reported = json.loads(verify(capsys, round_part, "--ini", LATHE, "--json")[1])
+    assert reported["sections"] and not any(
+        each["seconds_planned"] for each in reported["sections"]
+    )
 
 
 def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
@@ -143,9 +145,9 @@ def test_a_rapid_through_material_is_told_in_words_and_json(written, capsys):
     code, out, _ = verify(capsys, text, "--ini", MILL)
     assert code == 1 and "  line 5: a rapid goes through" in out
     code, out, _ = verify(capsys, text, "--ini", MILL, "--json")
-    told = json.loads(out)
-    (hit,) = told["rapids"]
-    assert (code, told["good"], hit["line"]) == (1, False, 5)
+    reported = json.loads(out)
+    (hit,) = reported["rapids"]
+    assert (code, reported["good"], hit["line"]) == (1, False, 5)
     assert hit["place"] == pytest.approx([15.372, 0, -3], abs=0.1)
 
 

@@ -41,24 +41,24 @@ MM = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6 S3000 M3"]  # a 10 mm cutte
 
 @pytest.fixture(scope="module", params=["O60121", "O60131"])
 def manual(request):
-    wanted = json.loads((PROGRAMS / "haas" / f"{request.param}.json").read_text())
-    tools = {int(tool): size for tool, size in wanted["tools"].items()}
-    return wanted, proof_of(f"haas/{request.param}.ngc", "mill_inch", tools=tools)
+    expected = json.loads((PROGRAMS / "haas" / f"{request.param}.json").read_text())
+    tools = {int(tool): size for tool, size in expected["tools"].items()}
+    return expected, proof_of(f"haas/{request.param}.ngc", "mill_inch", tools=tools)
 
 
 def test_every_pocket_is_found_and_comes_out_as_printed(manual):
-    wanted, proof = manual
-    assert len(proof.pockets) == len(wanted["pockets"])
-    for asked, facts in zip(wanted["pockets"], proof.pockets):
-        assert facts.line == asked["line"]
-        assert facts.code == asked["code"]
-        assert facts.values["reached"] == pytest.approx(asked["finished"] * INCH, abs=1e-6)
+    expected, proof = manual
+    assert len(proof.pockets) == len(expected["pockets"])
+    for requested, facts in zip(expected["pockets"], proof.pockets):
+        assert facts.line == requested["line"]
+        assert facts.code == requested["code"]
+        assert facts.values["reached"] == pytest.approx(requested["finished"] * INCH, abs=1e-6)
         assert facts.values["rings"] == pytest.approx(
-            [ring * INCH for ring in asked["rings"]], abs=1e-5
+            [ring * INCH for ring in requested["rings"]], abs=1e-5
         )
         depths = [facts.commanded.wall.height(depth) / INCH for depth in facts.commanded.depths]
-        assert depths == pytest.approx(asked["depths"], abs=1e-4)
-        assert facts.commanded.wall.origin[:2] / INCH == pytest.approx(asked["centre"])
+        assert depths == pytest.approx(requested["depths"], abs=1e-4)
+        assert facts.commanded.wall.origin[:2] / INCH == pytest.approx(requested["centre"])
         assert facts.deviation < 1e-6
 
 

@@ -35,9 +35,9 @@ MILL = str(SIM / "mill_mm_headless.ini")
 def test_verify_measures_real_motion(pocket, capsys):
     assert main(["verify", pocket, "--ini", MILL, "--run", "--json"]) == 0
     said = capsys.readouterr()
-    told = json.loads(said.out)
-    (facts,) = told["pockets"]
-    assert told["real"] and facts["off_circles"] < 0.005 and facts["off_path"] < 0.05
+    reported = json.loads(said.out)
+    (facts,) = reported["pockets"]
+    assert reported["real"] and facts["off_circles"] < 0.005 and facts["off_path"] < 0.05
     assert facts["rings"] == pytest.approx([2, 7, 11], abs=1e-6)
     assert facts["depths"] == pytest.approx([-3])
     assert facts["seconds"] == pytest.approx(facts["seconds_programmed"], rel=0.15)

@@ -139,15 +139,15 @@ def test_g12_1_with_offsets_inches_and_diameters(lathe):
 @pytest.mark.parametrize("modes", ["G90 G94 F500 G64 P0.01", "G91 G95 F1 G61 G90.1 S500 M3"])
 def test_modes_behind_g13_1_are_those_of_a_section_in_segments(plane, modes):
     section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
-    asked = (
+    requested = (
         "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
     )
-    told = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in asked.split())})"
+    reported = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in requested.split())})"
     ways = []
     for kinematics in "01":
         overrides = {"G12": {"POLAR_KINEMATICS": kinematics}}
         with Tracer(SIM / "lathe_mm_kinematics.ini", overrides=overrides) as tracer:
-            ways.append(tracer.trace_text([*START, plane, modes, *section, told, "M2"]))
+            ways.append(tracer.trace_text([*START, plane, modes, *section, reported, "M2"]))
     assert [way.error for way in ways] == [None, None]
     assert [any(move.end[Y] for move in way.moves) for way in ways] == [False, True]
     assert [message.text for message in ways[0].messages] == [

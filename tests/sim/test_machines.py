@@ -157,7 +157,7 @@ def test_its_screen_comes_up_with_the_sample_previewed(ini, screen):
             time.sleep(0.2)
         assert isolated.exit_code() is None, isolated.log()
         lines = isolated.log().splitlines()
-        told = [line for line in lines if not line.startswith(HARMLESS)]
-        assert "rror" not in "\n".join(told), isolated.log()
+        reported = [line for line in lines if not line.startswith(HARMLESS)]
+        assert "rror" not in "\n".join(reported), isolated.log()
     finally:
         isolated.close()

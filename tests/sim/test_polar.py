@@ -141,8 +141,8 @@ def test_the_programs_path_control_rounds_no_corner_of_a_section(lathe, path):
     contour = "G1 C2", "X16 C6", "X8 C8", "X6 C4"
     run = lathe.run_text(section(*contour, before=[path], feed="F3000"))
     assert run.error is None
-    asked = lines((20, 0), (20, 2), (16, 6), (8, 8), (6, 4))
-    assert distance(Cut(run).points @ FROM_COLUMNS, asked).max() < 0.006
+    requested = lines((20, 0), (20, 2), (16, 6), (8, 8), (6, 4))
+    assert distance(Cut(run).points @ FROM_COLUMNS, requested).max() < 0.006
 
 
 @pytest.mark.parametrize("stop", ["(abort,enough)", "(py,raise ValueError)"])

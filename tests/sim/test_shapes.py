@@ -50,14 +50,14 @@ def reached(samples):
 
 
 def test_in_mdi(lathe):
-    wanted = reached(cut(lathe, "flats"))
+    expected = reached(cut(lathe, "flats"))
     lathe.reset()
     for block in START:
         lathe.mdi(block)
     before = lathe.stat().modes.gcodes
     lathe.sample()
     lathe.mdi(CALLS["flats"])
-    assert reached(lathe.samples()) == pytest.approx(wanted, abs=TOLERANCE)
+    assert reached(lathe.samples()) == pytest.approx(expected, abs=TOLERANCE)
     assert not lathe.errors()
     assert lathe.stat().modes.gcodes == before
     lathe.mdi("o<polar_slot> call [5] [30] [1] [-9999] [-9999] [400] [-9999] [0]")

@@ -56,7 +56,7 @@ class MachinedProgram(NamedTuple):
 
 def program_of(table: str, name: str) -> MachinedProgram:
     """Return a program of a table of faults."""
-    asked = TABLES[table][name]
-    text = asked.get("text") or (PROGRAMS / asked["file"]).read_text(encoding="utf-8")
-    machine = asked.get("ini", TABLES[table]["ini"])
-    return MachinedProgram(f"{table}/{name}", text, machine, asked.get("settings", {}))
+    requested = TABLES[table][name]
+    text = requested.get("text") or (PROGRAMS / requested["file"]).read_text(encoding="utf-8")
+    machine = requested.get("ini", TABLES[table]["ini"])
+    return MachinedProgram(f"{table}/{name}", text, machine, requested.get("settings", {}))

@@ -45,9 +45,9 @@ def tracer_of(control, tools=None):
 
 def translation(path, control, *options):
     """Return what the command prints for a program, without printing it."""
-    asked = translate.parsed(["--control", str(control), str(path), *options])
+    requested = translate.parsed(["--control", str(control), str(path), *options])
     return translate.translated(
-        asked, translate.changed(translate.read_control(asked.control), asked)
+        requested, translate.changed(translate.read_control(requested.control), requested)
     )
 
 
@@ -69,9 +69,9 @@ def assert_same_part(one, other):
     left, right = path_of(one), path_of(other)
     for number, (a, b) in enumerate(zip(left, right)):
         assert a[0] == b[0], (number, a, b)
-        for value, wanted in zip(a[1:], b[1:]):
+        for value, expected in zip(a[1:], b[1:]):
             assert value == (
-                wanted if isinstance(wanted, str) or wanted is None else near(wanted)
+                expected if isinstance(expected, str) or expected is None else near(expected)
             ), (
                 number,
                 a,
@@ -81,9 +81,9 @@ def assert_same_part(one, other):
     assert events(one) == events(other), (events(one), events(other))
 
 
-def near(wanted):
+def near(expected):
     """Return what equals a number, or each number of a tuple, to 1e-6."""
-    return pytest.approx(wanted, abs=1e-6)
+    return pytest.approx(expected, abs=1e-6)
 
 
 def events(traced):

@@ -42,7 +42,7 @@ def words_of(text):
     return {word[0]: float(word[1:]) for word in text.split()}
 
 
-def told(planner, *arguments, **options):
+def reported(planner, *arguments, **options):
     """Return the sentence of a refusal, which there must be."""
     with pytest.raises(Refusal) as refused:
         planner(*arguments, **options)

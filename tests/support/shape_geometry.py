@@ -47,7 +47,7 @@ def swept_by(points, radius):
         yield LineString(corners[first : first + PART + 1]).buffer(radius, CUTTER_SEGMENTS)
 
 
-def area_off(area, wanted, tolerance):
+def area_off(area, expected, tolerance):
     """Return how much of an area lies beyond a drawing, or is missing of it, by more than that."""
-    beyond = area.difference(wanted.buffer(tolerance)).area
-    return beyond + wanted.buffer(-tolerance).difference(area).area
+    beyond = area.difference(expected.buffer(tolerance)).area
+    return beyond + expected.buffer(-tolerance).difference(area).area

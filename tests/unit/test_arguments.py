@@ -158,8 +158,11 @@ def test_events_that_are_not_there(tmp_path, capsys):
 
 def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    wanted = tmp_path / "file" / "pictures"
-    assert ends(capsys, "demo", "--output", wanted) == (2, f"g12 demo: {wanted}: Not a directory\n")
+    expected = tmp_path / "file" / "pictures"
+    assert ends(capsys, "demo", "--output", expected) == (
+        2,
+        f"g12 demo: {expected}: Not a directory\n",
+    )
 
 
 def test_the_command_is_named_as_it_was_typed(tmp_path):

@@ -12,7 +12,7 @@ from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, 
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
 from g12.request.context import Tool
 from g12.request.words import Words
-from support.planner_context import BAD_MODES, INCH, MM, told, words_of
+from support.planner_context import BAD_MODES, INCH, MM, reported, words_of
 
 NEEDED = words_of("X1 Y2 Z-.5 R1.5 I.1 H2")
 CALLED = words_of("X1 Y2 Z-.5 R1.5 W.1 C2")
@@ -104,11 +104,11 @@ def test_a_pair_is_a_perimeter_and_one_that_puts_the_tool_inside_a_pocket(d, h):
         pocket = code(f"D{d} H{h} Q.02")
         assert (pocket.roughing.rough_arc, pocket.side_finish[2:]) == (ROUGH[d], (FINISH[d],) * 2)
         return
-    assert told(code, f"D{d} H{h}") == (
+    assert reported(code, f"D{d} H{h}") == (
         f"G13.2: D{d} with H{h} does not put the tool inside the pocket:"
         " D0 and D2 need H2, D1 and D3 need H1"
     )
-    assert told(call, f"G7 D{d} C{h}").startswith(f"circle_mill: D{d} with C{h} does not")
+    assert reported(call, f"G7 D{d} C{h}").startswith(f"circle_mill: D{d} with C{h} does not")
 
 
 def test_g91_counts_xy_from_the_tool_and_z_from_w():
@@ -182,7 +182,7 @@ NO_FINISH = "there is no finish pass with the tool centre on the circle"
     ],
 )
 def test_a_missing_word_is_named(without, rule):
-    assert told(code, without=without) == f"G13.2: {rule}"
+    assert reported(code, without=without) == f"G13.2: {rule}"
 
 
 @pytest.mark.parametrize(
@@ -209,7 +209,7 @@ def test_a_missing_word_is_named(without, rule):
     ],
 )
 def test_a_bad_pocket_is_refused_by_name(words, rule):
-    assert told(code, words) == f"G13.2: {rule}"
+    assert reported(code, words) == f"G13.2: {rule}"
 
 
 @pytest.mark.parametrize(
@@ -222,7 +222,7 @@ def test_a_bad_pocket_is_refused_by_name(words, rule):
     ],
 )
 def test_a_bad_perimeter_is_refused_by_name(words, rule):
-    assert told(code, words, pocket=False) == f"G12.2: {rule}"
+    assert reported(code, words, pocket=False) == f"G12.2: {rule}"
 
 
 @pytest.mark.parametrize(
@@ -241,7 +241,7 @@ def test_a_bad_perimeter_is_refused_by_name(words, rule):
     ],
 )
 def test_a_bad_call_is_refused_by_name(words, without, rule):
-    assert told(call, words, without=without) == f"circle_mill: {rule}"
+    assert reported(call, words, without=without) == f"circle_mill: {rule}"
 
 
 DIAMETER = "T8 in the spindle needs a diameter above 0 in the tool table, not"
@@ -262,7 +262,7 @@ DIAMETER = "T8 in the spindle needs a diameter above 0 in the tool table, not"
     ],
 )
 def test_what_the_block_finds_must_be_fit(found, rule):
-    assert told(code, found=INCH._replace(**found)) == f"G13.2: {rule}"
+    assert reported(code, found=INCH._replace(**found)) == f"G13.2: {rule}"
 
 
 # ---------------------------------------------------------------- any valid event

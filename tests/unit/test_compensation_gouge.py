@@ -157,14 +157,14 @@ def test_a_contour_closes_though_rounding_left_a_gap(front, after):
     assert cut(extended(front, after), RIGHT, 3.0)[0]
 
 
-@pytest.mark.parametrize(("gap", "told"), [(0.059, False), (0.061, True)])
+@pytest.mark.parametrize(("gap", "reported"), [(0.059, False), (0.061, True)])
 @pytest.mark.parametrize("at_start", [False, True])
-def test_a_contour_closes_over_twice_what_arcs_are_forgiven(gap, told, at_start):
+def test_a_contour_closes_over_twice_what_arcs_are_forgiven(gap, reported, at_start):
     ends = (-gap, 40.0) if at_start else (40.0, -gap)
     contour = contour_of(Drawn(extended(*ends), LEFT, 3.0, []))
     contour.radius_tolerance = 0.03
     assert refusal(contour) == ""
-    assert bool(contour.notes) is told
+    assert bool(contour.notes) is reported
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])

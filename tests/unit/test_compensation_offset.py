@@ -258,7 +258,7 @@ def down(contour, line):
 
 
 @pytest.mark.parametrize(
-    ("blocks", "radius", "wanted"),
+    ("blocks", "radius", "expected"),
     [
         # ramps square to the contour, an inside corner at the crossing of the parallels
         ([to(20, 5), to(20, 15)], 2.0, {1: (10.0, 7.0), 2: (18.0, 7.0), 3: (18.0, 15.0)}),
@@ -269,9 +269,9 @@ def down(contour, line):
         ([to(20, 5), to(20, 15)], 0.0, {1: (10.0, 5.0), 2: (20.0, 5.0), 3: (20.0, 15.0)}),
     ],
 )
-def test_where_the_tools_centre_ends_each_block(blocks, radius, wanted):
+def test_where_the_tools_centre_ends_each_block(blocks, radius, expected):
     ends = joined(*blocks, radius=radius)
-    assert {line: ends.get(line) for line in wanted} == wanted
+    assert {line: ends.get(line) for line in expected} == expected
 
 
 @pytest.mark.parametrize(

@@ -84,8 +84,8 @@ def test_fine_points_with_few_decimals_are_cut(side, radius, chord):
     away = (-radius - 8.0, 0.0) if outside else (-radius + 5.5, 0.0)
     contour = programmed(*points, away, side=side, radius=5.0, start=start)
     made = abs(tool_points(contour, range(3, 80)))
-    wanted = radius + 5.0 if outside else radius - 5.0
-    assert abs(made - wanted).max() < 0.005 + 0.0008
+    expected = radius + 5.0 if outside else radius - 5.0
+    assert abs(made - expected).max() < 0.005 + 0.0008
 
 
 def test_all_that_a_contour_was_moved_by_is_bounded_and_told():

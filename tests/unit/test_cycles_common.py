@@ -32,7 +32,7 @@ def planned(planner, context, words, *more):
 
 
 @pytest.mark.parametrize(
-    ("planner", "words", "more", "told"),
+    ("planner", "words", "more", "reported"),
     [
         (haas.plan_pocket, dict(I=0.5, D=1), (), "greater than the tool radius 6{} (D1)"),
         (haas.plan_pocket, dict(I=6.001, D=1), (), "must exceed the tool radius 6{} (D1) by"),
@@ -55,18 +55,18 @@ def planned(planner, context, words, *more):
         ),
     ],
 )
-def test_a_tools_size_has_its_unit_where_the_machines_is_another(planner, words, more, told):
+def test_a_tools_size_has_its_unit_where_the_machines_is_another(planner, words, more, reported):
     """The table's numbers are the machine's: 0.5 may look right to who does not see the G21."""
-    assert told.format(" mm") in planned(planner, OTHER_UNITS, words, *more)
+    assert reported.format(" mm") in planned(planner, OTHER_UNITS, words, *more)
     same = OTHER_UNITS._replace(unit="")
-    assert told.format("") in planned(planner, same, words, *more)
+    assert reported.format("") in planned(planner, same, words, *more)
 
 
 LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
 
 
 @pytest.mark.parametrize(
-    ("found", "d_word", "last", "told"),
+    ("found", "d_word", "last", "reported"),
     [
         (LOADED, None, 6.4, "the D last commanded, diameter 12.8; the loaded tool T1 has 12"),
         (LOADED._replace(unit="in"), 2.0, 6.0, "D2, diameter 20 in; the loaded tool T1 has 12 in"),
@@ -78,6 +78,6 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
         (MM._replace(spindle_tool=Tool(4, 0.0)), 2.0, None, None),
     ],
 )
-def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, told):
+def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, reported):
     text = other_cutter("G12", d_word, found, last)
-    assert text == (told and f"G12: the cycle uses {told}")
+    assert text == (reported and f"G12: the cycle uses {reported}")

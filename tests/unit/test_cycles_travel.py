@@ -77,19 +77,19 @@ def test_the_widths_are_those_of_every_point_of_the_circle(plane, rotation):
 
 
 @pytest.mark.parametrize(
-    ("unit", "millimetres", "told"),
+    ("unit", "millimetres", "reported"),
     [
         (MM_PER_INCH, 1.0, "381 mm, beyond its limit 300 mm (G20 is active)"),
         (1 / MM_PER_INCH, MM_PER_INCH, "15 in, beyond its limit 11 in (G21 is active)"),
     ],
 )
-def test_the_machines_unit_is_told(unit, millimetres, told):
+def test_the_machines_unit_is_told(unit, millimetres, reported):
     frame = PLAIN._replace(unit=unit, millimetres=millimetres)
     high = 300.0 if millimetres == 1.0 else 11.0
     axes = dict.fromkeys("XYZ", (-1000.0, high))
     size = 15.0 if unit != 1 / MM_PER_INCH else 15.0 * MM_PER_INCH
     said = refusal(CycleExtent("G17", (size - 1.0, 0.0, 0.0), 1.0), frame, axes)
-    assert said == f"G12: the X axis would go to {told}"
+    assert said == f"G12: the X axis would go to {reported}"
 
 
 def test_the_extent_of_every_dialect():

@@ -7,7 +7,7 @@ from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry
 from g12.cycles.haas import plan_pocket
 from g12.request.context import Tool
 from g12.request.words import Words
-from support.planner_context import BAD_MODES, INCH, told, words_of
+from support.planner_context import BAD_MODES, INCH, reported, words_of
 
 TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
 FOUND = INCH._replace(z=0.1, spindle_tool=TABLE[1], tool_in_table=TABLE.get)
@@ -47,7 +47,7 @@ def test_a_spiral_ends_at_the_finished_radius():
     ],
 )
 def test_a_bad_block_is_refused_by_name(words, rule):
-    assert told(plan, f"{words} Z-1") == f"G12: {rule}"
+    assert reported(plan, f"{words} Z-1") == f"G12: {rule}"
 
 
 LAST = dict(last_radius=0.2)
@@ -75,7 +75,7 @@ LAST = dict(last_radius=0.2)
     ],
 )
 def test_a_mode_that_cannot_work_is_refused(modes, rule):
-    assert told(plan, "I.75 Z-1", **modes) == f"G12: {rule}"
+    assert reported(plan, "I.75 Z-1", **modes) == f"G12: {rule}"
 
 
 def test_modes_that_can():

@@ -44,10 +44,10 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(PACKAGE))
 
 
-def put_in(ini, *wanted, **python):
+def put_in(ini, *expected, **python):
     """Install without asking LinuxCNC; return what was said."""
     config = config_of(ini, **python)
-    return installation.write_changes(make_plan(config, wanted or ["haas"]), config.folder)
+    return installation.write_changes(make_plan(config, expected or ["haas"]), config.folder)
 
 
 def take_out(ini):
@@ -106,10 +106,10 @@ def test_what_the_user_changed_since_survives_uninstall(tmp_path):
         assert old in changed
         changed = changed.replace(old, new, 1)
     ini.write_text(changed)
-    told = take_out(ini)
+    reported = take_out(ini)
     text = MILL.replace("mill.var\n", f"other.var\n{own}")
     assert ini.read_text() == with_lines(text, "RS274NGC", f"{PATH}a:b\n")
-    assert any(own.strip() in line and "stays" in line for line in told)
+    assert any(own.strip() in line and "stays" in line for line in reported)
     assert not (tmp_path / "g12").exists()
 
 
@@ -266,11 +266,11 @@ def test_a_hand_made_import_is_enough(tmp_path):
     assert not (tmp_path / "g12").exists()
 
 
-def refused_kind(ini, *wanted, **python):
+def refused_kind(ini, *expected, **python):
     """Return the kind of the refusal of an installation, which writes nothing."""
     before = content_of(ini.parent)
     with pytest.raises(Refused) as refused:
-        put_in(ini, *wanted, **python)
+        put_in(ini, *expected, **python)
     assert content_of(ini.parent) == before
     return refused.value.args[0].kind
 
@@ -685,14 +685,14 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
 
 
 def test_every_feature_has_a_next_step():
-    wanted = [
+    expected = [
         "polar",
         features.POLAR_SHAPES,
         features.SPINDLE_AS_C,
         features.KINEMATICS,
         features.FORMS,
     ]
-    _, *steps, _ = installation.next_steps(Path("mill.ini"), [*wanted, "programs-haas-mill"])
+    _, *steps, _ = installation.next_steps(Path("mill.ini"), [*expected, "programs-haas-mill"])
     assert [step.split()[0] for step in steps] == [
         "G13.1", "o<polar_polygon>", "home,", "home,", "fill", "open",
     ]  # fmt: skip

@@ -33,13 +33,13 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: package)
 
 
-def put_in(ini, *wanted):
+def put_in(ini, *expected):
     """Install without asking LinuxCNC."""
     config = config_of(ini)
-    return installation.write_changes(make_plan(config, wanted), config.folder)
+    return installation.write_changes(make_plan(config, expected), config.folder)
 
 
-def told(ini):
+def reported(ini):
     """Return what `check` finds about forms."""
     return [finding.text for finding in findings_of(config_of(ini)) if finding.kind == "form"]
 
@@ -68,7 +68,7 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines
     assert lines in display
     assert display.count("[DISPLAY]") == 1
     assert (WINDOW in ini.read_text()) == (screen in (TK, QTAXIS))
-    assert told(ini) == []
+    assert reported(ini) == []
     put_in(ini, "forms")
     assert ini.read_text().count("NGCGUI_SUBFILE =") == 2
     list(removal.uninstall(IniText(ini), dry_run=False))
@@ -89,19 +89,19 @@ def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
     put_in(ini, "haas", "forms")
     text = ini.read_text()
     assert text.count("TKPKG") == text.count("form_haas_mm") == 1
-    assert told(ini) == []
+    assert reported(ini) == []
 
 
 @pytest.mark.parametrize(
-    ("text", "wanted", "why"),
+    ("text", "expected", "why"),
     [
         (MILL, ["haas"], "[DISPLAY] DISPLAY is missing"),
         (AXIS, [], "no code here has a form"),
     ],
 )
-def test_refused_where_nothing_would_be_shown(tmp_path, text, wanted, why):
+def test_refused_where_nothing_would_be_shown(tmp_path, text, expected, why):
     with pytest.raises(Refused) as refused:
-        make_plan(config_of(write_config(tmp_path, text)), [*wanted, "forms"])
+        make_plan(config_of(write_config(tmp_path, text)), [*expected, "forms"])
     assert why in refused.value.args[0].text
 
 
@@ -112,7 +112,7 @@ def shown_in(tmp_path, screen, lines, remaps=HAAS):
         name.replace("/", "__").replace(".", "_"): text.decode() for name, text in SUBS.items()
     }
     text = with_lines(text, "RS274NGC", "SUBROUTINE_PATH = g12/ngc\n")
-    return told(write_config(tmp_path, text, **files))
+    return reported(write_config(tmp_path, text, **files))
 
 
 HAAS_PAGE = "NGCGUI_SUBFILE = form_haas_mm.ngc\n"

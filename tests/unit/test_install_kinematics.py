@@ -80,9 +80,9 @@ def config_in(folder, text=LATHE, hal=HAL):
     return write_config(folder, text, "lathe.ini", motion_hal=hal, later_hal="# nothing\n")
 
 
-def put_in(ini, *wanted):
+def put_in(ini, *expected):
     config = config_of(ini)
-    return installation.write_changes(make_plan(config, wanted), config.folder)
+    return installation.write_changes(make_plan(config, expected), config.folder)
 
 
 @pytest.mark.parametrize(
@@ -149,11 +149,11 @@ def test_what_the_user_changed_since_stays_as_a_comment_and_is_reported(tmp_path
     assert ini.read_text().count(ours) == 1
     ini.write_text(ini.read_text().replace(ours, theirs))
     said = list(removal.uninstall(IniText(ini), dry_run=False))
-    (told,) = [line for line in said if "you changed it, it stays as a comment: " in line]
+    (reported,) = [line for line in said if "you changed it, it stays as a comment: " in line]
     lines = ini.read_text().splitlines(True)
     (comment,) = [line for line in lines if line.startswith("# before unin")]
-    assert told.endswith("COORDINATES = X Y Z C A") and comment.endswith(
-        told.split(": ")[-1] + "\n"
+    assert reported.endswith("COORDINATES = X Y Z C A") and comment.endswith(
+        reported.split(": ")[-1] + "\n"
     )
     assert "".join(line for line in lines if line != comment) == LATHE
     assert list(removal.uninstall(IniText(ini), dry_run=False)) == [

@@ -5,7 +5,7 @@ import pytest
 
 from g12.cycles.mitsubishi import MitsubishiCircle, plan_circle
 from g12.request.words import Words
-from support.planner_context import BAD_MODES, MM, told, words_of
+from support.planner_context import BAD_MODES, MM, reported, words_of
 
 STANDING = MM._replace(x=1.0, y=2.0, z=3.0)
 
@@ -41,7 +41,7 @@ def test_a_positive_offset_reduces_the_circle_a_negative_one_enlarges_it(words, 
     ],
 )
 def test_a_bad_block_is_refused_by_name(words, rule):
-    assert told(plan, words) == f"G13: {rule}"
+    assert reported(plan, words) == f"G13: {rule}"
 
 
 @pytest.mark.parametrize(
@@ -53,4 +53,4 @@ def test_a_bad_block_is_refused_by_name(words, rule):
     ],
 )
 def test_a_mode_that_cannot_work_is_refused(modes, rule):
-    assert told(plan, "I50 D2", **modes) == f"G13: {rule}"
+    assert reported(plan, "I50 D2", **modes) == f"G13: {rule}"

@@ -287,8 +287,8 @@ def test_a_boss_is_in_the_side_view():
 
 def test_uncut_material_is_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
-    told = [entry.get_label() for entry in plan_view.warning_entries(shown)]
-    assert told == ["uncut material"]
+    reported = [entry.get_label() for entry in plan_view.warning_entries(shown)]
+    assert reported == ["uncut material"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 

@@ -62,8 +62,8 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
     drawn = np.concatenate([shape.points(40) for shape in shapes])
     assert distance_from_path(drawn, path(made)).max() <= tolerance + SAGITTA
     assert all(min(cut.radius) >= 0.0 for cut in made)
-    length, wanted = (sum(each.length for each in every) for every in (made, shapes))
-    assert length == pytest.approx(wanted, rel=5e-3, abs=0.05)  # no turn too many
+    length, expected = (sum(each.length for each in every) for every in (made, shapes))
+    assert length == pytest.approx(expected, rel=5e-3, abs=0.05)  # no turn too many
 
 
 @settings(max_examples=80, deadline=None)

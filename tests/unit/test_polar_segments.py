@@ -84,9 +84,9 @@ def test_beside_x_s_line_segments_are_as_long_as_the_first_limit_allows(shape, p
         (abs(change) / (27.0 * law.deviation)) ** (1 / 3),
         1.0 / shape.length,
     )
-    wanted = longest(measured, even_feed(slide, sliding, turning, law), law, slide)
+    expected = longest(measured, even_feed(slide, sliding, turning, law), law, slide)
     segments, share = _density(curve_of(shape), law, beside)(at)
-    assert segments == pytest.approx(wanted, rel=0.01)
+    assert segments == pytest.approx(expected, rel=0.01)
     assert share == pytest.approx(share_of(difference, segments, law), abs=0.02)
 
 
@@ -101,11 +101,11 @@ def test_segments_of_a_line_are_as_long_as_the_first_limit_allows(line, part, la
     slide, sliding, turning = rates(path, at)
     difference = math.copysign(bend(path, at), 1.0)
     even = even_feed(slide, sliding, turning, law)
-    wanted = longest((bulging(difference, law), abs(sliding) / slide), even, law, slide)
+    expected = longest((bulging(difference, law), abs(sliding) / slide), even, law, slide)
     place = (path(at) * np.conj(heading)).real / distance
     segments, share = _line_density(distance, law.deviation, law)(place)
-    assert segments / distance == pytest.approx(wanted, rel=0.01)
-    assert share == pytest.approx(share_of(difference, wanted, law), abs=0.02)
+    assert segments / distance == pytest.approx(expected, rel=0.01)
+    assert share == pytest.approx(share_of(difference, expected, law), abs=0.02)
 
 
 @settings(max_examples=150, deadline=None)
@@ -119,12 +119,12 @@ def test_segments_of_an_arc_are_as_long_as_the_first_limit_allows(arc, part, law
     difference = bend(path, at)
     flat = (min(e, 1.0) / (27.0 * law.deviation * arc.radius**2)) ** (1 / 3)
     even = even_feed(slide, sliding, turning, law)
-    wanted = longest((bulging(difference, law), abs(sliding) / slide, flat), even, law, slide)
+    expected = longest((bulging(difference, law), abs(sliding) / slide, flat), even, law, slide)
     turn = math.copysign(1.0, arc.sweep)
     place = turn * np.angle((path(at) - arc.centre) / arc.centre)
     segments, share = _arc_density(arc.radius, e, law.deviation, law)(place)
-    assert segments / arc.radius == pytest.approx(wanted, rel=0.01)
-    assert share == pytest.approx(-turn * share_of(difference, wanted, law), abs=0.02)
+    assert segments / arc.radius == pytest.approx(expected, rel=0.01)
+    assert share == pytest.approx(-turn * share_of(difference, expected, law), abs=0.02)
 
 
 def turning_points(shape):

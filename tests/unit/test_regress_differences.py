@@ -44,7 +44,7 @@ def found(was, now, tolerance=FINE, part=MILL):
     return differences(was, now, tolerance, part)
 
 
-def told(was, now, **options):
+def reported(was, now, **options):
     return [(d.kind, d.text) for d in found(was, now, **options)]
 
 
@@ -108,7 +108,7 @@ REFUSED = recording(*SQUARE, error=Error("G12: no I", 8))
     ],
 )  # fmt: skip
 def test_one_thing_that_differs_is_reported(was, now, kind, text):
-    assert told(was, now) == ([(kind, text)] if kind else [])
+    assert reported(was, now) == ([(kind, text)] if kind else [])
 
 
 def test_a_path_that_is_shifted_with_a_block_more_is_reported_as_these():

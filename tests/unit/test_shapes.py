@@ -179,14 +179,14 @@ def hole(shape, tool, size, allowance, **found):
 @pytest.mark.parametrize(("shape", "tool", "size", "allowance"), HOLES)
 def test_rings_lead_outward_to_the_wall_and_leave_no_core(shape, tool, size, allowance):
     rings = hole(shape, tool, size, allowance).rings
-    (wanted,), left = size.values(), max(allowance, 0)
+    (expected,), left = size.values(), max(allowance, 0)
     rough = [rings.first_ring + index * rings.ring_step for index in range(rings.further + 1)]
-    assert rough[-1] == pytest.approx((wanted - tool) / 2 - left)
+    assert rough[-1] == pytest.approx((expected - tool) / 2 - left)
     assert 0 < rough[0] <= 0.9 * tool / 2
     assert np.all(np.diff(rough) > 0) and np.all(np.diff(rough) <= 0.75 * tool)
     assert rings.further < 1 + (rough[-1] - rough[0]) / (0.75 * tool)  # no more than needed
     assert rings.finish == (left > 0)
-    assert rings.largest == pytest.approx((wanted - tool) / 2)
+    assert rings.largest == pytest.approx((expected - tool) / 2)
 
 
 @pytest.mark.parametrize(("shape", "tool", "size", "allowance"), HOLES)

@@ -18,8 +18,8 @@ DRILL = "G98 G81 X10. Y5. Z-6. R3. F80.\n"
 
 def control_of(name, *options):
     control = read_control(name)
-    asked = translate.parsed(["--control", name, "part.nc", *options])
-    return translate.changed(control, asked)
+    requested = translate.parsed(["--control", name, "part.nc", *options])
+    return translate.changed(control, requested)
 
 
 FACE = control_of("mill-on-face")

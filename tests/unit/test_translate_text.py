@@ -759,13 +759,13 @@ LIVE_TOOLS = [
 TWO = "[TRAJ]\nSPINDLES = 2\nLINEAR_UNITS = mm\nCOORDINATES = XZC\n"
 
 
-@pytest.mark.parametrize(("name", "text", "wanted"), LIVE_TOOLS)
+@pytest.mark.parametrize(("name", "text", "expected"), LIVE_TOOLS)
 @pytest.mark.parametrize(("spindle", "dollar"), [("1", True), ("0", False)])
-def test_the_live_tool_is_a_spindle_of_the_machine(tmp_path, name, text, wanted, spindle, dollar):
+def test_the_live_tool_is_a_spindle_of_the_machine(tmp_path, name, text, expected, spindle, dollar):
     (tmp_path / "m.ini").write_text(f"{TWO}[G12]\nLIVE_SPINDLE = {spindle}\n")
     control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
-    wanted = wanted if dollar else [re.sub(r" \$\S+", "", line) for line in wanted]
-    assert lines_after(control, f"{text}\nM30\n", TURN)[:-1] == wanted
+    expected = expected if dollar else [re.sub(r" \$\S+", "", line) for line in expected]
+    assert lines_after(control, f"{text}\nM30\n", TURN)[:-1] == expected
     (tmp_path / "m.ini").write_text(TWO)
     control = translate.with_facts_of(read_control(name), read_ini(tmp_path / "m.ini"))
     assert "say [G12] LIVE_SPINDLE" in sentence(control, f"{TURN}{text}\nM30\n").sentence
@@ -780,7 +780,7 @@ def test_p_names_a_spindle_beside_m3_only():
 
 
 @pytest.mark.parametrize(
-    ("ini", "wanted"),
+    ("ini", "expected"),
     [
         ("", ["(M35)", "(M89)", "(M90)", "(M34)"]),
         (
@@ -791,11 +791,11 @@ def test_p_names_a_spindle_beside_m3_only():
         ),
     ],
 )
-def test_clamp_and_c_are_the_machines_own(tmp_path, ini, wanted):
+def test_clamp_and_c_are_the_machines_own(tmp_path, ini, expected):
     (tmp_path / "m.ini").write_text(TWO + ini)
     control = translate.with_facts_of(read_control("doosan-lathe"), read_ini(tmp_path / "m.ini"))
-    assert lines_after(control, "M35\nM89\nM90\nM34\nM30\n", TURN)[:-1] == wanted
-    codes = frozenset(code for code in wanted if code[0] == "M")
+    assert lines_after(control, "M35\nM89\nM90\nM34\nM30\n", TURN)[:-1] == expected
+    codes = frozenset(code for code in expected if code[0] == "M")
     parted = lines(control, f"{TURN}M35 M89\nM30\n", machine_codes=codes)[2:]
     assert parted[:2] == (["M254", "M10 (line 3)"] if codes else ["(M35)(M89)", "M30"])
 

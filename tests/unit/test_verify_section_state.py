@@ -15,13 +15,13 @@ COOLANT, PAUSE = Act(8, "M8 on", 1), Act(10, "dwell 0.5", 2)
 STATE = {"_metric": 1.0, "_x": 20.0, "_z": 2.0, "_c": 30.0, "_feed": 500.0, "_motion_mode": 10.0}
 
 
-def section(told=(), **options):
-    events = tuple(Event(at, 0, text) for at, text in told)
+def section(reported=(), **options):
+    events = tuple(Event(at, 0, text) for at, text in reported)
     return SectionContour(5, 12, 1, 4, "G12.1", 20.0, ELEMENTS, events=events, **options)
 
 
 @pytest.mark.parametrize(
-    ("told", "off"),
+    ("reported", "off"),
     [
         ([(3, "M8 on"), (4, "dwell 0.5")], ""),
         ([(1, "dwell 0"), (2, "G61"), (3, "M8 on"), (4, "dwell 0.5"), (4, "G64 P0 Q0")], ""),
@@ -34,10 +34,10 @@ def section(told=(), **options):
         ([(3, "M8 on"), (4, "dwell 0.5"), (4, "M5")], "9: M5 comes after line 9, where"),
     ],
 )
-def test_acts_come_in_their_places(told, off):
-    found = judge_acts(section(told, acts=(COOLANT, PAUSE)), MOVES)
+def test_acts_come_in_their_places(reported, off):
+    found = judge_acts(section(reported, acts=(COOLANT, PAUSE)), MOVES)
     assert " ".join(f"{each.line}: {each.text()}" for each in found).startswith(off)
-    assert off or not list(judge_acts(section(told, acts=(COOLANT, PAUSE)), MOVES))
+    assert off or not list(judge_acts(section(reported, acts=(COOLANT, PAUSE)), MOVES))
 
 
 def test_an_element_that_made_no_move_is_no_place():

@@ -69,8 +69,8 @@ def test_control_lines_are_told(line):
 def test_only_expressions_are_asked_of_linuxcnc():
     lines = list(reports_before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
     scaled = "#<@>=[#<@>*1000000]"
-    asked = [line for line in lines if line.startswith("#<@>=")]
-    assert asked == ["#<@>=[#1]", scaled, "#<@>=#2", scaled]
+    requested = [line for line in lines if line.startswith("#<@>=")]
+    assert requested == ["#<@>=[#1]", scaled, "#<@>=#2", scaled]
     assert all(line.startswith("/") for line in reports_before(read_line(4, "/G12 I#1")))
 
 
@@ -82,7 +82,7 @@ def test_no_call_of_a_shape_is_too_long_to_be_asked(shape):
     assert len(line) == LONGEST_REPORT_LINE and longest.call == shape and not longest.too_long
 
 
-def told(texts, *lines):
+def reported(texts, *lines):
     """Return the blocks of a trace whose messages are those, one move after each."""
     events = [Event(at, 0, f"message {TAG} {line}") for at, line in enumerate(lines)]
     trace = Hand().trace()
@@ -92,7 +92,7 @@ def told(texts, *lines):
 def test_blocks_are_put_together_from_messages():
     state = "1e6 2e6 3e6 .5 1 1 0"
     end = "end 1 4e6 5e6 6e6 0 1 1 0"
-    (block,) = told([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 750000", end)
+    (block,) = reported([read_line(1, "G12 I#1 Z-1")], f"begin 1 {state}", "value 1 750000", end)
     assert (block.words, block.codes) == ({"I": 0.75, "Z": -1.0}, (12.0,))
     assert (block.at, block.end) == (0, 2)
     assert block.state == dict(zip(STATE_NAMES, (1, 2, 3, 5e-7, 1, 1, 0)))
@@ -104,13 +104,13 @@ def test_a_block_inside_a_call_leaves_the_call_its_own():
     state = "0 0 0 0 1 1 0"
     texts = [read_line(1, "o<polar_slot> call [#1]"), read_line(2, "G12.1 X#2")]
     lines = (f"begin 1 {state}", "value 0 8e6", f"begin 2 {state}", "value 1 5e6")
-    inner, call = told(texts, *lines, f"end 2 {state}", f"end 1 {state}")
+    inner, call = reported(texts, *lines, f"end 2 {state}", f"end 1 {state}")
     assert (inner.words, inner.at, inner.end) == ({"X": 5.0}, 2, 4)
     assert (call.arguments, call.at, call.end) == ((8.0,), 0, 5)
 
 
 def test_a_block_that_ends_the_program_has_all_moves_that_follow():
-    (block,) = told([read_line(1, "G12 I1 M2")], "begin 1 0 0 0 0 1 1 0")
+    (block,) = reported([read_line(1, "G12 I1 M2")], "begin 1 0 0 0 0 1 1 0")
     assert (block.at, block.end) == (0, 0)  # there are no moves
 
 
@@ -179,8 +179,8 @@ def test_d0_puts_the_tool_centre_on_the_circle():
 )
 def test_yasnac_leaves_the_middle_by_design(words, core, bore):
     found = CircleReader(YASNAC, INI, Hand().rapid(z=5).line(z=4).moves, {1: 6.0, 2: 10.0})
-    ((_, wanted),) = found.targets([block(f"G13 {words}")])
-    assert (wanted.wall.cleared, wanted.wall.bore) == (core, bore)
+    ((_, expected),) = found.targets([block(f"G13 {words}")])
+    assert (expected.wall.cleared, expected.wall.bore) == (core, bore)
 
 
 def test_incremental_words_count_from_the_tool():
@@ -230,7 +230,7 @@ def test_one_code_switches_sections_on_a_cylinder_on_and_off(line, inside, does)
     assert CODES.switch(read_line(1, line), inside) == does
     lines = ["T1 M6", "G[13] I5", "G#5 I5", "G41 D1", "G12.1", "G41 X1", "G13.1"]
     texts = [read_line(number, line) for number, line in enumerate(lines)]
-    assert {text.number for text in CODES.wanted_in(texts)} == {1, 2, 3, 4, 6}
+    assert {text.number for text in CODES.selected_in(texts)} == {1, 2, 3, 4, 6}
     known = [code for code in ("G13", "G12.1", "G2", "M6", "") if CODES.knows(code)]
     assert known == ["G13", "G12.1"]
 
@@ -290,8 +290,8 @@ def test_only_a_helix_that_goes_down_clears_the_core_of_one_ring(line, core):
     ],
 )
 def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
-    asked = target(line, **state).words
-    assert (asked.feed, asked.plunge_feed) == (feed, feed)
+    requested = target(line, **state).words
+    assert (requested.feed, requested.plunge_feed) == (feed, feed)
 
 
 # ---------------------------------------------------------------- contours

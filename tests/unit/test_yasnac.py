@@ -9,7 +9,7 @@ from g12.cycles.yasnac import plan_circle
 from g12.errors import Refusal
 from g12.request.context import Tool
 from g12.request.words import Words
-from support.planner_context import BAD_MODES, MM, told, words_of
+from support.planner_context import BAD_MODES, MM, reported, words_of
 
 
 def plan(words, **found):
@@ -88,7 +88,7 @@ def beyond(word, at, tool, rule, to):
     ],
 )
 def test_a_bad_block_is_refused_by_name(words, rule):
-    assert told(plan, words) == f"G12: {rule}"
+    assert reported(plan, words) == f"G12: {rule}"
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_a_bad_block_is_refused_by_name(words, rule):
     ],
 )
 def test_a_mode_that_cannot_work_is_refused(modes, rule):
-    assert told(plan, "I50", **modes) == f"G12: {rule}"
+    assert reported(plan, "I50", **modes) == f"G12: {rule}"
 
 
 LENGTHS = st.floats(0.01, 60.0)

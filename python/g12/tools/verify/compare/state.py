@@ -114,7 +114,7 @@ def judge_acts(section: SectionContour, moves: Sequence[Move]) -> Iterator[Findi
         yield Finding("act-extra", after, {"act": act, "found": _location(after)})
         return
     act, after = expected[0]
-    values = {"act": act, "asked": _location(after)}
+    values = {"act": act, "expected": _location(after)}
     elsewhere = [{"found": _location(line)} for text, line in found if text == act]
     code = "act-elsewhere" if elsewhere else "act-missing"
     yield Finding(code, section.acts[at].line, {**values, **(elsewhere or [{}])[0]})

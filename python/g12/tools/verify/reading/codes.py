@@ -121,7 +121,7 @@ class Codes:
             return self.name_of(text.codes)
         return self.shape_of(text) or self.holes_of(text)
 
-    def wanted_in(self, texts: Iterable[Text]) -> set[Text]:
+    def selected_in(self, texts: Iterable[Text]) -> set[Text]:
         """Return the lines of a file whose words matter for what is programmed, or may: G[12], G#1.
 
         In a section compensation does not: a line that is put beside it may change its plan.

@@ -41,7 +41,7 @@ def executed_everywhere(
     tools: Tools,
     parameters: Parameters = None,
 ) -> tuple[list[Block], bool]:
-    """Return every execution of the blocks that matter, in order; whether C's clamp is told of.
+    """Return every execution of the blocks that matter, in order; whether C's clamp is reported.
 
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
     are all, with what the subs of C's clamp tell, if it takes those.
@@ -51,7 +51,7 @@ def executed_everywhere(
     files = [
         each
         for each in subs
-        if each.stem != CALL and codes.wanted_in(read_lines(each))  # the event's own is a cycle
+        if each.stem != CALL and codes.selected_in(read_lines(each))  # the event's own is a cycle
     ]
     for some in filter(None, dict.fromkeys(((*files, *clamps), tuple(clamps)))):
         copies = Copies(program, some)
@@ -59,8 +59,8 @@ def executed_everywhere(
         copy = copies.trace(tracer, lines, tools, parameters, watch_offsets=True)
         if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
             return blocks_in(copy, copies.texts), bool(clamps)
-    wanted = codes.wanted_in(read_lines(program))
-    return executed(tracer, program, trace, wanted.__contains__, parameters), False
+    selected = codes.selected_in(read_lines(program))
+    return executed(tracer, program, trace, selected.__contains__, parameters), False
 
 
 class Copies:
@@ -107,13 +107,13 @@ def watched_lines(
 
     The sub of a clamp's code, by its file's name, tells that it is called.
     """
-    wanted = codes.wanted_in(copies.texts)
+    selected = codes.selected_in(copies.texts)
     for index, (text, line) in enumerate(zip(copies.texts, copies.lines)):
         skip = index + 1 - text.number
         if text.file in clamps:
-            told = f"(DEBUG,{TAG} {CLAMP} {clamps[text.file]})"
-            yield (line, told) if BEGIN.match(line) else (line,)
-        elif text in wanted and not text.too_long:
+            report = f"(DEBUG,{TAG} {CLAMP} {clamps[text.file]})"
+            yield (line, report) if BEGIN.match(line) else (line,)
+        elif text in selected and not text.too_long:
             yield (*reports_before(text, skip), line, *reports_after(text, skip))
         else:
             yield (line,)

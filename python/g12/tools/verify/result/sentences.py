@@ -74,7 +74,7 @@ FINDINGS = {
     "face-acceleration": "{axis} would need {times:2} times its acceleration here",
     "act-missing": "{act} does not come",
     "act-extra": "{act} comes {found}, where the program does not have it",
-    "act-elsewhere": "{act} comes {found}, not {asked}",
+    "act-elsewhere": "{act} comes {found}, not {expected}",
 }
 NOTES = {
     "bored-assumed": (
