@@ -124,13 +124,30 @@ CASES = [
     ("mill", f"G49|G0 Z1|{LOW}", "length-not-used 8"),
     ("any mill", f"G10 L1 P4 Z20 R5|T4 M6|S900 M3|G43|G0 Z1|{LOW}", ""),
     ("any mill", f"T4 M6|S900 M3|G43|G43.2 H1|G0 Z1|{LOW}", "length-commanded 7"),
-    ("any mill", f"T4 M6|S900 M3|G43.1 Z24|G0 Z1|{LOW}", "length-commanded 6"),
+    ("any mill", f"T4 M6|S900 M3|G43.1 Z24|G0 Z1|{LOW}", "length-deeper 6"),
+    ("any mill", f"T4 M6|S900 M3|G43.1 Z31|G0 Z1|{LOW}", "length-commanded 6"),
+    ("any mill", f"T3 M6|S900 M3|G43.2 H3|T4 M6|S900 M3|G0 Z1|{LOW}", "length-deeper 8"),
+    ("any mill", f"T4 M6|S900 M3|G43 H1|o1 if [0]|G43.2 H1|o1 endif|G0 Z1|{LOW}",
+     "length-deeper 9"),
     # a length that changes before a cycle, with no move between
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43|G13 I9 Z-2 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43.1 Z30|G13 I9 Z-2 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G43|G0 X0 Y0 Z50|G43.2 H3|G13 I9 Z-2 D4", "length-commanded 7"),
     ("any mill", "T4 M6|S900 M3|G43|G0 X0 Y0 Z5|G49|G13 I9 Z-2 D4|G0 Z9", "length-not-used 7"),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G91 G43|G13 I9 Z-22 D4|G0 Z9", ""),
+    ("any mill", "T4 M6|S900 M3|G43.1 Z20|G0 X0 Y0 Z5|G13 I9 Z-2 D4", "length-deeper 6"),
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z9|T10 M6 G43|S900 M3|G0 X40 Z9|G49|"
+     f"T4 M6|S900 M3|G43|G0 X80 Z1|{LOW}|G0 Z9", ""),
+    # a rapid with another length than the tool's
+    ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z5|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}",
+     "rapid-length 5"),
+    ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z50|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}", ""),
+    ("mill", f"{LOW}|G0 Z1|G49|G0 Z10|X80", "rapid-length-not-used 9"),
+    ("mill", f"{LOW}|G0 Z1|G49|G0 Z60|X80", ""),
+    ("mill", f"{LOW}|G10 L1 P4 R2", "path-off 6, tool-table-set 7"),
+    # a Z0 that blocks compute each for itself
+    ("any mill", "T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5|X40|X40 Z-2|"
+     "G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5", "rapid-into 8"),
     # what the preview executes otherwise than a machine may
     ("mill", f"{LOW}|/X40|G0 Z1|X40|{LOW}|/G0 Z9", "block-delete 7"),
     ("mill", f"M61 Q3|{LOW}", "tool-unread 6"),

@@ -100,7 +100,11 @@ def part_of(ini: Ini) -> Part:
 
 def part_of_program(ini: Ini, trace: Trace) -> Part:
     """Return the part of a program; on a lathe C turns it about X0, if C moves at all."""
-    turned = any(move.start[axis] != move.end[axis] for move in trace.moves for axis in (Y, C))
+    turned = any(
+        (move.kind == "arc" and move.plane == 17)  # on the face; of a circle no end differs
+        or any(move.start[axis] != move.end[axis] for axis in (Y, C))
+        for move in trace.moves
+    )
     part = part_of(ini)
     turning = part.turning and turned
     return replace(part, turning=turning, centre=last_x0(trace) if turning else 0.0)

@@ -11,6 +11,7 @@ worker restores F at the next line with a canonical call.)
 
 import contextlib
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -32,9 +33,11 @@ LAUNCH = (
     "import sys; sys.path[0] = {folder!r}; import worker; sys.path.pop(0); "
     "worker.serve({descriptor})"
 )
-# LinuxCNC prints it where a REMAP line needs the machine's Python, which did not load. What its
-# interpreter does after it is undefined: it dies, or goes on.
-PYTHON_REQUIRED = "Python plugin required for"
+# LinuxCNC prints such a line for a REMAP line that it does not load. What its interpreter does then
+# is undefined: it dies, or goes on.
+REFUSED_REMAP = re.compile(
+    r"^(?!warning|unrecognized).*\d:REMAP = |^REMAP INI line:", re.MULTILINE | re.IGNORECASE
+)
 NO_BYTECODE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
 ProgramPath = str | os.PathLike
@@ -149,7 +152,7 @@ class Tracer:
         self._connection.send(self._machine)
         answer = self._answer(60.0)
         error, _ = answer["error"] or ("", 0)
-        if error or PYTHON_REQUIRED in answer["printed"]:
+        if error or REFUSED_REMAP.search(answer["printed"]):
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{error}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]

@@ -44,6 +44,7 @@ STATE_VARIABLES = (
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
 )  # fmt: skip
+LENGTH_GROUP = 8  # index of G43, G43.1, G43.2 and G49 in a block's G codes
 LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes
 OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # first parameter
 OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
@@ -207,7 +208,9 @@ class Canon:
         self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
         self.work = self.g92 = self.length = NO_OFFSET
         self.shift: tuple[float, ...] = NO_OFFSET  # of the tip since the last move, no axis moving
+        self.length_code = 490  # ten times the G code that set it
         self.changed_tool = False  # in this block
+        self.stale = False  # the interpreter's position, since the last move
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
@@ -288,7 +291,9 @@ class Canon:
         self.g92 = in_mm(offset)
 
     def tool_offset(self, *offset: float) -> None:
-        """Note the tool length offset, inches."""
+        """Note the tool length offset, inches, and the code that sets it."""
+        this = interpreter_object()
+        self.length_code = this.blocks[this.remap_level].g_modes[LENGTH_GROUP]
         before, self.length = self.length, in_mm(offset)
         self.shift = tuple(a + b - c for a, b, c in zip(self.shift, before, self.length))
 
@@ -371,7 +376,10 @@ class Canon:
 
     def _note_conditions(self, state) -> None:
         """Note changes in the conditions of the following moves."""
-        known, self.in_force = self.in_force, conditions(state, self.length)
+        known, self.in_force = (
+            self.in_force,
+            conditions(state, length_code(self.length_code, self.length)),
+        )
         for word in self.in_force:
             if word not in known:
                 self._note(word)
@@ -434,17 +442,19 @@ class Canon:
         An axis that the move does not command starts exactly where it ends.
         """
         shift, self.shift = self.shift, NO_OFFSET
-        moved = map(float.__add__, self.position, shift)
-        pairs = zip(moved, self._resolved(tip))
-        return tuple(end if abs(start - end) < CART_FUZZ else start for start, end in pairs)
+        moved = [before + by for before, by in zip(self.position, shift)]
+        starts, self.stale = self.position if self.stale else moved, False
+        pairs = zip(moved, starts, self._resolved(tip))
+        return tuple(end if abs(at - end) < CART_FUZZ else start for at, start, end in pairs)
 
     def _read_position_after_tool_change(self) -> None:
         """Shift the tip after a block with M6, when the interpreter queries its position.
 
         The preview answers with the end of the last move in program coordinates, without regard to
-        offsets that have changed since.
+        offsets that have changed since: then it is ``stale``, and no machine's tip is there.
         """
         if self.changed_tool:
+            self.stale = any(self.shift)
             self.shift = tuple(map(float.__sub__, self._resolved(self.tip), self.position))
             self.changed_tool = False
 
@@ -478,7 +488,7 @@ def work_offsets() -> dict[str, tuple]:
     }
 
 
-def conditions(state, length: tuple) -> tuple:
+def conditions(state, length: int) -> tuple:
     """Return the conditions besides the path, as words; ``state`` is the modal state of a line.
 
     LinuxCNC brings that state up to date at the end of a block.
@@ -488,7 +498,7 @@ def conditions(state, length: tuple) -> tuple:
     path = f"G{state.path_mode / 10:g}"
     return (
         f"G{state.origin / 10:g}",
-        f"G{length_code(state.tool_length_offset, length) / 10:g}",
+        f"G{length / 10:g}",
         f"{path} P{blending[3]:.10g} Q{blending[4]:.10g}" if path == "G64" else path,
         f"G{state.gcodes[SPINDLE_MODE] / 10:g}",
         f"M{state.spindle}",

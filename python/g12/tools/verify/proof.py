@@ -32,6 +32,7 @@ from g12.tools.verify.mistakes.tool import (
     judge_feeds,
     judge_levels,
     judge_native_c,
+    judge_rapid_lengths,
     judge_spindle,
     judge_tool_length,
 )
@@ -220,12 +221,13 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     trace, ini, moves = subject.trace, subject.ini, subject.moves
     cuts = [*found.pockets, *found.sections, *found.holes]
     texts = read_lines(subject.program)
-    yield from judge_tool_length(cuts, moves, trace.lengths, trace.events, texts)
+    yield from judge_tool_length(cuts, moves, trace.lengths, trace.events)
+    yield from judge_rapid_lengths(subject, known) if not part_of(ini).turning else ()
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
     yield from judge_reversals([each.commanded for each in found.sections])
-    yield from judge_preview(texts)
+    yield from judge_preview(texts, min((cut.line for cut in cuts), default=0))
     yield from not_judged(moves, known)
     if part_of(ini).turning:
         yield from judge_native_c(moves, known, subject.path)

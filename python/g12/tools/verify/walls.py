@@ -40,6 +40,7 @@ from g12.tools.verify.subject import Subject
 
 WALL = 2.0  # how thick the wall of a pocket is, at least
 SAME_PLACE = 0.05
+DECIMALS = 6  # of a Z0
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 FAR = 1e6  # round a cylinder
@@ -107,15 +108,15 @@ def _approach_to(block: Block, moves: Sequence[Move]) -> Approach:
 
 def solids_of_circles(circles: Approached) -> Iterator[Solid]:
     """Yield what circles are cut in."""
-    tops: dict[float, float] = {}  # by the program's Z0
+    tops: dict[float, float] = {}  # by the program's Z0, rounded: each block computes its own
     for target, (came, fed, floor, _) in circles:
-        face = target.wall.face
+        face = round(target.wall.face, DECIMALS)
         if face not in tops and floor < min(came, face) - SAME_LEVEL:
             tops[face] = min(face, fed) if fed is not None and floor < fed - SAME_LEVEL else face
     starts = sorted(each.came if each.fed is None else each.fed for _, each in circles)
     for target, approach in circles:
         wall, floor = target.wall, approach.floor + SAME_LEVEL
-        top = tops.get(wall.face, -math.inf)
+        top = tops.get(round(wall.face, DECIMALS), -math.inf)
         top = top if floor < top else next((start for start in starts if start > floor), None)
         if top is not None:
             yield Solid(disc(wall.origin, wall.radius + (WALL if wall.inside else 0.0)), top)

@@ -15,6 +15,7 @@ STORED = {28.0: "G28", 30.0: "G30"}
 SETTING = {28.1: "G28", 30.1: "G30"}
 RETURN_LEVELS = {98.0: "G94", 99.0: "G95"}  # what a lathe of the Fanuc kind means by them
 DRILLING = (73.0, 74.0, *map(float, range(81, 90)))  # cycles that have return levels
+TABLE = {("L", "1"), ("L", "10"), ("L", "11")}  # of G10: the tool table
 TOOL_NUMBER = ("M", "61")
 STRAIGHT_BACK = -0.999999  # cosine of the angle between the two directions, at most
 
@@ -32,15 +33,23 @@ def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
             yield Finding("place-not-set", text.number, {"code": code})
 
 
-def judge_preview(texts: Sequence[Text]) -> Iterator[Finding]:
-    """Yield the lines that LinuxCNC's preview may execute otherwise than the machine."""
+def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
+    """Yield the lines that LinuxCNC's preview may execute otherwise than the machine.
+
+    ``first`` is the line of the first cut.
+    """
     found = {
         "block-delete": [text.number for text in texts if text.deleted],
+        "tool-table-set": [t.number for t in texts if t.number > first and _sets_tools(t)],
         "tool-unread": [text.number for text in texts if TOOL_NUMBER in text.words],
     }
     for code, lines in found.items():
         if lines:
             yield Finding(code, lines[0], {"lines": ", ".join(map(str, lines))})
+
+
+def _sets_tools(text: Text) -> bool:
+    return 10.0 in text.codes and not TABLE.isdisjoint(text.words)
 
 
 def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding]:

@@ -35,6 +35,10 @@ FINDINGS = {
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
+    "rapid-length": (
+        "with the length of T{tool} in the table the tip goes by rapid to {level:mm} from Z0: "
+        "the length in force is {length:mm} (G43 H{tool} after M6?)"
+    ),
     # holes
     "act-off-bottom": "{act} does not come at the bottom of the hole",
     "blended-hole": (
@@ -126,6 +130,10 @@ NOTES = {
         "no G43: the tool table's length of T{tool}, {off:fine}, is not used; "
         "right only where Z was touched off with this tool"
     ),
+    "rapid-length-not-used": (
+        "with the length of T{tool} in the table the tip goes by rapid to {level:mm} from Z0: "
+        "the length in force is {length:mm} (G49)"
+    ),
     "length-commanded": (
         "the tool length in force, {length:mm} by {code}, is not that of T{tool} in the table: "
         "it cuts {off:fine} {where} than with G43"
@@ -173,8 +181,7 @@ NOT_JUDGED = {
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
     "first-rapid": (
-        "what the first rapid goes through on its way to {at:place}: "
-        "where the tool comes from is not known"
+        "what the rapid to {at:place} goes through: where the tool comes from is not known"
     ),
     "rapid-beside": (
         "rapids below the part's top or Z0, beside what is cut: line {lines}; "
@@ -196,6 +203,10 @@ NOT_JUDGED = {
     ),
     "block-delete": (
         "the program with block delete off: a preview skips what begins with /: line {lines}"
+    ),
+    "tool-table-set": (
+        "cuts with the sizes before G10 L1, L10 or L11: line {lines}; verify takes the tool "
+        "table as the program leaves it"
     ),
     "tool-unread": (
         "the tool of M61, which LinuxCNC's preview does not read: line {lines}; use T and M6"
