@@ -22,7 +22,8 @@ from g12.tools.path.part import X, Z, is_sideways
 from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.mistakes.neighbours import judge_circles
-from g12.tools.verify.result.finding import Finding, also_in
+from g12.tools.verify.mistakes.tool import length_set_by
+from g12.tools.verify.result.finding import Finding, also_in, lines_in_words
 from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.subject import Subject
 from g12.tools.verify.walls import beyond, flat_circles
@@ -58,9 +59,10 @@ def judge_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     for each in (each for each in found if each.is_not_judged):
         causes.setdefault(each.code, []).append(each)
     for same in causes.values():
-        lines = sorted({each.line for each in same})
-        values = {**same[0].values, "lines": ", ".join(map(str, lines))}
-        yield replace(same[0], line=lines[0], values=values)
+        lines = {each.line for each in same}
+        yield replace(
+            same[0], line=min(lines), values={**same[0].values, "lines": lines_in_words(lines)}
+        )
 
 
 def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
@@ -110,6 +112,29 @@ def _in_view(
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))
+
+
+def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
+    """Yield rapids that lead the tip below Z0, as another length than the tool's is in force.
+
+    Of one tool and length the first is reported, if no cut is: ``known`` are the moves of cuts.
+    """
+    moves, lengths, z0 = subject.moves, subject.trace.lengths, float(subject.zero[Z])
+    if not any(abs(move.tool_offset[Z]) > SAME_LEVEL for move in moves):
+        return
+    deeper = [lengths.get(move.tool, 0.0) - move.tool_offset[Z] for move in moves]
+    reported = {(moves[index].tool, deeper[index]) for index in known}
+    for index in (
+        i for i, move in enumerate(moves) if move.kind == "rapid" and deeper[i] > SAME_LEVEL
+    ):
+        move, level = moves[index], moves[index].end[Z] - deeper[index] - z0
+        of = (move.tool, deeper[index])
+        if level < -SAME_LEVEL and subject.ends_known[index] and of not in reported:
+            reported.add(of)
+            values = {"tool": move.tool, "length": move.tool_offset[Z], "level": level}
+            cancelled = length_set_by(subject.trace.events, index) == "G49"
+            code = "rapid-length-not-used" if cancelled else "rapid-length"
+            yield Finding(code, subject.line(index), values, subject.end(index))
 
 
 def _words_of(

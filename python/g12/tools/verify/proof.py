@@ -27,12 +27,11 @@ from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
 from g12.tools.verify.commanded import commanded_by
-from g12.tools.verify.in_material import judge_material
+from g12.tools.verify.in_material import judge_material, judge_rapid_lengths
 from g12.tools.verify.mistakes.tool import (
     judge_feeds,
     judge_levels,
     judge_native_c,
-    judge_rapid_lengths,
     judge_spindle,
     judge_tool_length,
 )

@@ -17,7 +17,6 @@ from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL, SIZE
-from g12.tools.verify.subject import Subject
 
 USER_CODE = re.compile(r"M1\d\d P.*")  # may turn a spindle of its own
 SPEED = re.compile(r"S[\d.]+")
@@ -77,7 +76,7 @@ def judge_tool_length(
             continue
         reported.add((first.tool, deeper))
         code = "length-deeper" if deeper > 0.0 else "length-higher"
-        set_by = _length_set_by(events, at)
+        set_by = length_set_by(events, at)
         code = code if compensated and set_by != "G49" else "length-not-used"
         added = set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0)
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
@@ -85,31 +84,10 @@ def judge_tool_length(
         yield Finding("length-commanded" if added else code, cut.line, values, file=cut.file)
 
 
-def _length_set_by(events: Sequence[Event], at: int) -> str:
+def length_set_by(events: Sequence[Event], at: int) -> str:
     """Return the code that set the tool length of a move (index), if no tool was changed since."""
     changes = (event.text for event in reversed(events) if event.at <= at)
     return next((each for each in changes if each.startswith(("tool ", "G43", "G49"))), "")
-
-
-def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
-    """Yield rapids that lead the tip below Z0, as another length than the tool's is in force.
-
-    Of one tool and length the first is reported, if no cut is: ``known`` are the moves of cuts.
-    """
-    moves, lengths, z0 = subject.moves, subject.trace.lengths, float(subject.zero[Z])
-    if not any(abs(move.tool_offset[Z]) > SIZE for move in moves):
-        return
-    deeper = [lengths.get(move.tool, 0.0) - move.tool_offset[Z] for move in moves]
-    reported = {(moves[index].tool, deeper[index]) for index in known}
-    for index in (i for i, move in enumerate(moves) if move.kind == "rapid" and deeper[i] > SIZE):
-        move, level = moves[index], moves[index].end[Z] - deeper[index] - z0
-        of = (move.tool, deeper[index])
-        if level < -LEVEL and subject.ends_known[index] and of not in reported:
-            reported.add(of)
-            values = {"tool": move.tool, "length": move.tool_offset[Z], "level": level}
-            cancelled = _length_set_by(subject.trace.events, index) == "G49"
-            code = "rapid-length-not-used" if cancelled else "rapid-length"
-            yield Finding(code, subject.line(index), values, subject.end(index))
 
 
 def judge_levels(cuts: Sequence[MeasuredCut], moves: Sequence[Move]) -> Iterator[Finding]:

@@ -9,7 +9,7 @@ from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.result.finding import Finding, also_in
+from g12.tools.verify.result.finding import Finding, also_in, lines_in_words
 
 STORED = {28.0: "G28", 30.0: "G30"}
 SETTING = {28.1: "G28", 30.1: "G30"}
@@ -45,7 +45,7 @@ def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
     }
     for code, lines in found.items():
         if lines:
-            yield Finding(code, lines[0], {"lines": ", ".join(map(str, lines))})
+            yield Finding(code, lines[0], {"lines": lines_in_words(lines)})
 
 
 def _sets_tools(text: Text) -> bool:

@@ -10,6 +10,7 @@ from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.result.sentences import FINDINGS, NOT_JUDGED, NOTES
 
 SENTENCES = {**FINDINGS, **NOTES, **NOT_JUDGED}
+MOST_LINES = 10  # that a sentence names
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,13 @@ class Finding:
 def also_in(lines: Collection[int]) -> str:
     """Return further lines in brackets."""
     return f" (also in line {', '.join(map(str, sorted(lines)))})" if lines else ""
+
+
+def lines_in_words(lines: Collection[int]) -> str:
+    """Return lines in words, of many the first ones."""
+    first = sorted(set(lines))
+    more = f" and {len(first) - MOST_LINES} more" if len(first) > MOST_LINES else ""
+    return ", ".join(map(str, first[:MOST_LINES])) + more
 
 
 def in_words(sentence: str, values: Mapping[str, Any], unit: Unit) -> str:
