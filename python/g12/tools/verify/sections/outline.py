@@ -55,16 +55,21 @@ class Outline:
         """Points (complex) along the shape."""
         return complex_points(self.line)
 
+    @cached_property
+    def _area(self) -> float:
+        """Twice the area that it encloses, positive counterclockwise."""
+        return float((self.points.conj() * np.roll(self.points, -1)).imag.sum())
+
     @property
     def is_closed(self) -> bool:
-        """Tell whether the shape ends where it begins."""
-        return abs(self.points[0] - self.points[-1]) < 2 * MEETS
+        """Tell whether the shape ends where it begins; one that goes there and back is not."""
+        meets = abs(self.points[0] - self.points[-1]) < 2 * MEETS
+        return meets and abs(self._area) > MEETS * self.line.length
 
     @property
     def tool_is_inside(self) -> bool:
         """Tell whether the tool is inside of a closed shape."""
-        area = (self.points.conj() * np.roll(self.points, -1)).imag.sum()
-        return (area > 0.0) == (self.side > 0)
+        return (self._area > 0.0) == (self.side > 0)
 
     def part(self, width: float) -> BaseGeometry:
         """Return the part beside it, as far as a width; nothing without a side.
