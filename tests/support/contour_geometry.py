@@ -134,6 +134,22 @@ def distance_from_path(points, path):
     return abs(arms - part * along).min(axis=1)
 
 
+def apart(one, other, step=20):
+    """Return how far two sampled paths leave each other; their points are rows of coordinates."""
+    return max(_farthest_off(one[::step], other), _farthest_off(other[::step], one))
+
+
+def _farthest_off(points, path):
+    start, along = path[:-1], np.diff(path, axis=0)
+    squared = np.maximum((along**2).sum(axis=1), 1e-18)
+    found = 0.0
+    for point in points:
+        share = np.clip(((point - start) * along).sum(axis=1) / squared, 0.0, 1.0)
+        off = point - start - share[:, None] * along
+        found = max(found, np.linalg.norm(off, axis=1).min())
+    return found
+
+
 def outward(shapes, by):
     """Return each shape set ``by`` to the left, with the arc about the corner after it."""
     moved = [[shape.aside(by)] for shape in shapes]
