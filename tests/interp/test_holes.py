@@ -143,6 +143,18 @@ def test_a_clamp_whose_codes_are_unknown_is_refused(settings, block, why):
     assert traced.error.text == why and len(traced.moves) == 1
 
 
+def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):
+    text = call("face_holes")
+    short, kind = text[: text.rindex(" [")], text[text.rindex("[") :]
+    traces = [lathe.trace_text(program(each)) for each in (short, f"{short} [0]")]
+    assert (
+        kind == "[0.000000000]" and traces[0].error is None and traces[0].moves == traces[1].moves
+    )
+    shorter = short[: short.index("]") + 1]
+    error = lathe.trace_text(program(shorter)).error
+    assert error.text.startswith("face_holes line 6: circle_diameter 0 must be greater")
+
+
 def test_300_random_bad_calls_move_nothing(lathe):
     chance = random.Random(28)
     bad = {

@@ -238,6 +238,15 @@ def test_a_shape_is_refused_where_no_section_can_begin(lathe, shape, changed, ru
     assert refused(lathe, program(call(shape), **changed)) == f"{shape} line 5: {rule}"
 
 
+def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):
+    three = program("o<polar_slot> call [8] [30] [4]")
+    assert refused(lathe, three).startswith("polar_slot line 5: depth_per_pass 0 must be greater")
+    text = call("polar_slot")
+    short = text[: text.rindex(" [")]
+    traces = [lathe.trace_text(program(each)) for each in (short, f"{short} [0]")]
+    assert traces[0].error is None and traces[0].moves == traces[1].moves
+
+
 def test_without_a_feed_anywhere(lathe):
     text = program(call("polar_slot", feed=LEFT), feed="F0")
     assert refused(lathe, text) == "polar_slot line 5: feed is missing, and no F is active"

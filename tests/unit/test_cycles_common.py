@@ -23,6 +23,11 @@ def test_the_steps_are_enough_and_one_less_would_not_be(first, way, step):
     assert (count - 1) * step < way
 
 
+def test_a_quotient_beyond_all_counting_is_still_a_count():
+    for step in (1e-300, 1e-310):
+        assert steps_between(0.0, 1e6, step, TOLERANCE) == 1_000_000_000
+
+
 def planned(planner, context, words, *more):
     """Return what the operator is told."""
     try:
@@ -73,6 +78,7 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
         (LOADED, None, 5.8, None),  # wear
         (LOADED, None, None, None),
         (LOADED, 0.0, 9.0, None),
+        (LOADED, 4.0, 9.0, None),  # no diameter, as D0
         (LOADED, 77.0, 9.0, None),  # refused elsewhere
         (MM, 2.0, None, None),  # nothing is loaded
         (MM._replace(spindle_tool=Tool(4, 0.0)), 2.0, None, None),

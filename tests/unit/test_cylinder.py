@@ -89,6 +89,25 @@ def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     assert [run.stop for run in runs(contour)] == [True, True, True]
 
 
+@pytest.mark.parametrize(
+    ("ends", "slow"),
+    [
+        ([dict(z=12.0), dict(x=10.0)], "x_acceleration"),
+        ([dict(c=10.0), dict(x=10.0)], "z_acceleration"),
+        ([dict(x=10.0), dict(c=10.0)], "c_acceleration"),
+    ],
+)
+def test_the_slower_axis_decides_where_the_tool_stops(ends, slow):
+    """A right angle at F600, 1000 per second squared, that stops after it is rounded by 0.07."""
+    corner = empty()
+    for line, end in enumerate(ends, 1):
+        corner.line(**end, line=line, feed=600.0)
+    even = {"tolerance": 0.16, "c_acceleration": math.degrees(1000.0 / RADIUS)}
+    assert [run.stop for run in runs(corner, **even)] == [False, True]
+    slower = {slow: 0.4 * {**MACHINE._asdict(), **even}[slow]}
+    assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
+
+
 def test_an_arc_of_too_many_segments_is_refused():
     contour = empty()
     contour.arc(1, j=9e5, line=3, feed=100.0)

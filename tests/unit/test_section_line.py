@@ -100,6 +100,11 @@ def test_o_words(kind, lines):
     assert [split_line(raw, POLAR_WORDS).control for raw in lines] == [kind] * len(lines)
 
 
+def test_an_o_word_keeps_its_text_and_its_comments():
+    line = split_line("O100 If [#1 EQ 2] (msg, two) ; or not", POLAR_WORDS)
+    assert (line.text, line.comments) == ("o100if[#1eq2]", ("msg, two",))
+
+
 def test_words_are_split_at_their_values():
     text = "g1x-[1+[2*3]]c#<_x>i##1j-sin[30]katan[1]/[2]$0@5#1=[2]"
     assert list(split_words(text)) == [

@@ -32,6 +32,10 @@ def test_the_circle_on_the_side_of_i():
     assert (circle.half_turns, circle.circles, circle.x, circle.y) == (0, 1, 3.0, -4.0)
 
 
+def test_the_smallest_circle():
+    assert plan("I.00508").radius == 0.00508
+
+
 def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move():
     assert plan("I50 R10 D2", tool_in_table={2: Tool(2, 10 - 1e-11)}.get).approach == 0
 
@@ -84,6 +88,7 @@ def beyond(word, at, tool, rule, to):
         ),
         ("I50 L0", "L0 must be at least 1"),
         ("I50 D3", "D3 has the negative diameter -4 in the tool table"),
+        ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
         ("I50 Z-1", "Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
     ],
 )
