@@ -45,19 +45,19 @@ class RememberedTraces:
 
     def known(self, tracer, program, **how):
         """Return the sound trace of a program."""
-        requested = (
+        key = (
             tracer.ini.text,
             (tracer.folder / "tool.tbl").read_text(),
             program.read_text(),
             how,
         )
-        if repr(requested) not in self._known:
+        if repr(key) not in self._known:
             if not tracer._process:
                 self._start(tracer)
                 self._no_end = tracer._no_end
-            self._known[repr(requested)] = self._trace(tracer, program, **how)
+            self._known[repr(key)] = self._trace(tracer, program, **how)
         tracer._no_end = self._no_end
-        return self._known[repr(requested)]
+        return self._known[repr(key)]
 
 
 @pytest.fixture(scope="module")
@@ -67,12 +67,12 @@ def remembered():
 
 def findings(name, program, folder, fault=None, words=()):
     """Return what verify finds in a program of a table on its machine: codes, lines, sentences."""
-    requested = program_of(name, program)
+    machined = program_of(name, program)
     for each in words:
-        assert each["words"] in requested.text
-        requested = requested._replace(text=requested.text.replace(each["words"], each["becomes"]))
-    ini = with_fault(requested.ini(ROOT), fault, folder) if fault else requested.ini(ROOT)
-    proof = prove(requested.written(folder), ini)
+        assert each["words"] in machined.text
+        machined = machined._replace(text=machined.text.replace(each["words"], each["becomes"]))
+    ini = with_fault(machined.ini(ROOT), fault, folder) if fault else machined.ini(ROOT)
+    proof = prove(machined.written(folder), ini)
     return [(each.code, str(each.line), each.text()) for each in proof.judged if each.is_finding]
 
 

@@ -248,7 +248,7 @@ def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("text", "files", "expected", "says"),
+    ("text", "files", "feature", "says"),
     [
         (
             with_lines(MILL, "RS274NGC", "REMAP = g13 modalgroup=1 ngc=mine\n"),
@@ -264,11 +264,11 @@ def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
     ],
 )  # fmt: skip
 def test_what_check_calls_a_problem_is_refused_and_nothing_is_touched(
-    tmp_path, capsys, text, files, expected, says
+    tmp_path, capsys, text, files, feature, says
 ):
     ini = write_config(tmp_path, text, **files)
     before = content_of(tmp_path)
-    assert installed(ini, expected) == 1
+    assert installed(ini, feature) == 1
     error = capsys.readouterr().err
     assert says in error
     assert all(line.startswith("g12 install: ") for line in error.splitlines())

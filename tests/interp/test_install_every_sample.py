@@ -74,8 +74,8 @@ def full_set(ini):
     lathe = "Y" not in ini.axes
     control = "programs-fanuc-lathe" if lathe else "programs-haas-mill"
     codes = [name for name in (LATHE if lathe else MILL) if not why_not(ini, name)]
-    expected = [*codes, "forms"] if any(name in forms.FORMS_OF for name in codes) else codes
-    return expected if ini.get("FILTER", "nc") else [*expected, control]
+    names = [*codes, "forms"] if any(name in forms.FORMS_OF for name in codes) else codes
+    return names if ini.get("FILTER", "nc") else [*names, control]
 
 
 def is_outside(ini):
@@ -129,21 +129,21 @@ def in_and_out(path, names):
 def no_interpreter(monkeypatch):
     """Install a small package, and take the modules of each config for loaded."""
     monkeypatch.setattr(package_copy, "package_files", lambda: PACKAGE)
-    requested = {}
+    known = {}
 
     def own_python(text):
         """Return what the stock interpreter says of a config with Python of its own, asked once."""
         if not text.ini().get("PYTHON", "TOPLEVEL"):
             return Python(), None
-        if text.path not in requested:
+        if text.path not in known:
             config = load_config(text, set())
-            requested[text.path] = config.python or Python(), config.failure
-        return requested[text.path]
+            known[text.path] = config.python or Python(), config.failure
+        return known[text.path]
 
     def loaded(text, codes, overlay=None):
         remaps = remaps_in(text)
         installed = bool(codes_of(remaps))
-        unasked = installed and text.path not in requested
+        unasked = installed and text.path not in known
         python, failure = (Python(), None) if unasked else own_python(text)
         if installed:
             python = replace(python, remap={**python.remap, **HANDLERS})
@@ -196,9 +196,9 @@ def test_every_feature_goes_in_and_out(samples, content, package, name):
     path = samples / name
     ini, before = read_ini(path), content(path.parent)
     unfit = refusal(path, ["circle-mill" if "Y" in ini.axes else "polar"], True) & NO_MACHINE
-    expected = full_set(ini)
-    if expected and not unfit:
-        in_and_out(path, expected)
+    names = full_set(ini)
+    if names and not unfit:
+        in_and_out(path, names)
     (path.parent / "g12").symlink_to(package)
     try:
         for feature in features.FEATURE_NAMES:

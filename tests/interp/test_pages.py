@@ -54,7 +54,7 @@ def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, flats, tm
     assert main(["verify", *words, "--json"]) == 0
     reported = json.loads(capsys.readouterr().out)
     assert [
-        [requested for requested, _ in part["across_flats"]] for part in reported["sections"]
+        [programmed for programmed, _ in part["across_flats"]] for part in reported["sections"]
     ] == [pytest.approx(sizes) for sizes in flats]
     assert [part["reached"][0] for part in reported["sections"]] == pytest.approx(
         [13.5] * len(flats), abs=0.005

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.1 on the stock interpreter: what the words of a section mean, and what it leaves after."""
+"""G12.1 on the stock interpreter: what the words of a section mean, and the state after it."""
 
 import math
 

@@ -358,8 +358,8 @@ def test_an_ini_that_linuxcnc_does_not_read_is_reported_and_never_passed_over(in
     """2.10 reads nothing of such a file, and its interpreter goes on without the remaps."""
     odd = ini.with_name("odd.ini")
     odd.write_text(ini.read_text() + "a line without its sign\n")
-    requested = "import linuxcnc, sys; linuxcnc.ini(sys.argv[1])"
-    if subprocess.run([PYTHON, "-c", requested, odd], capture_output=True).returncode:
+    reading = "import linuxcnc, sys; linuxcnc.ini(sys.argv[1])"
+    if subprocess.run([PYTHON, "-c", reading, odd], capture_output=True).returncode:
         with pytest.raises(TraceFailure, match=r"does not read it: .*'a line without its sign'"):
             Tracer(odd)
     else:

@@ -125,8 +125,8 @@ def near_each(rows):
 
 def test_the_haas_page_on_g10_unedited(tracers):
     text = translation(MANUALS / "haas_g10.nc", "haas-mill", "--units", "inch")
-    requested = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
-    after = [f"#{number}={value}" for number, value in enumerate(requested, 100)]
+    variables = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
+    after = [f"#{number}={value}" for number, value in enumerate(variables, 100)]
     text = text.rsplit("M2", 1)[0] + "\n".join(["G0 G54 X0", "G43 H5", *after, ""])
     traced = tracers("haas-mill").trace_text(text, parameters={5221: 1.0}, numbered=range(100, 105))
     assert traced.error is None

@@ -38,4 +38,4 @@ def test_every_program_is_as_its_words_ask(program, tmp_path):
     found = [text for _, text in proof.findings]
     wrong = WRONG.get(f"{program.parent.name}/{program.stem}", [])
     assert len(found) == len(wrong)
-    assert all(requested in reported for requested, reported in zip(wrong, found))
+    assert all(expected in reported for expected, reported in zip(wrong, found))

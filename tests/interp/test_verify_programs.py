@@ -49,16 +49,16 @@ def manual(request):
 def test_every_pocket_is_found_and_comes_out_as_printed(manual):
     expected, proof = manual
     assert len(proof.pockets) == len(expected["pockets"])
-    for requested, facts in zip(expected["pockets"], proof.pockets):
-        assert facts.line == requested["line"]
-        assert facts.code == requested["code"]
-        assert facts.values["reached"] == pytest.approx(requested["finished"] * INCH, abs=1e-6)
+    for printed, facts in zip(expected["pockets"], proof.pockets):
+        assert facts.line == printed["line"]
+        assert facts.code == printed["code"]
+        assert facts.values["reached"] == pytest.approx(printed["finished"] * INCH, abs=1e-6)
         assert facts.values["rings"] == pytest.approx(
-            [ring * INCH for ring in requested["rings"]], abs=1e-5
+            [ring * INCH for ring in printed["rings"]], abs=1e-5
         )
         depths = [facts.commanded.wall.height(depth) / INCH for depth in facts.commanded.depths]
-        assert depths == pytest.approx(requested["depths"], abs=1e-4)
-        assert facts.commanded.wall.origin[:2] / INCH == pytest.approx(requested["centre"])
+        assert depths == pytest.approx(printed["depths"], abs=1e-4)
+        assert facts.commanded.wall.origin[:2] / INCH == pytest.approx(printed["centre"])
         assert facts.deviation < 1e-6
 
 

@@ -85,8 +85,8 @@ def left_behind(command):
     most, at, speed, worst = np.radians(C_ACCELERATION), command[0], 0.0, 0.0
     for here, there in zip(command, command[1:]):
         gap = here - at
-        expected = (there - here) * 1e3 + np.sign(gap) * (2 * most * abs(gap)) ** 0.5
-        speed += np.clip(expected - speed, -most * 1e-3, most * 1e-3)
+        target = (there - here) * 1e3 + np.sign(gap) * (2 * most * abs(gap)) ** 0.5
+        speed += np.clip(target - speed, -most * 1e-3, most * 1e-3)
         at += speed * 1e-3
         worst = max(worst, abs(there - at))
     return worst

@@ -139,10 +139,10 @@ def test_g12_1_with_offsets_inches_and_diameters(lathe):
 @pytest.mark.parametrize("modes", ["G90 G94 F500 G64 P0.01", "G91 G95 F1 G61 G90.1 S500 M3"])
 def test_modes_behind_g13_1_are_those_of_a_section_in_segments(plane, modes):
     section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
-    requested = (
+    names = (
         "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
     )
-    reported = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in requested.split())})"
+    reported = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in names.split())})"
     ways = []
     for kinematics in "01":
         overrides = {"G12": {"POLAR_KINEMATICS": kinematics}}

@@ -305,8 +305,8 @@ def test_installed_on_a_plain_lathe(tmp_path):
     ini, pins = plain_lathe(tmp_path), tmp_path / "spindle.toml"
     before = ini.read_bytes()
     pins.write_text(PINS)
-    expected = ["--with", "polar", "spindle-c", "--pins", str(pins)]
-    assert install.main([str(ini), *expected]) == 0
+    options = ["--with", "polar", "spindle-c", "--pins", str(pins)]
+    assert install.main([str(ini), *options]) == 0
     assert check.main([str(ini)]) == 0
     with Machine(ini) as machine:
         run = machine.run_text([*FIRST, "S300 M3", "G4 P1", *FLATS, "S300 M3", "G33 Z-5 K1", "M2"])
@@ -315,6 +315,6 @@ def test_installed_on_a_plain_lathe(tmp_path):
         assert machine.get("spindle-c-on")
         machine.mdi("G0 C90")
         assert machine.get("encoder-turns.out") % 1 == pytest.approx(0.25, abs=1e-3)
-    assert install.main([str(ini), *expected]) == 0  # again: nothing
+    assert install.main([str(ini), *options]) == 0  # again: nothing
     assert uninstall.main([str(ini)]) == 0
     assert ini.read_bytes() == before

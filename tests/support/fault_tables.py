@@ -56,7 +56,7 @@ class MachinedProgram(NamedTuple):
 
 def program_of(table: str, name: str) -> MachinedProgram:
     """Return a program of a table of faults."""
-    requested = TABLES[table][name]
-    text = requested.get("text") or (PROGRAMS / requested["file"]).read_text(encoding="utf-8")
-    machine = requested.get("ini", TABLES[table]["ini"])
-    return MachinedProgram(f"{table}/{name}", text, machine, requested.get("settings", {}))
+    row = TABLES[table][name]
+    text = row.get("text") or (PROGRAMS / row["file"]).read_text(encoding="utf-8")
+    machine = row.get("ini", TABLES[table]["ini"])
+    return MachinedProgram(f"{table}/{name}", text, machine, row.get("settings", {}))

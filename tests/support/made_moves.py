@@ -55,8 +55,8 @@ class Hand:
         """Straight segments in X and C through points (complex) of the part plane."""
         angle = self.at[5]
         for point in points:
-            expected = math.degrees(math.atan2(point.imag, point.real))
-            angle += (expected - angle + 180.0) % 360.0 - 180.0
+            target = math.degrees(math.atan2(point.imag, point.real))
+            angle += (target - angle + 180.0) % 360.0 - 180.0
             self.feed = feed
             self.line(x=abs(point), c=angle)
         return self

@@ -53,9 +53,9 @@ def config_of(
 ) -> Config:
     """Return the config of an INI that no LinuxCNC was asked about."""
     text = IniText(ini)
-    requested = Python(**python)
+    loaded = Python(**python)
     return Config(
-        text, text.ini(), remaps_in(text), version, requested, frozenset(owned), failure, diameters
+        text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure, diameters
     )
 
 

@@ -61,8 +61,8 @@ class Text:
         body, kind = self.lines[first:], self.one_of("sub", "if", "repeat", "", "", "")
         if not kind:
             return
-        requested = {"sub": "", "if": " [#<_x> LT 9999]", "repeat": " [2]"}[kind]
-        self.lines[first:] = [f"o{name} {kind}{requested}", *body, f"o{name} end{kind}"]
+        condition = {"sub": "", "if": " [#<_x> LT 9999]", "repeat": " [2]"}[kind]
+        self.lines[first:] = [f"o{name} {kind}{condition}", *body, f"o{name} end{kind}"]
         if kind == "sub":
             self.lines += [f"o{name} call"] * self.one_of(1, 2)
 

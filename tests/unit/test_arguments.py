@@ -158,10 +158,10 @@ def test_events_that_are_not_there(tmp_path, capsys):
 
 def test_a_folder_that_cannot_be_made(tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    expected = tmp_path / "file" / "pictures"
-    assert ends(capsys, "demo", "--output", expected) == (
+    pictures = tmp_path / "file" / "pictures"
+    assert ends(capsys, "demo", "--output", pictures) == (
         2,
-        f"g12 demo: {expected}: Not a directory\n",
+        f"g12 demo: {pictures}: Not a directory\n",
     )
 
 

@@ -444,9 +444,9 @@ def test_the_tool_cuts_what_is_as_high_as_its_tip_or_higher(paths, deep):
 )
 def test_a_pass_behind_a_wall_clears_it_where_it_is_as_deep(heights, deep):
     """Between both a tool comes down, half a millimetre into the wall: there it must be gone."""
-    after = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
+    behind = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
     between = [-33 + 30j, -33 + 2.5j]
-    text = refusal(parts((WALL, -2.0), (between, -3.0), (after, heights)))
+    text = refusal(parts((WALL, -2.0), (between, -3.0), (behind, heights)))
     assert ("cannot follow both lines 3 and 4" in text) is deep
 
 

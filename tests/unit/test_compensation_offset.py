@@ -188,7 +188,7 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused_or_told(shapes, side,
 
 
 def runs_behind(shape, other, side, radius):
-    """Return whether a shape runs after all that its tool cuts of another one, the same way.
+    """Return whether a shape trails all that its tool cuts of another one, the same way.
 
     These are passes of a spiral: they may cut into each other.
     """

@@ -53,17 +53,17 @@ def down(first, heights, entry=HELIX):
 @pytest.mark.parametrize(("first", "side"), [(3.0, 1), (8.0, -1)])
 def test_what_the_subroutine_is_told(first, side):
     way = down(first, (3.0, 2.0))
-    reported = way.locals(first)
-    assert reported["side"] == side
-    assert reported["helix_radius"] == min(first, 4.5)
-    assert (reported["turns"], reported["fall"]) == way.first == way.helix.descent(3.0)
-    assert (reported["next_turns"], reported["next_fall"]) == way.further == way.helix.descent(2.0)
-    assert reported["last_turns"] == 3
+    passed = way.locals(first)
+    assert passed["side"] == side
+    assert passed["helix_radius"] == min(first, 4.5)
+    assert (passed["turns"], passed["fall"]) == way.first == way.helix.descent(3.0)
+    assert (passed["next_turns"], passed["next_fall"]) == way.further == way.helix.descent(2.0)
+    assert passed["last_turns"] == 3
 
 
 def test_straight_down_is_at_its_share_of_the_feed():
-    reported = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0)).locals(3.0)
-    assert reported == {"turns": 0, "feed": 600.0, "plunge_feed": 240.0}
+    passed = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0)).locals(3.0)
+    assert passed == {"turns": 0, "feed": 600.0, "plunge_feed": 240.0}
 
 
 def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():
@@ -89,12 +89,12 @@ def test_the_advice_of_a_refused_helix_holds(cutter, height, advice):
 
     with pytest.raises(Refusal) as refused:
         narrow(0.01, height)
-    reported = float(re.search(f"{advice}$", refused.value.message)[1])
+    advised = float(re.search(f"{advice}$", refused.value.message)[1])
     if advice.startswith("I"):
-        narrow(reported - cutter + 1e-4, height)
+        narrow(advised - cutter + 1e-4, height)
         with pytest.raises(Refusal):
-            narrow(reported - cutter - 0.005, height)
+            narrow(advised - cutter - 0.005, height)
     else:
-        narrow(100.0, reported - 1e-2)
+        narrow(100.0, advised - 1e-2)
         with pytest.raises(Refusal):
-            narrow(100.0, reported * 1.005)
+            narrow(100.0, advised * 1.005)

@@ -44,10 +44,10 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(PACKAGE))
 
 
-def put_in(ini, *expected, **python):
+def put_in(ini, *names, **python):
     """Install without asking LinuxCNC; return what was said."""
     config = config_of(ini, **python)
-    return installation.write_changes(make_plan(config, expected or ["haas"]), config.folder)
+    return installation.write_changes(make_plan(config, names or ["haas"]), config.folder)
 
 
 def take_out(ini):
@@ -266,11 +266,11 @@ def test_a_hand_made_import_is_enough(tmp_path):
     assert not (tmp_path / "g12").exists()
 
 
-def refused_kind(ini, *expected, **python):
+def refused_kind(ini, *names, **python):
     """Return the kind of the refusal of an installation, which writes nothing."""
     before = content_of(ini.parent)
     with pytest.raises(Refused) as refused:
-        put_in(ini, *expected, **python)
+        put_in(ini, *names, **python)
     assert content_of(ini.parent) == before
     return refused.value.args[0].kind
 
@@ -685,14 +685,14 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
 
 
 def test_every_feature_has_a_next_step():
-    expected = [
+    names = [
         "polar",
         features.POLAR_SHAPES,
         features.SPINDLE_AS_C,
         features.KINEMATICS,
         features.FORMS,
     ]
-    _, *steps, _ = installation.next_steps(Path("mill.ini"), [*expected, "programs-haas-mill"])
+    _, *steps, _ = installation.next_steps(Path("mill.ini"), [*names, "programs-haas-mill"])
     assert [step.split()[0] for step in steps] == [
         "G13.1", "o<polar_polygon>", "home,", "home,", "fill", "open",
     ]  # fmt: skip

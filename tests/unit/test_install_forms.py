@@ -33,10 +33,10 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: package)
 
 
-def put_in(ini, *expected):
+def put_in(ini, *names):
     """Install without asking LinuxCNC."""
     config = config_of(ini)
-    return installation.write_changes(make_plan(config, expected), config.folder)
+    return installation.write_changes(make_plan(config, names), config.folder)
 
 
 def reported(ini):
@@ -93,15 +93,15 @@ def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "expected", "why"),
+    ("text", "names", "why"),
     [
         (MILL, ["haas"], "[DISPLAY] DISPLAY is missing"),
         (AXIS, [], "no code here has a form"),
     ],
 )
-def test_refused_where_nothing_would_be_shown(tmp_path, text, expected, why):
+def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why):
     with pytest.raises(Refused) as refused:
-        make_plan(config_of(write_config(tmp_path, text)), [*expected, "forms"])
+        make_plan(config_of(write_config(tmp_path, text)), [*names, "forms"])
     assert why in refused.value.args[0].text
 
 

@@ -80,9 +80,9 @@ def config_in(folder, text=LATHE, hal=HAL):
     return write_config(folder, text, "lathe.ini", motion_hal=hal, later_hal="# nothing\n")
 
 
-def put_in(ini, *expected):
+def put_in(ini, *names):
     config = config_of(ini)
-    return installation.write_changes(make_plan(config, expected), config.folder)
+    return installation.write_changes(make_plan(config, names), config.folder)
 
 
 @pytest.mark.parametrize(

@@ -20,10 +20,10 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: {"python/g12/__init__.py": b""})
 
 
-def put_in(ini, *expected):
+def put_in(ini, *names):
     """Install without asking LinuxCNC."""
     config = config_of(ini)
-    return installation.write_changes(make_plan(config, expected), config.folder)
+    return installation.write_changes(make_plan(config, names), config.folder)
 
 
 def test_a_section_of_its_own(tmp_path):

@@ -114,8 +114,8 @@ def test_every_file_and_make_target_that_a_page_names_exists(page):
 def test_every_kind_of_finding_stands_on_the_page_about_what_is_wrong():
     rules = (ROOT / "python/g12/tools/install/rules.py").read_text(encoding="utf-8")
     kinds = set(re.findall(r'(?:problem|warning|note)\(\s*"([a-z-]+)"', rules))
-    reported = set(QUOTED.findall((ROOT / "configs" / "README.md").read_text(encoding="utf-8")))
-    assert "no-sub" in kinds and kinds <= reported
+    named = set(QUOTED.findall((ROOT / "configs" / "README.md").read_text(encoding="utf-8")))
+    assert "no-sub" in kinds and kinds <= named
 
 
 # The page of the developers.

@@ -81,15 +81,15 @@ CIRCLE = Arc(10 + 0j, 0j, 2 * math.pi)
 
 
 @pytest.mark.parametrize(
-    ("requested", "curves", "kind"),
+    ("programmed", "curves", "kind"),
     [
         ([CIRCLE, CIRCLE], [CIRCLE], MISSING),
         ([CIRCLE], [CIRCLE, CIRCLE], EXTRA),
         ([CIRCLE], [CIRCLE.reversed()], OFF),
     ],
 )
-def test_passes_too_few_or_too_many_or_the_other_way_round(requested, curves, kind):
-    assert lay(expected(*requested), made(curves), TOLERANCE).difference.kind == kind
+def test_passes_too_few_or_too_many_or_the_other_way_round(programmed, curves, kind):
+    assert lay(expected(*programmed), made(curves), TOLERANCE).difference.kind == kind
 
 
 def test_feeds_and_rapids_are_compared():

@@ -27,24 +27,24 @@ class Pockets(Hand):
 
     def __init__(self):
         super().__init__()
-        self.requested = []
+        self.commanded = []
 
-    def mill(self, rings=RINGS, depth=-3.0, cutter=3.0, down=None, **expected):
+    def mill(self, rings=RINGS, depth=-3.0, cutter=3.0, down=None, **of_wall):
         first, place = len(self.moves), np.array(self.at[:3])
         self.next_block()
         if down is not None:
             self.rapid(z=down)
         self.pocket(rings, depth)
-        wall = Wall(place, np.eye(3), rings[-1] + 3.0, **expected)
+        wall = Wall(place, np.eye(3), rings[-1] + 3.0, **of_wall)
         words = HaasWords(0j, rings, [depth - place[2]], -1, None, None)
         target = Target(self.block, "", "G12", "haas", wall, Cutter(cutter), words)
-        self.requested.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
+        self.commanded.append((Block(None, {}, (), (), (), {}, first, len(self.moves)), target))
         return self.next_block()
 
     def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
         run = follow(path, self.moves, real(path), 1.0) if real else None
-        words = Commanded(self.requested)
+        words = Commanded(self.commanded)
         subject = Subject(None, None, self.trace(), MILL, commanded=words, drawn=(path, run))
         return assumed_workpiece(subject)
 
@@ -113,8 +113,8 @@ def test_a_rapid_through_the_core_is_found():
 @pytest.mark.parametrize("shift", [{"inside": False}, {"axes": np.eye(3)[[2, 0, 1]]}])
 def test_cuts_without_a_wall_are_not_judged(shift):
     program = start().mill().rapid(x=150)
-    program.requested = [
-        (b, replace(t, wall=replace(t.wall, **shift))) for b, t in program.requested
+    program.commanded = [
+        (b, replace(t, wall=replace(t.wall, **shift))) for b, t in program.commanded
     ]
     assert program.found() == []
 

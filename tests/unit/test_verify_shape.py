@@ -25,7 +25,7 @@ CUTTER = 3.0
 OUT = -9999
 
 
-def requested(shape, *entries, start=(40.0, 0.0, 5.0, 0.0, 0.0, 0.0), turned=0.0, **state):
+def call_of(shape, *entries, start=(40.0, 0.0, 5.0, 0.0, 0.0, 0.0), turned=0.0, **state):
     """Return a call; the tool stands at X40 Z5, in mm, G8, G94 and F150."""
     found = {**dict.fromkeys(STATE_NAMES, 0.0), **FOUND, **state}
     block = Block(read_line(7, f"o<{shape}> call"), {}, (), (), entries, found, 0, 1)
@@ -35,7 +35,7 @@ def requested(shape, *entries, start=(40.0, 0.0, 5.0, 0.0, 0.0, 0.0), turned=0.0
 
 
 def hexagon(**state):
-    return requested("polar_polygon", 6, 20, 3, 30, 2, 1, 0.3, 600, OUT, 10, **state)
+    return call_of("polar_polygon", 6, 20, 3, 30, 2, 1, 0.3, 600, OUT, 10, **state)
 
 
 def named(path, *names):
@@ -54,13 +54,13 @@ def test_entries_are_read_by_their_names():
 
 def test_a_feed_per_revolution_and_one_that_is_forgotten():
     assert hexagon(_units_per_rev=1.0).feed() == 600 * 1000
-    call = requested("polar_slot", 8, 30, 4, 4, 0, OUT, OUT, 0, _feed=1.0)
+    call = call_of("polar_slot", 8, 30, 4, 4, 0, OUT, OUT, 0, _feed=1.0)
     assert (call.feed(), call.plunge_feed()) == (None, None) and "_feed" not in call.leaves()
 
 
 def test_inches_and_the_program_s_zero():
     state = {"_metric": 0.0, "_x": 1.5, "_z": 1.0, "_c": 10.0}
-    call = requested("polar_pocket", 1, 0.5, 0.4, 0.1, 1, start=(50.8, 0, 25.4, 0, 0, 40), **state)
+    call = call_of("polar_pocket", 1, 0.5, 0.4, 0.1, 1, start=(50.8, 0, 25.4, 0, 0, 40), **state)
     assert call.zero == pytest.approx((12.7, 0.0, 30.0))
     assert (call.x(), call.length("c")) == (25.4, 12.7)
 
@@ -68,7 +68,7 @@ def test_inches_and_the_program_s_zero():
 @pytest.mark.parametrize(("x", "g7", "radius"), [("inherit", 1, 4), ("inherit", 0, 8),
                                                  ("radius", 1, 8), ("diameter", 0, 4)])  # fmt: skip
 def test_x_of_a_pocket_is_read_as_x_words_are(x, g7, radius):
-    call = requested("polar_pocket", 8, 0, 9, 1, 1, _lathe_diameter_mode=float(g7))
+    call = call_of("polar_pocket", 8, 0, 9, 1, 1, _lathe_diameter_mode=float(g7))
     call.diameters = {"diameter": True, "radius": False}.get(x, call.diameters)
     assert call.x() == radius
 
@@ -109,7 +109,7 @@ SHAPES = {  # entries, what is drawn with more material on its walls, and the ba
 
 def path_of(name):
     (shape, *entries), _, _ = SHAPES[name]
-    return shape_path(requested(shape, *entries))
+    return shape_path(call_of(shape, *entries))
 
 
 def off(name, moves, more):
@@ -169,7 +169,7 @@ def test_rings_are_as_far_apart_as_the_page_says():
 
 def test_a_tool_beside_the_x_line_comes_onto_it():
     entries = ("polar_pocket", 8, 0, 20, 3, OUT, 0, 600, 200)
-    path = shape_path(requested(*entries, start=(40.0, 0.4, 5.0, 0, 0, 0)))
+    path = shape_path(call_of(*entries, start=(40.0, 0.4, 5.0, 0, 0, 0)))
     there, approach = named(path, "rapid of X", "approach")
     assert there.curve.end == pytest.approx(10.7 + 0.4j)
     assert approach.curve.end == pytest.approx(10.7) and not approach.rapid

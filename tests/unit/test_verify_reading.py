@@ -69,8 +69,8 @@ def test_control_lines_are_told(line):
 def test_only_expressions_are_asked_of_linuxcnc():
     lines = list(reports_before(read_line(4, "G12 I.5 K[#1] Z-1 D#2")))
     scaled = "#<@>=[#<@>*1000000]"
-    requested = [line for line in lines if line.startswith("#<@>=")]
-    assert requested == ["#<@>=[#1]", scaled, "#<@>=#2", scaled]
+    read = [line for line in lines if line.startswith("#<@>=")]
+    assert read == ["#<@>=[#1]", scaled, "#<@>=#2", scaled]
     assert all(line.startswith("/") for line in reports_before(read_line(4, "/G12 I#1")))
 
 
@@ -290,8 +290,8 @@ def test_only_a_helix_that_goes_down_clears_the_core_of_one_ring(line, core):
     ],
 )
 def test_the_feed_is_the_blocks_or_the_one_in_force(line, state, feed):
-    requested = target(line, **state).words
-    assert (requested.feed, requested.plunge_feed) == (feed, feed)
+    words = target(line, **state).words
+    assert (words.feed, words.plunge_feed) == (feed, feed)
 
 
 # ---------------------------------------------------------------- contours
