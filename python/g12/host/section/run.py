@@ -113,9 +113,6 @@ class Section:
     def _refuse(self, reason: str) -> Refusal:
         return self.reader.location.refuse(reason)
 
-    def _refuse_beside_off(self) -> Refusal:
-        return self._refuse(f"{self.codes.off_code} must be alone in its block")
-
     def _line(self, line: TextLine) -> Iterator[int]:
         if self.reader.deletes(line):
             return
@@ -132,7 +129,7 @@ class Section:
         location, known = self.reader.location, self.setup.words.words
         off = [code for letter, code in line.codes if letter == "G" and code in self.codes.off]
         if off and len(line.codes) > 1:
-            raise self._refuse_beside_off()
+            raise self._refuse(f"G{off[0] / 10:g} must be alone in its block")
         block_rules.check_codes(line.codes, known, self._rapid_allowed, location)
         block_rules.check_letters(line, known, location)
         if "#" in line.text:
@@ -241,7 +238,7 @@ class Section:
     def _finish(self, line: TextLine, block: SectionBlock) -> Iterator[int]:
         """End the section at the block that switches off."""
         if line.relative or not block_rules.alone(block, self.codes.word):
-            raise self._refuse_beside_off()
+            raise self._refuse(f"{self.codes.off_code} must be alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
