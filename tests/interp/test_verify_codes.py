@@ -144,6 +144,7 @@ CASES = [
     ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z50|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}", ""),
     ("mill", f"{LOW}|G0 Z1|G49|G0 Z10|X80", "rapid-length-not-used 9"),
     ("mill", f"{LOW}|G0 Z1|G49|G0 Z60|X80", ""),
+    ("mill", f"{LOW}|G0 Z1|G49|X80|Z1|{LOW}", "length-deeper 11"),
     ("mill", f"{LOW}|G10 L1 P4 R2", "path-off 6, tool-table-set 7"),
     # a Z0 that blocks compute each for itself
     ("any mill", "T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5|X40|X40 Z-2|"
@@ -208,7 +209,7 @@ CASES = [
      "rapid-through 10, rapid-beside 10"),
     ("lathe", "G0 X40|G12.1|G1 Z-2 F200|X20 F600|G13.1|G0 Z2|C180", ""),
     ("any lathe", "T1 M6|S900 M3|G0 X10 Z-3 C0|G12.1|G1 X20 F600|Z2|G13.1",
-     "rapid-into 4, first-rapid 4", "30"),
+     "rapid-into 4, rapid-from-unknown 4", "30"),
     ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "rapid-into 7", "40"),
     ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "", "9"),
     ("lathe", f"G0 Z10|Z-15|X10|X60|{HOLES.replace('30', '40')}|G0 X80", "rapid-into 7", "40"),

@@ -29,6 +29,7 @@ CHORD_ERROR = 2e-4  # of the polylines of curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
 X, Y, Z, C = 0, 1, 2, 5
+FLAT = 17  # the plane whose arcs keep their level
 INCHES = 1  # length_units of the interpreter
 
 
@@ -100,14 +101,15 @@ def part_of(ini: Ini) -> Part:
 
 def part_of_program(ini: Ini, trace: Trace) -> Part:
     """Return the part of a program; on a lathe C turns it about X0, if C moves at all."""
-    turned = any(
-        (move.kind == "arc" and move.plane == 17)  # on the face; of a circle no end differs
-        or any(move.start[axis] != move.end[axis] for axis in (Y, C))
-        for move in trace.moves
-    )
     part = part_of(ini)
-    turning = part.turning and turned
+    turning = part.turning and any(map(_turns_part, trace.moves))
     return replace(part, turning=turning, centre=last_x0(trace) if turning else 0.0)
+
+
+def _turns_part(move: Move) -> bool:
+    """Tell whether C turns a lathe's part in a move; a circle on the face ends where it begins."""
+    circle = move.kind == "arc" and move.plane == FLAT
+    return circle or any(move.start[axis] != move.end[axis] for axis in (Y, C))
 
 
 def last_x0(trace: Trace) -> float:

@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.path.follow import Worst, worst_of
-from g12.tools.path.part import Part, is_sideways, paths, swept
+from g12.tools.path.part import FLAT, C, Part, is_sideways, paths, swept
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
@@ -31,8 +31,7 @@ LEAST_LEVELS = 2  # entries in a short legend
 MOST_SHOWN_LEVELS = 10  # more depths or feeds than this are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
-C = 5  # of a position
-FLAT, ROUND = 17, 181  # the plane whose arcs stay at one level; points of other arcs
+ARC_POINTS = 181  # points of an arc whose level changes
 NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
@@ -88,7 +87,7 @@ def is_helical(move: Move) -> bool:
 def lowest(move: Move) -> float:
     """Return the lowest level of a move; an arc may go below its ends."""
     bulge = move.kind == "arc" and move.plane != FLAT
-    shares = np.linspace(0, 1, ROUND) if bulge else (0.0, 1.0)
+    shares = np.linspace(0, 1, ARC_POINTS) if bulge else (0.0, 1.0)
     return min(move.point(share)[2] for share in shares)
 
 

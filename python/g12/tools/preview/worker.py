@@ -376,10 +376,8 @@ class Canon:
 
     def _note_conditions(self, state) -> None:
         """Note changes in the conditions of the following moves."""
-        known, self.in_force = (
-            self.in_force,
-            conditions(state, length_code(self.length_code, self.length)),
-        )
+        length = length_code(self.length_code, self.length)
+        known, self.in_force = self.in_force, conditions(state, length)
         for word in self.in_force:
             if word not in known:
                 self._note(word)
@@ -530,17 +528,7 @@ def is_exact() -> bool:
 def in_mm(position: Sequence[float]) -> Position:
     """Return the preview's X Y Z U V W, inches, in mm; degrees stay."""
     x, y, z, a, b, c, u, v, w = (*position, *NO_OFFSET[len(position) :])
-    return (
-        x * INCH,
-        y * INCH,
-        z * INCH,
-        a,
-        b,
-        c,
-        u * INCH,
-        v * INCH,
-        w * INCH,
-    )
+    return (x * INCH, y * INCH, z * INCH, a, b, c, u * INCH, v * INCH, w * INCH)
 
 
 def for_canon(entry) -> tuple:

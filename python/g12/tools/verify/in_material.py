@@ -22,8 +22,9 @@ from g12.tools.path.part import X, Z, is_sideways
 from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.mistakes.neighbours import judge_circles
-from g12.tools.verify.mistakes.tool import length_set_by
+from g12.tools.verify.mistakes.tool import length_set_by, missing_length, uses_lengths
 from g12.tools.verify.result.finding import Finding, also_in, lines_in_words
+from g12.tools.verify.result.tolerances import SIZE
 from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.subject import Subject
 from g12.tools.verify.walls import beyond, flat_circles
@@ -59,10 +60,8 @@ def judge_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     for each in (each for each in found if each.is_not_judged):
         causes.setdefault(each.code, []).append(each)
     for same in causes.values():
-        lines = {each.line for each in same}
-        yield replace(
-            same[0], line=min(lines), values={**same[0].values, "lines": lines_in_words(lines)}
-        )
+        lines = [each.line for each in same]
+        yield replace(same[0], line=min(lines), values={"lines": lines_in_words(lines)})
 
 
 def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
@@ -81,8 +80,7 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
             yield Finding("rapid-turned", subject.line(index))
         end = subject.end(index)
         if ends and not begins and end[Z] < face.material.top - SAME_LEVEL:
-            values = {"at": _words_of(subject, face, end)}
-            yield Finding("first-rapid", subject.line(index), values, end)
+            yield Finding("rapid-from-unknown", subject.line(index), place=end)
 
 
 def _in_view(
@@ -119,20 +117,16 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
 
     Of one tool and length the first is reported, if no cut is: ``known`` are the moves of cuts.
     """
-    moves, lengths, z0 = subject.moves, subject.trace.lengths, float(subject.zero[Z])
-    if not any(abs(move.tool_offset[Z]) > SAME_LEVEL for move in moves):
-        return
-    deeper = [lengths.get(move.tool, 0.0) - move.tool_offset[Z] for move in moves]
+    moves, trace, z0 = subject.moves, subject.trace, float(subject.zero[Z])
+    deeper = [missing_length(move, trace.lengths) for move in moves]
     reported = {(moves[index].tool, deeper[index]) for index in known}
-    for index in (
-        i for i, move in enumerate(moves) if move.kind == "rapid" and deeper[i] > SAME_LEVEL
-    ):
-        move, level = moves[index], moves[index].end[Z] - deeper[index] - z0
-        of = (move.tool, deeper[index])
-        if level < -SAME_LEVEL and subject.ends_known[index] and of not in reported:
+    for index, move in enumerate(moves if uses_lengths(moves) else ()):
+        of, level = (move.tool, deeper[index]), move.end[Z] - deeper[index] - z0
+        is_low = deeper[index] > SIZE and level < -SAME_LEVEL and subject.ends_known[index]
+        if move.kind == "rapid" and is_low and of not in reported:
             reported.add(of)
             values = {"tool": move.tool, "length": move.tool_offset[Z], "level": level}
-            cancelled = length_set_by(subject.trace.events, index) == "G49"
+            cancelled = length_set_by(trace.events, index) == "G49"
             code = "rapid-length-not-used" if cancelled else "rapid-length"
             yield Finding(code, subject.line(index), values, subject.end(index))
 

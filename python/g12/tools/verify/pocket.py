@@ -18,6 +18,7 @@ from g12.tools.material.material import Material
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import Z, arc_points, disc, plane_axes
 from g12.tools.path.slowest import Pace
+from g12.tools.path.track import CART_FUZZ
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import FEED, OFF, Laid, Made, judge_path, lay
@@ -29,7 +30,6 @@ from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_value
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import AREA, RUN, SIZE, WEAR
 
-STILL = 1e-8  # mm: a shorter move has no length
 SAME_AXIS = 1e-9
 SHARES = np.linspace(0.0, 1.0, 25)  # of an arc in another plane than the pocket's
 FINE = 1e-5  # chord error of the circles about a pocket's centre
@@ -139,7 +139,7 @@ def _made_in(wall: Wall, moves: Sequence[Move], own: range) -> Iterator[Made]:
     )
     for index, *points in zip(own, starts, ends):
         move = moves[index]
-        if move.length <= STILL:
+        if move.length <= CART_FUZZ:
             continue
         across = plane_axes(move)
         in_plane = across is wall.axes or np.abs(across[2] - wall.axes[2]).max() < SAME_AXIS

@@ -11,6 +11,7 @@ from typing import Self
 import numpy as np
 
 from g12.tools.machine.ini import Ini
+from g12.tools.material.material import SAME_LEVEL
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.part import Part, X, Z, part_of_program
 from g12.tools.path.samples import Samples
@@ -27,7 +28,6 @@ from g12.tools.verify.reading.executed_subs import called_files
 from g12.tools.verify.sections.view import SectionView, view_of
 
 SAME_X0 = 1e-6  # mm
-SAME_LEVEL = 1e-3
 NOTHING = Commanded()
 
 

@@ -34,13 +34,13 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.plane import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.expected.toolpath import NO_LENGTH
 from g12.tools.verify.reading.circles import Target
-from g12.tools.verify.sections.outline import LENGTHLESS, Outline, outlines_of, vectors
+from g12.tools.verify.sections.outline import Outline, outlines_of, vectors
 from g12.tools.verify.subject import Subject
 
 WALL = 2.0  # how thick the wall of a pocket is, at least
 SAME_PLACE = 0.05
-DECIMALS = 6  # of a Z0
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 FAR = 1e6  # round a cylinder
@@ -108,15 +108,15 @@ def _approach_to(block: Block, moves: Sequence[Move]) -> Approach:
 
 def solids_of_circles(circles: Approached) -> Iterator[Solid]:
     """Yield what circles are cut in."""
-    tops: dict[float, float] = {}  # by the program's Z0, rounded: each block computes its own
+    tops: dict[float, float] = {}  # by the program's Z0
     for target, (came, fed, floor, _) in circles:
-        face = round(target.wall.face, DECIMALS)
+        face = target.wall.face
         if face not in tops and floor < min(came, face) - SAME_LEVEL:
             tops[face] = min(face, fed) if fed is not None and floor < fed - SAME_LEVEL else face
     starts = sorted(each.came if each.fed is None else each.fed for _, each in circles)
     for target, approach in circles:
         wall, floor = target.wall, approach.floor + SAME_LEVEL
-        top = tops.get(round(wall.face, DECIMALS), -math.inf)
+        top = tops.get(wall.face, -math.inf)
         top = top if floor < top else next((start for start in starts if start > floor), None)
         if top is not None:
             yield Solid(disc(wall.origin, wall.radius + (WALL if wall.inside else 0.0)), top)
@@ -256,7 +256,7 @@ def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:
     if outline.is_closed:
         shape = Polygon(vectors(points)).buffer(0)
         return Polygon() if outline.tool_is_inside else bar.difference(shape)
-    points = points[np.append(True, np.abs(np.diff(points)) > LENGTHLESS)]
+    points = points[np.append(True, np.abs(np.diff(points)) > NO_LENGTH)]
     along = np.diff(points) / np.abs(np.diff(points))
     middles = (points[:-1] + points[1:]) / 2 + 1j * outline.side * along * PROBE
     probe = middles[np.abs(middles).argmin()]

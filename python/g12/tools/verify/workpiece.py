@@ -18,7 +18,7 @@ from shapely.geometry.base import BaseGeometry
 
 from g12.tools.material.material import SAME_LEVEL, Material, Opening, Solid
 from g12.tools.material.stock import Stock, StockText, read_stock
-from g12.tools.path.part import Part, Z, disc, is_sideways, part_of
+from g12.tools.path.part import FLAT, Part, Z, disc, is_sideways, part_of
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
 from g12.tools.units import unit_of
@@ -35,7 +35,6 @@ from g12.tools.verify.walls import (
     solids_of_sections,
 )
 
-FLAT = 17  # the plane whose arcs keep their level
 CHUNK = 32  # moves of a lathe whose area is worked out at once
 SAMPLED = 1e-4  # how far a run's motion may be off, drawn with fewer points
 

@@ -26,10 +26,9 @@ from typing import NamedTuple
 from g12.geometry.crossing import crossings
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line
 from g12.tools.verify.expected.contour import Element
-from g12.tools.verify.expected.toolpath import Expected
+from g12.tools.verify.expected.toolpath import NO_LENGTH, Expected
 
 SHORT = 0.3  # of the tolerance
-LENGTHLESS = 1e-6  # mm
 BACK = math.pi - 1e-6  # radians: the contour goes back on itself
 COINCIDENT = 0.005  # mm: ends of parallels so near to each other meet in the middle
 ON_CURVE = 1e-5  # mm, of a crossing
@@ -79,7 +78,7 @@ def step_of(
     element: Element, curve: Curve, start: float, end: float, name: str = "contour"
 ) -> ContourStep:
     """Return the step along an element, or an arc about the corner before it."""
-    name = "ramp" if element.ramp else name if element.length > LENGTHLESS else "plunge"
+    name = "ramp" if element.ramp else name if element.length > NO_LENGTH else "plunge"
     return ContourStep(Expected(name, curve, start, end, element.feed, line=element.line), element)
 
 
@@ -90,12 +89,12 @@ def without_short(elements: Sequence[Element], limit: float) -> Iterator[Element
     """
     kept: Element | None = None
     for element in elements:
-        short = LENGTHLESS < element.length <= limit and is_cut(element)
+        short = NO_LENGTH < element.length <= limit and is_cut(element)
         if short and kept and is_cut(kept) and abs(element.end - kept.end) <= limit:
             continue
-        if kept and element.start != kept.end and element.length > LENGTHLESS:
+        if kept and element.start != kept.end and element.length > NO_LENGTH:
             element = begun_at(element, kept.end)
-        kept = element if element.length > LENGTHLESS else kept
+        kept = element if element.length > NO_LENGTH else kept
         yield element
 
 
@@ -134,7 +133,7 @@ def merged_up_to(elements: Sequence[Element], first: int, limit: float) -> int:
 
 def is_like(one: Element, other: Element) -> bool:
     """Tell whether one line may stand for two elements."""
-    straight = one.centre is None and other.centre is None and other.length > LENGTHLESS
+    straight = one.centre is None and other.centre is None and other.length > NO_LENGTH
     same = (one.side, one.feed, one.depth) == (other.side, other.feed, other.depth)
     return straight and same and is_cut(one) and is_cut(other)
 
@@ -143,7 +142,7 @@ def parallel_path(
     elements: Sequence[Element], height: float, radius: float
 ) -> list[ContourStep] | None:
     """Return the path of the tool's centre; None if a line is too short for its inside corners."""
-    moves = [each for each in elements if each.length > LENGTHLESS]
+    moves = [each for each in elements if each.length > NO_LENGTH]
     curves = [
         each.curve.offset(each.side * radius) if is_cut(each) else each.curve for each in moves
     ]
@@ -153,7 +152,7 @@ def parallel_path(
     path: list[ContourStep] = []
     at, index = elements[0].start, 0
     for element in elements:
-        if element.length > LENGTHLESS:
+        if element.length > NO_LENGTH:
             found = followed_part(curves[index], joints[index], joints[index + 1], element)
             if found is None:
                 return None
@@ -178,7 +177,7 @@ def joint_of(moves: tuple[Element, Element], curves: tuple[Curve, Curve]) -> Cor
     turned = cmath.phase(other.curve.direction(0.0) / one.curve.direction(1.0))
     gap = abs(after.start - before.end)
     outside = turned * one.side < 0.0 or abs(turned) > BACK
-    if outside and gap > LENGTHLESS:
+    if outside and gap > NO_LENGTH:
         return Corner(before.end, after.start, other.start)
     if outside or (gap < COINCIDENT and abs(turned) < math.pi / 2):
         middle = (before.end + after.start) / 2
@@ -226,7 +225,7 @@ def followed_part(
     if not is_cut(element):
         return [Line(start, end)] if element.centre is None else [curve]
     first, last = first_share(curve, start), last_share(curve, end)
-    if (last - first) * curve.length < -LENGTHLESS:
+    if (last - first) * curve.length < -NO_LENGTH:
         return None
     followed = [curve.portion(first, max(first, last))]
     if before and before.corner is not None:

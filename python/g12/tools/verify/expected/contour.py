@@ -14,8 +14,8 @@ from g12.geometry.curve import Arc, Curve, Line
 from g12.lengths import MM_PER_INCH
 from g12.tools.path.part import X, Z
 from g12.tools.preview.moves import Event
+from g12.tools.verify.expected.toolpath import NO_LENGTH
 
-NO_LENGTH = 1e-6  # mm
 ACTS = re.compile(
     r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+: ))"
 )  # of the events of a trace: what a section does

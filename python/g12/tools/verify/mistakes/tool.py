@@ -2,7 +2,7 @@
 """How the spindle turns where the program cuts, and the tool length in force there.
 
 LinuxCNC believes G43's H as the cycles believe D. A program that never commands G43 may have
-touched off Z with its tool, and so may one that cancels it by G49 after the tool change; any other
+touched off Z with its tool, and so may one that cancels it by G49 before the tool cuts; any other
 works with the lengths of the table.
 """
 
@@ -67,21 +67,37 @@ def judge_tool_length(
     events: Sequence[Event],
 ) -> Iterator[Finding]:
     """Yield the cuts that are made with another length than the loaded tool's (``lengths``, mm)."""
-    compensated = any(abs(move.tool_offset[Z]) > SIZE for move in moves)
+    compensated = uses_lengths(moves)
     reported: set[tuple[int, float]] = set()
+    with_length: set[int] = set()  # the tools that have cut with the length of the table
     for cut in cuts:
         at, first = cut.own.start, moves[cut.own.start]
-        deeper = lengths.get(first.tool, 0.0) - first.tool_offset[Z]
+        deeper = missing_length(first, lengths)
+        if abs(deeper) < SIZE:
+            with_length.add(first.tool)
         if abs(deeper) < SIZE or (first.tool, deeper) in reported:
             continue
         reported.add((first.tool, deeper))
         code = "length-deeper" if deeper > 0.0 else "length-higher"
         set_by = length_set_by(events, at)
-        code = code if compensated and set_by != "G49" else "length-not-used"
+        touched_off = set_by == "G49" and first.tool not in with_length
+        code = "length-not-used" if touched_off or not compensated else code
         added = set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0)
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
         values |= {"code": set_by, "where": "deeper" if deeper > 0.0 else "higher"}
-        yield Finding("length-commanded" if added else code, cut.line, values, file=cut.file)
+        values |= {"why": "G49 is in force" if compensated else "no G43"}
+        code = "length-commanded" if added else code
+        yield Finding(code, cut.line, values, first.end[:3], cut.file)
+
+
+def uses_lengths(moves: Sequence[Move]) -> bool:
+    """Tell whether a program works with tool lengths at all."""
+    return any(abs(move.tool_offset[Z]) > SIZE for move in moves)
+
+
+def missing_length(move: Move, lengths: Mapping[int, float]) -> float:
+    """Return by how much the loaded tool is longer than the length in force."""
+    return lengths.get(move.tool, 0.0) - move.tool_offset[Z]
 
 
 def length_set_by(events: Sequence[Event], at: int) -> str:

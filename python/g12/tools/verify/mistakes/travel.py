@@ -63,7 +63,8 @@ def judge_travel(
         if not (extent.is_placed or "travel" in dict(overruns)):
             yield Finding("travel-unplaced", target.line, file=target.file)
         for code, values in overruns:
-            yield Finding(code, target.line, values, file=target.file)
+            place = target.wall.machine((0j, target.deepest))
+            yield Finding(code, target.line, values, place, target.file)
 
 
 def _overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple[str, dict]]:

@@ -27,6 +27,7 @@ from g12.tools.verify.expected.words import BlockInMm
 from g12.tools.verify.expected.yasnac import YasnacWords
 from g12.tools.verify.reading.codes import EVENT, Codes, Cycle, compensates
 
+DECIMALS = 6  # of Z0, which each block computes for itself
 POCKET_HANDLER = "circle_mill_pocket"
 DYNAMIC = {41.1, 42.1}  # compensation whose D is a diameter
 
@@ -214,5 +215,5 @@ def wall_of(view: BlockInMm, words: Words, cutter: float) -> Wall:
         words.cleared(cutter),
         words.inside,
         words.bore(cutter),
-        view.zero()[2],
+        round(float(view.zero()[2]), DECIMALS),
     )

@@ -36,7 +36,7 @@ FINDINGS = {
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
     "rapid-length": (
-        "with the length of T{tool} in the table the tip goes by rapid to {level:mm} from Z0: "
+        "with the length of T{tool} in the table the tip goes by rapid to Z{level:mm}: "
         "the length in force is {length:mm} (G43 H{tool} after M6?)"
     ),
     # holes
@@ -91,7 +91,10 @@ NOTES = {
     ),
     "cuts-wall": "it and line {line} cut into each other's walls",
     "cut-before": "all of it was cut before{more}: a spring pass, or the wrong place?",
-    "never-run": "{code} is never run{more}: the program ends before it, or goes another way",
+    "never-run": (
+        "{code} is never run{more}: the program ends before it, jumps over it, or block delete "
+        "skips it"
+    ),
     "above-surface": (
         "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
     ),
@@ -127,11 +130,11 @@ NOTES = {
         "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"
     ),
     "length-not-used": (
-        "no G43: the tool table's length of T{tool}, {off:fine}, is not used; "
+        "{why}: the tool table's length of T{tool}, {off:fine}, is not used; "
         "right only where Z was touched off with this tool"
     ),
     "rapid-length-not-used": (
-        "with the length of T{tool} in the table the tip goes by rapid to {level:mm} from Z0: "
+        "with the length of T{tool} in the table the tip goes by rapid to Z{level:mm}: "
         "the length in force is {length:mm} (G49)"
     ),
     "length-commanded": (
@@ -180,8 +183,8 @@ NOT_JUDGED = {
     "clamp-unseen": (
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
-    "first-rapid": (
-        "what the rapid to {at:place} goes through: where the tool comes from is not known"
+    "rapid-from-unknown": (
+        "what rapids go through whose start is not known, to a point within the part: line {lines}"
     ),
     "rapid-beside": (
         "rapids below the part's top or Z0, beside what is cut: line {lines}; "

@@ -21,6 +21,7 @@ from shapely.ops import nearest_points, substring
 from g12.geometry.curve import Curve, Line
 from g12.tools.verify.expected.compensated import ContourStep
 from g12.tools.verify.expected.contour import Element, SectionContour
+from g12.tools.verify.expected.toolpath import NO_LENGTH
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL
 
@@ -31,7 +32,6 @@ MITRE = 2  # shapely's number
 NEAR = 1e-2  # mm: a contour's end is met, not passed
 SIDES = {1: ("G41", "G42"), -1: ("G42", "G41")}  # the code in force, and the other one
 ENTERED = 2.0  # tolerances: a contour that is so deep in the part enters it
-LENGTHLESS = 1e-6
 
 
 class Outline:
@@ -48,7 +48,7 @@ class Outline:
         first, last = closing(lines) if self.side else (0.0, whole.length)
         self.line = substring(whole, first, last)
         ends = substring(whole, 0.0, first), substring(whole, last, whole.length)
-        self.leads = [lead for lead in ends if lead.length > LENGTHLESS]
+        self.leads = [lead for lead in ends if lead.length > NO_LENGTH]
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -86,7 +86,7 @@ class Outline:
 
 def stretches_of(section: SectionContour) -> list[list[Element]]:
     """Return a section's elements by side, those on which compensation is switched apart."""
-    longer = (element for element in section.elements if element.length > LENGTHLESS)
+    longer = (element for element in section.elements if element.length > NO_LENGTH)
     return [list(own) for _, own in groupby(longer, lambda each: (each.side, each.ramp))]
 
 
@@ -181,9 +181,9 @@ class CutContour:
     """A compensated contour that is cut: its ``line``, the ``path`` of the tool's centre."""
 
     def __init__(self, steps: Sequence[ContourStep]) -> None:
-        self.moves = [step.move for step in steps if step.move.curve.length > LENGTHLESS]
+        self.moves = [step.move for step in steps if step.move.curve.length > NO_LENGTH]
         elements = {id(step.element): step.element for step in steps}
-        self.elements = [each for each in elements.values() if each.length > LENGTHLESS]
+        self.elements = [each for each in elements.values() if each.length > NO_LENGTH]
         levels = [level for move in self.moves for level in (move.start_level, move.end_level)]
         self.lowest, self.highest = min(levels), max(levels)
         self.line = joined([drawn(each.curve) for each in self.elements])

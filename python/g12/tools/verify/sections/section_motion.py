@@ -34,7 +34,7 @@ from g12.tools.verify.result.tolerances import LEVEL
 from g12.tools.verify.sections.view import G64_P, SectionView
 
 STILL = 1e-7  # mm: C turns in place
-NO_LENGTH = 1e-4  # mm, of what remains of a move
+REMAINDER = 1e-4  # mm, of what remains of a move
 SMOOTH = math.radians(1.0)
 CORNER = math.radians(15.0)  # chords of an arc make smaller ones
 FOLLOWED = 1.1  # of a limit: the greatest value may lie between places that a planner looks at
@@ -101,7 +101,7 @@ def _direction(ends: np.ndarray) -> np.ndarray:
 def _first_made(view: SectionView, span: Span) -> int:
     """Return the first move of the toolpath of which a span has more than rounding."""
     rest = (1.0 - span.share) * view.expected[span.index].length
-    return span.index + (rest < NO_LENGTH and span.index < span.last)
+    return span.index + (rest < REMAINDER and span.index < span.last)
 
 
 def _is_corner(one: Expected, other: Expected) -> bool:

@@ -14,7 +14,8 @@ from shapely.geometry import LineString, Point
 
 from g12.geometry.curve import Curve, Line
 from g12.tools.verify.expected.contour import Element
-from g12.tools.verify.sections.outline import LENGTHLESS, MEETS, outlines_of
+from g12.tools.verify.expected.toolpath import NO_LENGTH
+from g12.tools.verify.sections.outline import MEETS, outlines_of
 from g12.tools.verify.sections.view import SectionView
 
 PARALLEL = 1e-4  # radians between parallel sides
@@ -62,7 +63,7 @@ def walls_along(view: SectionView) -> Iterator[CutWall]:
     segments: dict[int, list[np.ndarray]] = {}
     laid, across = view.found.run or view.found.emitted, set(view.across)
     for index, made in laid.spans.items():
-        whole = made.index == made.last or made.share > 1.0 - LENGTHLESS
+        whole = made.index == made.last or made.share > 1.0 - NO_LENGTH
         if whole and view.expected[made.last].name == "contour" and index in across:
             before = segments.setdefault(made.last, [])
             before.append(view.plane.points(view.motion(index))[1 if before else 0 :])
@@ -78,7 +79,7 @@ def beside(curve: Curve, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if isinstance(curve, Line):
         along = curve.direction()
         return curve.start + ((points - curve.start) / along).real * along, 1j * along
-    outward = (points - curve.centre) / np.maximum(np.abs(points - curve.centre), LENGTHLESS)
+    outward = (points - curve.centre) / np.maximum(np.abs(points - curve.centre), NO_LENGTH)
     return curve.centre + curve.radius * outward, -np.sign(curve.sweep) * outward
 
 
