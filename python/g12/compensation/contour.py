@@ -138,12 +138,8 @@ class Contour:
         beside: float = 0.0,
     ) -> None:
         self.x, self.c, self.z = x, c, z
-        self.code, self.names, self.diameter, self.radius_tolerance = (
-            code,
-            names,
-            diameter,
-            radius_tolerance,
-        )
+        self.code, self.names = code, names
+        self.diameter, self.radius_tolerance = diameter, radius_tolerance
         self.elements: list[PathElement] = []
         self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
         self.side = 40

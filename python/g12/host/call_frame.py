@@ -136,8 +136,8 @@ class CallFrame:
         interpmodule.cc), here from one level lower and with nothing to execute. It makes the
         remapped block of block 0, so the code is read again before. Then the block gets its line
         back, and its motion code is marked as done, or `Interp::remap_finished` would begin it.
-        (Without it: `test_line_numbers_inside_and_behind`; without the last two lines:
-        `test_expressions_and_functions_are_values`, as any section.)
+        (Without it `test_line_numbers_inside_and_behind` fails; without the last two lines
+        any section.)
         """
         interp, level = self.interp, self.remap_level
         interp.read(self._remap.name)

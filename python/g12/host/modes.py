@@ -10,6 +10,7 @@ from g12.lengths import MM_PER_INCH
 from g12.section.block_rules import NO_CODE, GGroup
 
 G7 = 70
+DIAMETER_ACTIVE = 15  # index of G7 and G8 in active_g_codes
 INCH_UNITS = 1  # length_units
 
 
@@ -45,7 +46,7 @@ def feed_spindle(interp: Interp) -> int:
 def diameter_mode(interp: Interp) -> bool:
     """Return whether G7 is active (the active codes are those before this block)."""
     commanded = interp.blocks[interp.remap_level].g_modes[GGroup.DIAMETER]
-    active = interp.active_g_codes[GGroup.DIAMETER]
+    active = interp.active_g_codes[DIAMETER_ACTIVE]
     return (active if commanded == NO_CODE else commanded) == G7
 
 

@@ -185,7 +185,7 @@ class ProgramLines:
         return position. `Interp::execute_call` (interp_o_word.cc) notes the position in the
         caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
         ``sub`` line is read (`Interp::control_back_to`), which here comes from a string. (Without
-        it: `test_line_numbers_behind_two_sections`; `test_subs_of_the_same_file` does not end.)
+        it: `test_line_numbers_inside_and_behind`; `test_subs_of_the_same_file` does not end.)
         """
         interp, line = self.interp, self.line
         if self._in_file != line:

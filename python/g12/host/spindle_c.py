@@ -16,7 +16,7 @@ from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 
 INPUT = 2  # of motion, as in spindle_c.hal and spindle_c_on.ngc
-SECTION_HANDLERS = ("polar_on", "cylinder_mode")  # handlers
+SECTION_HANDLERS = ("polar_on", "cylinder_mode")
 
 
 @messages.handler

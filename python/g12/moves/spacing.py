@@ -34,7 +34,7 @@ Density = Callable[[float], tuple[float, float]]
 
 
 class TooManySegments(Exception):
-    """An element would need more segments than `MOST_SEGMENTS`."""
+    """An element would need more segments than `MOST_SEGMENTS_OF_MOVE`."""
 
 
 class Stretch(NamedTuple):

@@ -271,9 +271,8 @@ class SectionOutput:
         else:
             interp.execute(interp.g12_modes_before)
             yield from kinematics_switch.to_axes(interp)
-            interp.g12_modes_before = (
-                None  # only now: an abort during the wait drops the block before it
-            )
+            # Only now: an abort during the wait drops the block before it.
+            interp.g12_modes_before = None
         if not kinematics_switch.has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(kinematics_switch.not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""

@@ -30,7 +30,6 @@ from g12.tools.translate.blocks.control import ControlError, read_control
 
 OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
-
 WELL_FORMED_HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
 OWN_HEADER = f"[{INI_SECTION}]"
@@ -384,7 +383,7 @@ def bad_settings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def refused_values(config: Config) -> Iterator[ConfigFinding]:
-    """Find values of units, axes and speeds that every command refuses."""
+    """Find values of units, axes and speeds that verify, trace and plot refuse."""
     try:
         limits_of(config.ini)
     except IniError as refused:

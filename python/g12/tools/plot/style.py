@@ -36,7 +36,6 @@ REAL = "#e8590c"
 WORST = "#c2255c"
 LIMIT = "#c2255c"
 CRASH = "#e03131"
-
 STOCK, STOCK_EDGE = "#f4eee3", "#b39a6b"
 STYLE = {
     "font.family": "DejaVu Sans",

@@ -216,7 +216,7 @@ class FollowedProgram:
     def _wrong_call(self, index: int, call: SubprogramCall, entry: int | None) -> str | None:
         name = self.structure.name_of(call.number)
         if entry is None and call.number in self.structure.behind_tape:
-            return f"{name} stands behind the % that ends the program: take that % out"
+            return f"{name} is after the % that ends the program: take that % out"
         if entry is None and any(block.number == call.number for block in self.structure.blocks):
             return f"{name} is not in this file, but N{call.number} is: M97 P calls a block"
         if entry is None and name.startswith("N"):

@@ -140,8 +140,8 @@ def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int,
 def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
     """Yield the ways on from a block that neither calls nor ends: the last block on it, the next.
 
-    A WHILE leads after its END, too, and an END to where its WHILE leads: what is written before
-    a loop's head is run once. A condition leads to its end, too.
+    A WHILE leads to the block after its END, too, and an END to where its WHILE leads: what is
+    written before a loop's head is run once. A condition leads to its end, too.
     """
     kind, partner = structure.blocks[index].kind, structure.partners.get(index)
     target = structure.jumps.targets.get(index)

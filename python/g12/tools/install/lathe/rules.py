@@ -4,6 +4,7 @@
 import re
 from collections.abc import Iterator
 
+from g12.lengths import DEGREES_PER_TURN
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note, warning
 from g12.tools.install.config.forms import screen_of
@@ -13,7 +14,6 @@ from g12.tools.machine.stored_positions import unset_positions
 
 WITH_PREVIEW = ("axis", "gmoccapy", "gscreen", "qtvcp", "touchy")
 GEOMETRY_LINE = re.compile(r"GEOMETRY = CXY?Z!")
-DEGREES_OF_TURN = 360.0
 ON_A_LATHE = tuple(features.AXES_NEEDED)
 
 
@@ -46,7 +46,7 @@ def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
     low, high = (config.ini.number("AXIS_C", key, default)
                  for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
     wrapped = config.ini.number("AXIS_C", "WRAPPED_ROTARY", 0.0)
-    if not wrapped and high - low > DEGREES_OF_TURN and not uses_face_kinematics(config):
+    if not wrapped and high - low > DEGREES_PER_TURN and not uses_face_kinematics(config):
         yield note(
             "unwinding",
             "[AXIS_C] WRAPPED_ROTARY is not set: G0 C0 after a section unwinds every turn that C "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One block between the rules: its remaining words, and the lines that it becomes."""
+"""One block while the rules process it: its remaining words, and the lines that it becomes."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
@@ -29,7 +29,7 @@ class SubprogramCall(NamedTuple):
 
 @dataclass(eq=False)
 class Draft:
-    """A block between the rules: words that are its own line, further lines, modes."""
+    """A block while the rules process it: words that are its own line, further lines, modes."""
 
     block: ForeignBlock
     state: ModalState  # the modes, carried on by the rules

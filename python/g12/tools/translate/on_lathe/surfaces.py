@@ -12,6 +12,7 @@ from collections.abc import Callable
 from math import degrees, fmod
 from typing import NamedTuple
 
+from g12.lengths import DEGREES_PER_TURN
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotSaid
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -100,9 +101,6 @@ FACE = MilledSurface(
 )
 
 
-TURN = 360.0
-
-
 def _slides_alone(draft: Draft) -> None:
     """Write Z as the X slide's diameter, X as Z, and drop Y."""
     _words_round(draft)
@@ -167,7 +165,7 @@ def _end_round(draft: Draft) -> list[str]:
 def _side_hole(draft: Draft, hole: DrilledHole) -> str:
     angle = times(hole.y, _degrees_per_length(draft))
     if is_plain_number(angle):
-        angle = times(str(fmod(float(angle), TURN)), 1.0)
+        angle = times(str(fmod(float(angle), DEGREES_PER_TURN)), 1.0)
     surface = f"{diameter(draft):g}"
     entries = (hole.depth, hole.retract, hole.feed, hole.peck, hole.dwell)
     position = f"[1] [{hole.x}] [{angle}] [-9999] [{surface}]"

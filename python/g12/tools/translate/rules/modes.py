@@ -14,7 +14,7 @@ MACHINES_OWN = REFERENCES | {"G53"}
 def zero_of_missing_axis(draft: Draft) -> None:
     """Drop ``A0`` on a machine without A: CAM writes it for a fourth axis that is not used.
 
-    A lathe's A and C beside X or Z are an angle and a chamfer, so it needs a machine with Y.
+    A lathe's A and C beside X or Z are an angle and a chamfer, so this is for a machine with Y.
     A block keeps the word where it would mean another thing without it, as G28 does.
     """
     axes = draft.control.axes
@@ -61,7 +61,7 @@ def _follow_surface_speed(draft: Draft) -> None:
 
 
 def axes_at_zero(draft: Draft) -> None:
-    """Keep words of an axis that the machine lacks as comments: it always is at their 0."""
+    """Keep words of an axis that the machine lacks as comments: it is always at their 0."""
     if draft.state.polar != "off" or {"polar on", "cylinder"}.intersection(draft.meanings):
         return
     lacking = set(draft.control.at_zero) - set(draft.control.axes)

@@ -10,7 +10,7 @@ from typing import Any
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
-from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.lexer import ALL_PLANES, ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
     CONSUMERS,
@@ -31,7 +31,6 @@ from g12.tools.translate.rules.decimals import UNIT
 
 IN_PLANE = frozenset("XCUH")
 MOVING = frozenset("XYZABCUVWHF")
-PLANES_IN_POLAR = frozenset(("G17", "G18", "G19"))
 SECTION_NAMES = {
     "on": "in polar mode",
     "cylinder": "on a cylinder",
@@ -44,7 +43,7 @@ X_OF = {"G7": 2.0, "G8": 1.0}  # the word of a point whose radius is 1
 
 def plane_letters(draft: Draft) -> None:
     """Drop what a plane code has beside it to name its axes: ``G17 XC``, ``G17 U0 H0``."""
-    if not PLANES_IN_POLAR.intersection(draft.codes()):
+    if not ALL_PLANES.intersection(draft.codes()):
         return
     named = [word for word in draft.words if word.kind == "bare"]
     if not named and not draft.letters() - set("NGUVWH"):
@@ -154,7 +153,7 @@ def _delay_compensation(draft: Draft) -> None:
     if not code:
         return
     if code == UNSURE:
-        draft.sure("delayed", "G40 or G41 stands in front of it")
+        draft.sure("delayed", "G40 or G41 is before it")
     if draft.letters() & IN_PLANE and not _is_unmoved(draft):
         if code not in own:
             draft.put_first(code)

@@ -98,7 +98,7 @@ def orientation(draft: Draft, code: ForeignWord) -> None:
 
 
 def stop_behind_a_cut(draft: Draft) -> None:
-    """Write M5 and M9 of a block that cuts after it: LinuxCNC would stop before the move."""
+    """Write M5 and M9 of a cutting block on a line after it: LinuxCNC stops before the move."""
     stops = [
         w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOP_CODES
     ]

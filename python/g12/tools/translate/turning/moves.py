@@ -85,7 +85,7 @@ def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
-MOST_PECKING_PASSES = 5000
+MOST_CYCLE_PASSES = 5000
 
 
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
@@ -107,8 +107,8 @@ def repeated_cuts(
     passes: int,
 ) -> list[CycleMove]:
     """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
-    if not 1 <= passes <= MOST_PECKING_PASSES:
-        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_PECKING_PASSES}")
+    if not 1 <= passes <= MOST_CYCLE_PASSES:
+        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_CYCLE_PASSES}")
     side = _tool_side(contour)
     if side * allowance.imag < 0 or side * relief.imag < 0:
         raise NotTranslated("U has the sign that would cut into the contour")
@@ -152,7 +152,7 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     if not depth:
         raise NotTranslated("the cycle cuts nothing: it ends where the tool stands")
     peck = given.peck or abs(depth)
-    if abs(depth) / peck > MOST_PECKING_PASSES:
+    if abs(depth) / peck > MOST_CYCLE_PASSES:
         raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
     point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
     away, moves = copysign(1.0, -depth), []
@@ -180,7 +180,7 @@ def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
     if not given.step:
         raise NotTranslated("the cycle has no step to the next place")
     count = int(abs(width) / given.step - SAME)
-    if count > MOST_PECKING_PASSES:
+    if count > MOST_CYCLE_PASSES:
         raise NotTranslated(f"{count} places: the step is too small")
     steps = [copysign(given.step * number, width) for number in range(count + 1)]
     return depth, [*steps, width]
