@@ -6,10 +6,17 @@ import math
 import numpy as np
 import pytest
 
-from g12.tools.path.face_follow import FollowLimits, demand, followed_along
+from g12.tools.path.face_follow import demand, followed_along
+from g12.tools.path.lathe_axes import LatheAxes, Rates
 from support.made_moves import Hand
 
-LIMITS = FollowLimits(plane=700.0, slide=1000.0, c=60.0)
+QUICK = 1e9
+SLIDE, C = Rates(QUICK, 1000.0), Rates(QUICK, 60.0)
+
+
+def axes(slide=SLIDE, c=C):
+    """Return axes with the limits of C in radians."""
+    return LatheAxes(slide, slide, Rates(*map(math.degrees, c)), face=(700.0, 700.0))
 
 
 def line(distance, reach=50.0, centre=0.0):
@@ -60,25 +67,25 @@ def test_the_derivatives_are_those_of_slide_and_angle(beside):
     ],
 )
 def test_the_accelerations_of_c_and_the_slide(distance, speed, c, axis, times):
-    found = demand(line(distance), speed, 0.0, 0.0, LIMITS._replace(c=c))
+    found = demand(line(distance), speed, 0.0, axes(c=Rates(QUICK, c)))
     assert getattr(found, axis) == pytest.approx(times, rel=0.1)
 
 
 @pytest.mark.parametrize("rounding", [0.0, 1e-15, -1.7e-15])
 def test_a_line_into_the_centre_turns_no_c(rounding):
     move = Hand().rapid(x=7.0).line(x=rounding).moves[-1]
-    assert demand(move, 5.0, 0.0, 0.0, LIMITS).c == pytest.approx(0.0, abs=1e-9)
+    assert demand(move, 5.0, 0.0, axes()).c == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_speeds_of_c_and_the_slide():
     """At 10 mm from the spindle C is at its speed with 20 mm/s."""
-    found = demand(line(10.0), 15.0, 0.0, 0.0, LIMITS._replace(c_speed=2.0, slide_speed=30.0))
+    found = demand(line(10.0), 15.0, 0.0, axes(Rates(30.0, 1000.0), Rates(2.0, 60.0)))
     assert found.c_speed == pytest.approx(0.75, rel=1e-3)
     assert found.slide_speed == pytest.approx(0.5, rel=0.05)
 
 
 def test_an_arc_is_no_faster_than_x_and_y_let_it_be():
     arc = Hand().rapid(x=7.0).arc(1, 0.0, 0.0).moves[-1]
-    found = demand(arc, 1000.0, 0.0, 0.0, LIMITS._replace(c_speed=10.0))
+    found = demand(arc, 1000.0, 0.0, axes(c=Rates(10.0, 60.0)))
     assert found.plane == pytest.approx(1000**2 / 7 / 700)
     assert found.c_speed == pytest.approx(math.sqrt(700 * 7) / 7 / 10)

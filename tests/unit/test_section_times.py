@@ -9,7 +9,8 @@ import pytest
 from g12.geometry.curve import Arc, Line
 from g12.tools.install.lathe.segments_rules import hexagon
 from g12.tools.machine.ini import read_machine_ini
-from g12.tools.path.section_times import Leg, section_times, turning_machine
+from g12.tools.path.lathe_axes import lathe_axes
+from g12.tools.path.section_times import Leg, section_times
 from support.sim_machines import SIM
 
 CIRCLE = [Arc(30 + 0j, 20 + 0j, math.tau)]
@@ -19,8 +20,8 @@ SLOW = "lathe_slow_c_mm_kinematics"
 
 def times_of(path, feed, lathe=LATHE):
     """Return the times of a path at a feed in mm/min."""
-    machine = turning_machine(read_machine_ini(SIM / f"{lathe}.ini"))
-    return section_times([Leg(curve, feed / 60) for curve in path], machine)
+    axes = lathe_axes(read_machine_ini(SIM / f"{lathe}.ini"))
+    return section_times([Leg(curve, feed / 60) for curve in path], axes)
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from g12.tools.path.lathe_axes import LatheAxes, Rates
 from g12.tools.path.part import Part
-from g12.tools.path.section_axes import SectionAxes
 from g12.tools.verify.compare.section import judge_toolpath
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
@@ -19,7 +19,7 @@ FACE = Part(turning=True)
 TOLERANCE = 0.006
 TOOL = 6.0
 CORNERS = [20 + 20j, -20 + 20j, -20 - 20j, 20 - 20j, 20 + 0j]  # counterclockwise from 20+0j
-AXES = SectionAxes(1000.0, 1000.0, math.radians(3600.0), 360.0)
+AXES = LatheAxes(Rates(150.0, 1000.0), Rates(150.0, 1000.0), Rates(360.0, 3600.0))
 
 
 def line(number, start, end, side=0, ramp=False):
@@ -152,7 +152,7 @@ def test_the_speed_of_c_is_told_with_its_limit():
 
 
 def test_c_may_pass_its_limit_by_half_the_acceleration_of_a_period():
-    axes = AXES._replace(c=math.radians(1200.0), c_speed=90.0)
+    axes = AXES._replace(c=Rates(90.0, 1200.0))
     assert axes.most_c_speed == pytest.approx(90.6)
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from g12.tools.path.section_axes import SectionAxes
+from g12.tools.path.lathe_axes import LatheAxes, Rates
 from g12.tools.path.surface import Surface
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.sections.section import measure_section
@@ -21,7 +21,7 @@ from support.made_moves import Hand, samples_of, seen_by
 
 RADIUS, DEPTH, AIR, TOOL = 20.0, 18.0, 24.0, 3.0
 TOLERANCE = 0.006
-AXES = SectionAxes(1000.0, 1000.0, math.radians(3600.0), 360.0)
+AXES = LatheAxes(Rates(150.0, 1000.0), Rates(150.0, 1000.0), Rates(360.0, 3600.0))
 RISE = 40 + 12j  # where a groove ends that begins at 0: along C, and by Z
 QUARTER = Element(4, 30 + 0j, 40 + 10j, 0, False, DEPTH, 30 + 10j, math.pi / 2, 600.0)
 

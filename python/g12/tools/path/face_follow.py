@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a move on the kinematics' face demands of the slide and of C, as shares of their limits.
+"""The demand of a move on the kinematics' face on the slide and on C, in multiples of their limits.
 
 LinuxCNC keeps X and Y of the face within their limits, and does not limit the slide and C there.
 For a tool at the complex point z, beside the X line by p, the slide is at r with
@@ -16,7 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.part import C, X, Y
+from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move
 
 SAMPLES_OF_MOVE = 48  # samples of a move, beside those where a line's C is accelerated most
@@ -25,21 +27,8 @@ POLE_RADIUS = 1e-6  # mm: there C has no angle, and a line that ends there needs
 Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
 
 
-class FollowLimits(NamedTuple):
-    """Accelerations: of X or Y on the face, of the slide, of C; speeds of C and of the slide."""
-
-    plane: float
-    slide: float
-    c: float
-    c_speed: float = math.inf
-    slide_speed: float = math.inf
-
-
 class FaceDemand(NamedTuple):
-    """The demand of a move, as multiples of the limits.
-
-    Accelerations of slide and C, their speeds, the centripetal acceleration of X and Y on an arc.
-    """
+    """Accelerations of slide and C, their speeds, the centripetal acceleration of an arc."""
 
     slide: float
     c: float
@@ -48,7 +37,19 @@ class FaceDemand(NamedTuple):
     plane: float
 
 
-def crosses_face(move: Move) -> bool:
+def face_demand(path: Track, index: int, axes: LatheAxes, faster: float = 1.0) -> FaceDemand | None:
+    """Return the demand of a move at its feed times a factor; None off the kinematics' face.
+
+    X and Y together have more acceleration than each along a line: ``faster`` is of that.
+    """
+    move = path.moves[index]
+    if not (axes.face and _crosses_face(move)):
+        return None
+    together = math.sqrt(2.0) if faster > 1.0 and move.kind != "arc" else 1.0
+    return demand(move, faster * path.part_feed(index) / 60.0, path.part.centre, axes, together)
+
+
+def _crosses_face(move: Move) -> bool:
     """Return whether a move crosses the face, and is long enough to be sampled."""
     change = [move.end[axis] - move.start[axis] for axis in (X, Y)]
     across = move.kind == "arc" or (move.kind == "feed" and math.hypot(*change) > SHORTEST_SAMPLED)
@@ -56,19 +57,23 @@ def crosses_face(move: Move) -> bool:
 
 
 def demand(
-    move: Move, speed: float, centre: float, beside: float, limits: FollowLimits
+    move: Move, speed: float, centre: float, axes: LatheAxes, share: float = 1.0
 ) -> FaceDemand:
-    """Return the demand of a move across the face at a speed; the pole is at X ``centre``."""
+    """Return the demand of a move across the face at a speed; the pole is at X ``centre``.
+
+    The planner has a ``share`` of the acceleration of X.
+    """
     bend = math.copysign(1.0 / move.radius, move.sweep) if move.kind == "arc" else 0.0
-    centripetal = speed * speed * abs(bend) / limits.plane
+    plane, c_limit = share * move.acceleration * axes.x_acceleration, axes.c_radians
+    centripetal = speed * speed * abs(bend) / plane
     square = speed * speed / max(1.0, centripetal)
-    along = limits.plane * math.sqrt(1.0 - min(1.0, centripetal) ** 2)
-    (slide, slide_bent), (c, c_bent) = followed_along(move, bend, centre, beside)
+    along = plane * math.sqrt(1.0 - min(1.0, centripetal) ** 2)
+    (slide, slide_bent), (c, c_bent) = followed_along(move, bend, centre, axes.beside)
     return FaceDemand(
-        float(np.nanmax(square * abs(slide_bent) + along * abs(slide))) / limits.slide,
-        float(np.nanmax(square * abs(c_bent) + along * abs(c))) / limits.c,
-        math.sqrt(square) * float(np.nanmax(abs(slide))) / limits.slide_speed,
-        math.sqrt(square) * float(np.nanmax(abs(c))) / limits.c_speed,
+        float(np.nanmax(square * abs(slide_bent) + along * abs(slide))) / axes.slide.acceleration,
+        float(np.nanmax(square * abs(c_bent) + along * abs(c))) / c_limit.acceleration,
+        math.sqrt(square) * float(np.nanmax(abs(slide))) / axes.slide.speed,
+        math.sqrt(square) * float(np.nanmax(abs(c))) / c_limit.speed,
         centripetal,
     )
 

@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.geometry.curve import Arc, Curve
-from g12.machine_ini import face_of
-from g12.tools.machine.ini import Ini
 from g12.tools.path.face_follow import axis_derivatives
-from g12.tools.path.least_time import Rates, least_seconds, seconds_at
+from g12.tools.path.lathe_axes import LatheAxes
+from g12.tools.path.least_time import least_seconds, seconds_at
 
 STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
 SMOOTH_CORNER = math.radians(5.0)  # a sharper corner is a stop
@@ -40,15 +39,6 @@ class Leg(NamedTuple):
 
     curve: Curve
     feed: float
-
-
-class TurningMachine(NamedTuple):
-    """The limits of slide and C, the face's acceleration in X and in Y, and POLAR_TOLERANCE."""
-
-    slide: Rates
-    spindle: Rates
-    face: tuple[float, float]
-    tolerance: float
 
 
 class SectionTimes(NamedTuple):
@@ -77,35 +67,20 @@ class _Stretch(NamedTuple):
         return float(np.abs(np.diff(self.points)).mean())
 
 
-def turning_machine(ini: Ini) -> TurningMachine:
-    """Return the limits of a lathe's X slide and C."""
-    axes, face = ini.axis_limits, face_of(ini.get)
-    slide, spindle = (face.slide if face else axes["X"]), axes["C"]
-    usual = OF_SLIDE * slide.acceleration
-    ours = (face.x.acceleration, face.y.acceleration) if face else (usual, usual)
-    return TurningMachine(
-        (slide.velocity * ini.mm, slide.acceleration * ini.mm),
-        (math.radians(spindle.velocity), math.radians(spindle.acceleration)),
-        (ours[0] * ini.mm, ours[1] * ini.mm),
-        ini.settings.tolerance(ini.mm) * ini.mm,
-    )
-
-
-def section_times(legs: Sequence[Leg], machine: TurningMachine) -> SectionTimes:
+def section_times(legs: Sequence[Leg], axes: LatheAxes) -> SectionTimes:
     """Return the estimated times of consecutive moves of the tool."""
     stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
     turns = sum(
-        _turn(one.points[-1], other.points[0], machine)
-        for one, other in zip(stretches, stretches[1:])
+        _turn(one.points[-1], other.points[0], axes) for one, other in zip(stretches, stretches[1:])
     )
-    segments = [_in_segments(each, machine) for each in stretches]
+    segments = [_in_segments(each, axes) for each in stretches]
     chorded = sum(_seconds(each, *how) for each, how in zip(stretches, segments))
     face = min(
-        sum(_on_face(each, *how, machine, share) for each, how in zip(stretches, segments))
+        sum(_on_face(each, *how, axes, share) for each, how in zip(stretches, segments))
         for share in TRIED_SHARES
     )
     least = sum(
-        least_seconds(each.points, each.feed, machine.slide, machine.spindle) for each in stretches
+        least_seconds(each.points, each.feed, axes.slide, axes.c_radians) for each in stretches
     )
     return SectionTimes(chorded + turns, min(chorded, face + SWITCHING) + turns, least + turns)
 
@@ -151,20 +126,20 @@ def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
             yield _Stretch(*(each[first:last] for each in stretch))
 
 
-def _turn(end: complex, start: complex, machine: TurningMachine) -> float:
+def _turn(end: complex, start: complex, axes: LatheAxes) -> float:
     """Return the time of C's turn at the pole between two points, 0 where they coincide."""
     turn = abs(np.angle(start * np.conj(end)))
-    speed, acceleration = machine.spindle
+    speed, acceleration = axes.c_radians
     top = min(speed, math.sqrt(turn * acceleration))
     return float(turn / top + top / acceleration) if turn > TINY else 0.0
 
 
-def _in_segments(stretch: _Stretch, machine: TurningMachine) -> tuple[np.ndarray, np.ndarray]:
+def _in_segments(stretch: _Stretch, axes: LatheAxes) -> tuple[np.ndarray, np.ndarray]:
     """Return the speeds in segments, and the acceleration along the path."""
     radius, along, around = np.abs(stretch.points), np.abs(stretch.along), np.abs(stretch.around)
-    (speed, slide), (c_speed, spindle) = machine.slide, machine.spindle
+    (speed, slide), (c_speed, spindle) = axes.slide, axes.c_radians
     spiral = stretch.around * (1.0 + along**2) / radius
-    deviation = np.minimum(machine.tolerance, 0.5 * radius)
+    deviation = np.minimum(axes.tolerance, 0.5 * radius)
     bulge = 8.0 * SEGMENT_BULGE * deviation / np.maximum(np.abs(stretch.bend - spiral), TINY)
     length = np.minimum(np.sqrt(bulge), len(radius) * stretch.step)
     length = np.where(around > TINY, np.minimum(length, radius / np.maximum(along, TINY)), length)
@@ -178,20 +153,21 @@ def _on_face(
     stretch: _Stretch,
     chorded: np.ndarray,
     quick: np.ndarray,
-    machine: TurningMachine,
+    axes: LatheAxes,
     share: float,
 ) -> float:
     """Return the seconds with kinematics, with segments where those are quicker."""
-    whole = share * math.hypot(*machine.face)
-    most = np.where(stretch.bend, share * min(machine.face), whole)
-    followed = np.minimum(stretch.feed, _followed(stretch, machine, most))
+    face = axes.face or [OF_SLIDE * axes.slide.acceleration] * 2
+    whole = share * math.hypot(*face)
+    most = np.where(stretch.bend, share * min(face), whole)
+    followed = np.minimum(stretch.feed, _followed(stretch, axes, most))
     braking = np.where(followed >= chorded, PLANNED * whole, quick)
     return _seconds(stretch, np.maximum(followed, chorded), braking)
 
 
-def _followed(stretch: _Stretch, machine: TurningMachine, most: np.ndarray) -> np.ndarray:
+def _followed(stretch: _Stretch, axes: LatheAxes, most: np.ndarray) -> np.ndarray:
     """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
-    (speed, acceleration), (c_speed, c_acceleration) = machine.slide, machine.spindle
+    (speed, acceleration), (c_speed, c_acceleration) = axes.slide, axes.c_radians
     radius = np.abs(stretch.points)
     slide, c = axis_derivatives(radius, stretch.along, stretch.around, stretch.bend)
     square = np.minimum(speed / _size(slide[0]), c_speed / _size(c[0])) ** 2

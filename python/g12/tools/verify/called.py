@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 from g12.geometry.curve import Line
 from g12.tools.path.follow import Followed
+from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.part import C
-from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.slowest import Pace
 from g12.tools.path.track import CART_FUZZ
 from g12.tools.preview.executed_blocks import CLAMP, Block
@@ -35,7 +35,7 @@ from g12.tools.verify.subject import Subject
 
 
 def measure_shape(
-    call: SubCall, subject: Subject, axes: SectionAxes, tolerance: float
+    call: SubCall, subject: Subject, axes: LatheAxes, tolerance: float
 ) -> MeasuredCut:
     """Return what was measured of a shape; the ``subject`` is that of the face about its X0."""
     block, expected = call.block, shape_path(call)

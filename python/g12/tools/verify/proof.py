@@ -14,9 +14,9 @@ from typing import NamedTuple
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
 from g12.tools.material.stock import StockText
+from g12.tools.path.lathe_axes import lathe_axes
 from g12.tools.path.part import part_of
 from g12.tools.path.samples import Samples
-from g12.tools.path.section_axes import axes_of_section
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import limits_of
 from g12.tools.preview.ended import ended, explained
@@ -168,7 +168,7 @@ def compared(subject: Subject, workpiece: Workpiece, allowed: Tolerances, tell: 
     """Return each cut with what was made of it against what its words command."""
     commanded, moves, real, ini = subject.commanded, subject.moves, subject.real, subject.ini
     pace = partial(pace_of, path=subject.path, real=real)
-    axes = axes_of_section(ini) if commanded.sections or commanded.shapes else None
+    axes = lathe_axes(ini) if commanded.sections or commanded.shapes else None
     clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], commanded.clamp_is_traced)
     polar = allowed.polar
     return Cuts(

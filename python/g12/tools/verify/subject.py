@@ -13,9 +13,9 @@ import numpy as np
 from g12.tools.machine.ini import Ini
 from g12.tools.material.material import SAME_LEVEL
 from g12.tools.path.follow import Followed, follow
+from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.part import Part, X, Z, part_of_program
 from g12.tools.path.samples import Samples
-from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import Track, limits_of, track
 from g12.tools.preview.executed_blocks import read_lines
@@ -79,7 +79,7 @@ class Subject:
         there = self._on(Surface(turning=True, radius=radius), own)
         return self._surfaces.setdefault(radius, there) if self.samples else there
 
-    def view(self, section: SectionContour, axes: SectionAxes, tolerance: float) -> SectionView:
+    def view(self, section: SectionContour, axes: LatheAxes, tolerance: float) -> SectionView:
         """Return a section that moves as its part sees it."""
         own, radius = range(section.at, section.end), section.surface
         x0 = x0_of(section, self.moves[section.at])

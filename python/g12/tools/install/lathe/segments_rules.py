@@ -14,7 +14,8 @@ from g12.tools.install.config.findings import ConfigFinding, note
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_rules import KINEMATICS_PAGE, selects_kinematics
 from g12.tools.machine.ini import IniError
-from g12.tools.path.section_times import Leg, TurningMachine, section_times, turning_machine
+from g12.tools.path.lathe_axes import LatheAxes, lathe_axes
+from g12.tools.path.section_times import Leg, section_times
 
 FLAT, CUTTER = 13.5, 6.0  # mm, radii
 SIXTH = pi / 3
@@ -38,11 +39,10 @@ CONTOURS: dict[str, list[Curve]] = {
 }
 
 
-def takes(path: list[Curve], machine: TurningMachine) -> str:
+def takes(path: list[Curve], axes: LatheAxes) -> str:
     """Return a text for the times of a contour."""
     times = (
-        section_times([Leg(curve, feed / 60.0) for curve in path], machine)
-        for feed in EXAMPLE_FEEDS
+        section_times([Leg(curve, feed / 60.0) for curve in path], axes) for feed in EXAMPLE_FEEDS
     )
     segments, face, least = (" and ".join(f"{t:.1f}" for t in kind) for kind in zip(*times))
     return f"{segments} s, with kinematics {face} s, at the limits of X and C {least} s"
@@ -56,11 +56,11 @@ def gained_by_kinematics(config: Config) -> Iterator[ConfigFinding]:
         return
     known = all(ini.all(f"AXIS_{letter}", "MAX_ACCELERATION") for letter in "XC")
     try:
-        machine = turning_machine(ini) if known and not ini.tool_beside else None
+        axes = lathe_axes(ini) if known and not ini.tool_beside else None
     except IniError:  # another rule reports it
         return
-    if machine:
-        times = "; ".join(f"{what} {takes(path, machine)}" for what, path in CONTOURS.items())
+    if axes:
+        times = "; ".join(f"{what} {takes(path, axes)}" for what, path in CONTOURS.items())
         yield note(
             "segments",
             "polar sections are made in segments; the contour alone, without lead-in and lead-out, "

@@ -13,9 +13,10 @@ from functools import cached_property
 
 import numpy as np
 
+from g12.tools.path.face_follow import face_demand
 from g12.tools.path.follow import Followed
+from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.part import C
-from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.track import Track, feed_length, rate
 from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.path import OFF, Laid, Made, PathDifference, Span, judge_path, lay
@@ -69,7 +70,7 @@ class ToolpathView:
     moves: Sequence[Move]
     path: Track
     real: Followed | None
-    axes: SectionAxes
+    axes: LatheAxes
     allowed: tuple[float, float]
     diameters: bool
     last: int
@@ -77,7 +78,7 @@ class ToolpathView:
     @property
     def on_face(self) -> bool:
         """Whether it is made by the kinematics of the face."""
-        return self.axes.slide > 0.0 and not self.plane.surface
+        return bool(self.axes.face) and not self.plane.surface
 
     def points(self, index: int) -> np.ndarray:
         """Return the points (n, 3) of the part along a move as emitted."""
@@ -114,7 +115,7 @@ class ToolpathView:
         """
         if not self.on_face or turns(self.moves[index]):
             return False
-        quicker = self.axes.demand(self.path, index, 1.0 / FEED_STEP)
+        quicker = face_demand(self.path, index, self.axes, 1.0 / FEED_STEP)
         slow = self.path.part_feed(index) <= LESS_ON_FACE * feed
         return slow and (quicker is None or max(quicker) > NEARLY)
 

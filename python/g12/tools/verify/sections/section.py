@@ -15,8 +15,9 @@ import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
+from g12.tools.path.lathe_axes import lathe_axes
 from g12.tools.path.part import C, Z
-from g12.tools.path.section_times import Leg, SectionTimes, section_times, turning_machine
+from g12.tools.path.section_times import Leg, SectionTimes, section_times
 from g12.tools.path.slowest import pace_of
 from g12.tools.verify.compare.section import judge_toolpath
 from g12.tools.verify.compare.state import judge_section_state
@@ -51,7 +52,7 @@ def measure_section(view: SectionView) -> MeasuredCut:
             **motion_values(view),
             "deviation": finite(off),
             "c_speed": c_speed(view),
-            "c_limit": finite(view.axes.c_speed),
+            "c_limit": finite(view.axes.c.speed),
             "turned_in_place": rubbing(view),
         },
         in_file(
@@ -157,7 +158,7 @@ def times_of_section(
     across = [move for move in toolpath if move.curve.length > NO_LENGTH]
     plunging = sum(_seconds(move) for move in toolpath if move.curve.length <= NO_LENGTH)
     legs = [Leg(move.curve, move.curve.length / _seconds(move)) for move in across]
-    return SectionTimes(*(plunging + each for each in section_times(legs, turning_machine(ini))))
+    return SectionTimes(*(plunging + each for each in section_times(legs, lathe_axes(ini))))
 
 
 def _seconds(move: Expected) -> float:

@@ -24,6 +24,7 @@ from itertools import groupby, islice
 
 import numpy as np
 
+from g12.tools.path.face_follow import face_demand
 from g12.tools.path.part import C
 from g12.tools.path.track import rate
 from g12.tools.verify.compare.path import Span
@@ -189,7 +190,7 @@ def _not_exact(view: SectionView) -> Iterator[Finding]:
 def _not_followed(view: SectionView) -> Iterator[Finding]:
     """Yield the moves on the face that demand more of C or the slide than they can do."""
     for index in view.own:
-        found = view.axes.demand(view.path, index)
+        found = face_demand(view.path, index, view.axes)
         for name, times in (("C", found.c), ("the slide", found.slide)) if found else ():
             if times > FOLLOWED:
                 values = {"axis": name, "times": times}
@@ -204,7 +205,7 @@ def judge_c(view: SectionView) -> Iterator[Finding]:
     line, moves, in_place = view.section.line, view.moves, view.turned_in_place
     speed = max([c_speed(view), *(rate(moves[index], 0.0) for index in in_place)])
     if speed > view.axes.most_c_speed:
-        yield Finding("c-speed", line, {"made": speed, "limit": view.axes.c_speed})
+        yield Finding("c-speed", line, {"made": speed, "limit": view.axes.c.speed})
     far = [index for index, turn in in_place.items() if turn > HALF_TURN][:1]
     for index in far:
         yield Finding("c-turned-too-far", moves[index].line, {"turned": in_place[index]})
@@ -237,8 +238,8 @@ def c_speed(view: SectionView) -> float:
 
 def _emitted_speed(view: SectionView, index: int) -> float:
     """Return the speed of C in a move, degrees/s."""
-    found = view.axes.demand(view.path, index) if view.on_face else None
+    found = face_demand(view.path, index, view.axes) if view.on_face else None
     if found:
-        return found.c_speed * view.axes.c_speed
+        return found.c_speed * view.axes.c.speed
     move, seconds = view.moves[index], view.path.seconds(index)
     return abs(move.end[C] - move.start[C]) / seconds if seconds else 0.0

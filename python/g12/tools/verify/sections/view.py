@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from g12.tools.path.follow import Followed
+from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.part import C, X, Y, Z
-from g12.tools.path.section_axes import SectionAxes
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.verify.compare.plane import plane_of
@@ -72,14 +72,14 @@ def view_of(
     trace: Trace,
     path: Track,
     real: Followed | None,
-    axes: SectionAxes,
+    axes: LatheAxes,
     tolerance: float,
 ) -> SectionView:
     """Return the view of a section that moves; ``path`` and ``real`` are on its part."""
     first, allowed = trace.moves[section.at], tolerance + LAST_DECIMAL
     tool = trace.diameters.get(first.tool, 0.0) / 2
     steps = contour_path(section.elements, section.height, tool, tolerance)
-    kinematics = axes.slide > 0.0 and not section.surface
+    kinematics = bool(axes.face) and not section.surface
     blended = max(allowed, blending_commanded(section)) if kinematics else allowed
     return SectionView(
         expected=[step.move for step in steps],
