@@ -156,7 +156,6 @@ class SideFinish(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """Return the tool centre's radius, 0 without the pass."""
         return self.finish_radius if self.side_finish else 0.0
 
 
@@ -179,14 +178,12 @@ class MillEvent(NamedTuple):
     message: str | None  # for the operator, never a refusal
 
     def extent(self) -> CycleExtent:
-        """Return the largest circle, and the reference planes and final depth."""
         position, final = self.position, self.depths.final_z
         radius = max(self.roughing.rough_radius, self.side_finish.radius)
         heights = (position.first_plane, position.second_plane, final)
         return CycleExtent(XY, (position.x, position.y, final), radius, heights)
 
     def locals(self) -> dict[str, float]:
-        """Return the named locals of `ngc/g12_circle_mill.ngc`."""
         groups = (self.position, self.roughing, self.depths, self.side_finish, self.feeds)
         return {name: value for group in groups for name, value in group._asdict().items()}
 
@@ -256,7 +253,6 @@ def finish_of_call(words: Words) -> tuple[float, bool]:
 
 
 def plan_event(entries: EventEntries) -> MillEvent:
-    """Return the event of either front end's entries."""
     words, context = entries.words, entries.context
     circle = circle_of(entries)
     first_plane, second_plane = planes_of(entries)
@@ -334,7 +330,6 @@ def planes_of(entries: EventEntries) -> tuple[float, float]:
 def roughing_of(
     entries: EventEntries, circle: EventCircle, tool: Tool, width: float | None
 ) -> Roughing:
-    """Return the circles of one level."""
     radius = circle.radius + circle.side * (tool.radius + entries.finish)
     check_room(entries, circle, tool, radius)
     if not entries.pocket:

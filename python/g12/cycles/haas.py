@@ -92,7 +92,6 @@ class Pocket(NamedTuple):
 def plan_pocket(
     words: Words, context: Context, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> Pocket:
-    """Return the pocket of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")

@@ -38,13 +38,11 @@ class MitsubishiCircle(NamedTuple):
     radius: float
 
     def extent(self, context: Context) -> CycleExtent:
-        """Return the extent of the cycle, from the tool's position in ``context``."""
         centre = (context.x, context.y, context.z)
         return CycleExtent(context.plane, centre, self.radius)
 
 
 def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
-    """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context, planes=tuple(FIRST_AXIS))
     words.check_known(MITSUBISHI_WORDS)
     check_start(words, context)
@@ -61,7 +59,6 @@ def plan_circle(words: Words, context: Context) -> MitsubishiCircle:
 
 
 def check_radius(words: Words, context: Context, radius: float, tool: Tool) -> None:
-    """Refuse a circle too small for the cutter."""
     smallest = context.length(SMALLEST_RING_MM)
     if abs(radius) - tool.radius < smallest - context.length(ROUNDING_MM):
         raise words.refuse(

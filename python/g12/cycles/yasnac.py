@@ -63,7 +63,6 @@ class YasnacCircle(NamedTuple):
     circles: int
 
     def extent(self, z: float) -> CycleExtent:
-        """Return the extent of the cycle at the level ``z``."""
         return CycleExtent(XY, (self.x, self.y, z), abs(self.radius))
 
 
@@ -102,7 +101,6 @@ class OffsetRadii(NamedTuple):
 
 
 def plan_circle(words: Words, context: Context) -> YasnacCircle:
-    """Return the circle of one G12/G13 block, or raise `Refusal`."""
     check_modes(words, context)
     words.check_known(YASNAC_WORDS)
     check_start(words, context)
@@ -123,7 +121,6 @@ def plan_circle(words: Words, context: Context) -> YasnacCircle:
 
 
 def take_traverse(words: Words) -> tuple[str, float] | None:
-    """Return letter and value of R, or of J instead."""
     if "R" in words and "J" in words:
         raise words.refuse("R and J are the same word: give one of them")
     letter = "R" if "R" in words else "J"

@@ -37,7 +37,6 @@ def locals_at(interp: Interp, level: int) -> dict[str, float]:
 
 
 def set_locals_at(interp: Interp, level: int, values: dict[str, float]) -> None:
-    """Set local parameters of a call level."""
     present, interp.call_level = interp.call_level, level
     params = interp.params
     for name, value in values.items():

@@ -44,7 +44,6 @@ class FaceRequest(IntEnum):
 
 
 def face_in_force() -> bool:
-    """Return whether the machine is on the face now."""
     status = linuxcnc.stat()
     status.poll()
     return bool(status.din[FACE_INPUT])
@@ -88,7 +87,6 @@ def _try_to_set(pin: str, acceleration: float) -> None:
 
 
 def restore_accelerations(interp: Interp) -> None:
-    """Set X's and Y's acceleration to the INI's, if they were ever set."""
     for pin, acceleration in zip(ACCELERATION_PINS, getattr(interp, "g12_accelerations", ())):
         hal.set_p(pin, repr(acceleration))
 
@@ -142,7 +140,6 @@ def _request(interp: Interp, request: FaceRequest) -> None:
 
 
 def has_switched(interp: Interp) -> bool:
-    """Return, after the wait, whether the machine has switched."""
     return not interp.task or interp.params[INPUT_RESULT] != TIMED_OUT
 
 

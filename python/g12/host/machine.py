@@ -36,8 +36,6 @@ def ini_file() -> str | None:
 
 
 class RunningMachine:
-    """The machine of the INI file that LinuxCNC runs."""
-
     def read(self, *parts: str) -> None:
         """Read properties now, so that a value that cannot be used raises its Refusal here."""
         for part in parts:
@@ -45,7 +43,6 @@ class RunningMachine:
 
     @functools.cached_property
     def settings(self) -> Settings:
-        """Section [G12]; raises Refusal if it cannot be used."""
         return settings_from_ini(ini_file())
 
     @property
@@ -59,12 +56,10 @@ class RunningMachine:
 
     @functools.cached_property
     def remaps(self) -> dict[str, Remap]:
-        """The REMAP lines by their code."""
         return {remap.code: remap for remap in remap_lines(self._ini.findall)}
 
     @functools.cached_property
     def coordinates(self) -> set[str]:
-        """The letters of the machine's axes."""
         return set(coordinates_of(self._ini.find))
 
     @functools.cached_property

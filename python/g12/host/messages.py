@@ -23,7 +23,6 @@ NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
 
 @functools.cache  # several modules may report the same
 def report_at_start(text: str) -> None:
-    """Report to the operator, when LinuxCNC starts, an error of the configuration."""
     print(f"g12: {text}", file=sys.stderr)
     emccanon.CANON_ERROR(f"g12: {text}")
 
@@ -67,7 +66,6 @@ def in_mdi(interp: Interp) -> bool:
 
 
 def fault_text(error: Exception) -> str:
-    """Return the message for an exception that is no refusal."""
     return f"g12: a fault of the package, please report it: {type(error).__name__}: {error}"
 
 
@@ -101,7 +99,6 @@ def code_of_block(interp: Interp) -> str:
 
 
 def message(text: str) -> None:
-    """Show the operator a message without an error."""
     emccanon.MESSAGE(text)
 
 

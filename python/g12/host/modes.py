@@ -20,17 +20,14 @@ def program_units_per_machine_unit(interp: Interp) -> float:
 
 
 def millimetres_per_machine_unit() -> float:
-    """Return the machine's unit in mm."""
     return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
 
 
 def millimetres_per_unit(interp: Interp) -> float:
-    """Return the program's unit in mm."""
     return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
 
 
 def spindle_speed(interp: Interp) -> float:
-    """Return the commanded speed of the spindle in use."""
     return interp.speed[feed_spindle(interp)]
 
 

@@ -54,7 +54,6 @@ class LineOfFile(int):
     file: str
 
     def __new__(cls, line: int, file: str) -> LineOfFile:
-        """Return the number, with the file's name for messages."""
         number = super().__new__(cls, line)
         number.file = file
         return number

@@ -48,13 +48,11 @@ def spindle_c_off(self, **words):
 
 
 def in_section(interp: Interp) -> bool:
-    """Return whether the remapped block is in a section."""
     remaps = (interp.blocks[level].executing_remap for level in range(1, interp.remap_level))
     return any(remap and remap.remap_py in SECTION_HANDLERS for remap in remaps)
 
 
 def is_c() -> bool:
-    """Return whether the spindle is C now."""
     status = linuxcnc.stat()
     status.poll()
     return bool(status.din[INPUT])

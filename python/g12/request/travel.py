@@ -28,7 +28,6 @@ class CycleExtent(NamedTuple):
     heights: tuple[float, ...] = ()
 
     def points(self) -> list[SpacePoint]:
-        """Return the centre at each height."""
         x, y, z = self.centre
         return [(x, y, height) for height in self.heights or (z,)]
 
@@ -47,7 +46,6 @@ class MachineFrame(NamedTuple):
     millimetres: float
 
     def position(self, point: SpacePoint) -> SpacePoint:
-        """Return a point in machine coordinates and units."""
         turned = self._turned(*(value + plus for value, plus in zip(point, self.shift)))
         x, y, z = (self.unit * (value + plus) for value, plus in zip(turned, self.offset))
         return x, y, z

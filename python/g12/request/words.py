@@ -31,7 +31,6 @@ class Words:
         return letter in self._remaining
 
     def refuse(self, rule: str) -> BlockRefusal:
-        """Return the refusal of this block for breaking ``rule`` (the caller raises it)."""
         return BlockRefusal(self.code, rule)
 
     @staticmethod

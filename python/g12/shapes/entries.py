@@ -39,7 +39,6 @@ class ShapeEntries(Words):
         return self._above_zero(letter, self.require(letter, meaning))
 
     def positive(self, letter: str, default: float) -> float:
-        """Return an entry above zero, or its default."""
         value = self.take(letter)
         return default if value is None else self._above_zero(letter, value)
 
@@ -51,7 +50,6 @@ class ShapeEntries(Words):
         return value
 
     def angle(self, letter: str) -> float:
-        """Return an angle in degrees, zero if it is left out."""
         value = self.take(letter) or 0.0
         if abs(value) > MOST_ANGLE:
             rule = f"must lie between -{number(MOST_ANGLE)} and {number(MOST_ANGLE)}"
@@ -126,7 +124,6 @@ def feed_of(entries: ShapeEntries, context: Context) -> float:
 
 
 def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> Feeds:
-    """Return the feeds: feed and plunge_feed."""
     feed = feed_of(entries, context)
     return Feeds(feed, entries.positive("plunge_feed", feed * machine.plunge_share))
 
@@ -177,5 +174,4 @@ def rounds_between(first: float, last: float, cutter: float, rounding: float) ->
 
 
 def locals_of(*groups: NamedTuple) -> dict[str, float]:
-    """Return the fields of a plan's records as named locals of its sub."""
     return {name: value for group in groups for name, value in group._asdict().items()}

@@ -118,7 +118,6 @@ class HolesPlan(NamedTuple):
 
 
 def plan_face_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    """Return the holes of ``o<face_holes> call``, or raise `Refusal`."""
     check_tool(entries, context)
     count = count_of(entries)
     radius = entries.require_positive("circle_diameter", "of the circle of holes") / 2
@@ -128,7 +127,6 @@ def plan_face_holes(entries: ShapeEntries, context: Context, machine: HoleMachin
 
 
 def plan_face_hole_at(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    """Return the hole of ``o<face_hole_at> call``, or raise `Refusal`."""
     check_tool(entries, context)
     x = (entries.take("x") or 0.0) / (2 if machine.diameters else 1)
     c = entries.take("c") or 0.0
@@ -137,7 +135,6 @@ def plan_face_hole_at(entries: ShapeEntries, context: Context, machine: HoleMach
 
 
 def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    """Return the holes of ``o<side_holes> call``, or raise `Refusal`."""
     check_tool(entries, context)
     count = count_of(entries)
     z = entries.require("z", "where the holes are along the part")
@@ -162,7 +159,6 @@ def plan_holes(
     count: int,
     turn: float,
 ) -> HolesPlan:
-    """Return the holes that begin at a position."""
     hole = hole_of(entries, context, machine)
     check_moves(entries, count * (3 * hole.pecks + 3), "count and peck make")
     return HolesPlan(
@@ -177,13 +173,11 @@ def plan_holes(
 
 
 def check_tool(entries: ShapeEntries, context: Context) -> None:
-    """Refuse to drill without a loaded tool."""
     if context.spindle_tool is None:
         raise entries.refuse("no tool is loaded")
 
 
 def count_of(entries: ShapeEntries) -> int:
-    """Return how many holes there are."""
     return entries.require_whole("count", "how many holes", least=1, most=MOST_HOLES_OF_CALL)
 
 
@@ -217,7 +211,6 @@ def on_face(
 
 
 def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Hole:
-    """Return the values of each hole."""
     depth = entries.require_positive("depth", "how deep, from the face or surface")
     retract = entries.require_positive("retract", "the height at which the tool is clear")
     kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)

@@ -92,14 +92,12 @@ class PolygonForm(NamedTuple):
 
     @property
     def side(self) -> float:
-        """Return half the length of a flat."""
         if self.sides == TWO_FLATS:
             return UNLIMITED_FLAT
         return self.inner * tan(radians(self.half_turn))
 
     @property
     def corner(self) -> float:
-        """Return the distance of a corner's centre."""
         return hypot(self.inner, self.side)
 
 
@@ -131,7 +129,6 @@ class PolygonPlan(NamedTuple):
     start_angle: float
 
     def locals(self) -> dict[str, float]:
-        """Return the named locals of `ngc/polar_polygon.ngc` beside its entries."""
         form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
         numbers = locals_of(self.rounds, self.levels, self.feeds, self.heights)
         return form | numbers | {"start_angle": self.start_angle, "flush": FLUSH}
@@ -156,7 +153,6 @@ class PolygonPlan(NamedTuple):
 
 
 def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> PolygonPlan:
-    """Return the polygon of one call, or raise `Refusal`."""
     cutter = loaded_tool(entries, context).radius
     form, stock = form_of(entries)
     levels = levels_of(entries, context)
@@ -167,7 +163,6 @@ def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine)
 
 
 def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
-    """Return the polygon and the stock's radius."""
     sides = entries.require_whole("sides", "how many, 2 for two flats", TWO_FLATS, MOST_SIDES)
     flats = entries.require_positive("across_flats", "the distance between two flats")
     stock = entries.require_positive("stock_diameter", "the bar's")

@@ -47,12 +47,10 @@ class ClearingRings(NamedTuple):
 
     @property
     def largest(self) -> float:
-        """Return the radius of the largest ring."""
         return self.finish_ring if self.finish else self.first_ring + self.further * self.ring_step
 
     @property
     def radii(self) -> list[float]:
-        """Return the radii of all rings."""
         rough = (self.first_ring + index * self.ring_step for index in range(self.further + 1))
         return [*rough, self.largest]
 

@@ -59,7 +59,6 @@ class RoundPocketPlan(NamedTuple):
     start_angle: float
 
     def locals(self) -> dict[str, float]:
-        """Return the named locals of `ngc/polar_pocket.ngc` beside its entries."""
         numbers = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
         return numbers | {"away": self.away, "start_angle": self.start_angle}
 
@@ -86,7 +85,6 @@ class RoundPocketPlan(NamedTuple):
 def plan_round_pocket(
     entries: ShapeEntries, context: Context, machine: ShapeMachine
 ) -> RoundPocketPlan:
-    """Return the pocket of one call, or raise `Refusal`."""
     cutter = loaded_tool(entries, context).radius
     x = (entries.take("x") or 0.0) / (2 if machine.diameters else 1)
     c = entries.take("c") or 0.0
@@ -108,7 +106,6 @@ def plan_round_pocket(
 def check_centre(
     entries: ShapeEntries, machine: ShapeMachine, rings: ClearingRings, away: float
 ) -> None:
-    """Refuse a ring through the spindle's centre where POLAR_POLE refuses it."""
     through = any(abs(radius - away) <= machine.pole for radius in rings.radii)
     if machine.pole_refused and through:
         raise entries.refuse(

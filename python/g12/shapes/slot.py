@@ -59,7 +59,6 @@ class SlotPlan(NamedTuple):
     start_angle: float
 
     def locals(self) -> dict[str, float]:
-        """Return the named locals of `ngc/polar_slot.ngc` beside its entries."""
         numbers = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
         return numbers | {"end_distance": self.end_distance, "start_angle": self.start_angle}
 
@@ -75,7 +74,6 @@ class SlotPlan(NamedTuple):
 
 
 def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> SlotPlan:
-    """Return the slot of one call, or raise `Refusal`."""
     cutter = loaded_tool(entries, context).radius
     width = entries.require_positive("width", "from wall to wall")
     length = entries.require_positive("length", "over all")

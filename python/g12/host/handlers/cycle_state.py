@@ -75,7 +75,6 @@ class CycleState:
 
 
 def state_of(interp: Interp) -> CycleState:
-    """Return the package's state of this interpreter."""
     try:
         return interp.g12_state
     except AttributeError:
@@ -131,12 +130,10 @@ def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
 
 
 def tool_from_entry(interp: Interp, entry: ToolTableEntry) -> Tool:
-    """Return a tool table entry's number and radius in program units."""
     return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
 
 
 def tool_in_spindle(interp: Interp) -> Tool | None:
-    """Return the loaded tool, None if there is none."""
     entry = interp.tool_table[0]
     return tool_from_entry(interp, entry) if entry.toolno > 0 else None
 
@@ -167,7 +164,6 @@ def last_radius(interp: Interp) -> float | None:
 
 
 def remember_radius(interp: Interp, radius: float) -> None:
-    """Store the cutter radius of a D word as the last commanded."""
     interp.cutter_comp_radius = radius
     state_of(interp).radius_commanded = True
 
@@ -191,13 +187,11 @@ def first_plane(interp: Interp) -> float | None:
 
 
 def remember_first_plane(interp: Interp, height: float) -> None:
-    """Store the first reference plane as the last commanded."""
     plane = height * millimetres_per_unit(interp), main_program(interp)
     state_of(interp).first_plane = plane
 
 
 def snapshot(interp: Interp) -> Context:
-    """Return the state before the block: modes, units, position, tools."""
     return Context(
         inch=interp.length_units == INCH_UNITS,
         x=interp.current_x,
@@ -235,7 +229,6 @@ def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> Non
 
 
 def machine_frame(interp: Interp) -> MachineFrame:
-    """Return the transformation to machine coordinates: work offset, G92, rotation, tool."""
     tool = interp.tool_offset
     return MachineFrame(
         shift=(interp.axis_offset_x, interp.axis_offset_y, interp.axis_offset_z),
@@ -251,12 +244,10 @@ def machine_frame(interp: Interp) -> MachineFrame:
 
 
 def per_revolution(interp: Interp) -> bool:
-    """Return whether feeds are per revolution (G95)."""
     return interp.feed_mode == PER_REVOLUTION
 
 
 def pocket_entry() -> PocketEntry:
-    """Return how the tool enters a Haas pocket, by [G12]."""
     settings = MACHINE.settings
     return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
 
@@ -275,7 +266,6 @@ def hand_over(interp: Interp, **locals_: float) -> None:
 
 
 def note_modes(interp: Interp) -> None:
-    """Note the modes and F before a cycle or a shape."""
     state = state_of(interp)
     state.feed = interp.feed_rate
     state.modes = (

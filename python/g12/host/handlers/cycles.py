@@ -20,12 +20,10 @@ ARCS = CLOCKWISE, COUNTERCLOCKWISE  # of G12 and G13
 
 
 def check_at_start() -> None:
-    """Read the INI values that the cycles use; raise Refusal for one that cannot be used."""
     MACHINE.read("settings", "travel")
 
 
 def prepare_haas(interp: Interp, arc: int) -> int:
-    """Check a Haas G12/G13 block and hand its pocket to `ngc/g12_haas.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context, context.last_radius)
     clearing, entry = MACHINE.settings.clearing, cycle_state.pocket_entry()
@@ -42,7 +40,6 @@ def prepare_haas(interp: Interp, arc: int) -> int:
 
 
 def prepare_yasnac(interp: Interp, arc: int) -> int:
-    """Check a Yasnac G12/G13 block and hand its circle to `ngc/g12_yasnac.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
     circle = yasnac.plan_circle(words, context)
@@ -60,7 +57,6 @@ def prepare_yasnac(interp: Interp, arc: int) -> int:
 
 
 def prepare_mitsubishi(interp: Interp, arc: int) -> int:
-    """Check a Mitsubishi G12/G13 block and hand its circle to `ngc/g12_mitsubishi.ngc`."""
     words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
     other = other_cutter(words.code, words.value("D"), context)
     circle = mitsubishi.plan_circle(words, context)
@@ -86,7 +82,6 @@ def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
 
 
 def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
-    """Check a circle mill event and hand it to `ngc/g12_circle_mill.ngc`."""
     event = planned_event(interp, pocket)
     cycle_state.hand_over(interp, **event.locals())
     cycle_state.remember_first_plane(interp, event.position.first_plane)
@@ -115,6 +110,5 @@ circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, 
 
 @messages.handler
 def cycle_done(self, **words):
-    """Epilog of every cycle: restores the modes before the block."""
     cycle_state.restore_modes(self)
     return INTERP_OK

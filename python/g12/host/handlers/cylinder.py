@@ -24,7 +24,6 @@ from g12.section.codes import SectionCodes, codes_with_word
 
 
 def check_at_start() -> None:
-    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
     check_ini()
 
 

@@ -117,7 +117,6 @@ def _unlock(interp: Interp) -> ByHand | None:
 
 
 def restore_modes_before_face(interp: Interp) -> None:
-    """Restore the modes before `switch_on` or a section."""
     found, interp.g12_modes_before = getattr(interp, "g12_modes_before", None), None
     if found:
         interp.execute(found)

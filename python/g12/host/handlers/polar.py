@@ -34,7 +34,6 @@ from g12.shapes import SHAPE_SUBS
 
 
 def check_at_start() -> None:
-    """Read the INI values that sections use; raise Refusal if G12.1 is LinuxCNC's own code."""
     check_ini()
     try:
         refuse_owned_codes(MACHINE.remaps, owns_g12_1(Path("/proc/self/maps").read_text()))

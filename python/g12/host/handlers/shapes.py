@@ -37,8 +37,6 @@ from g12.shapes.holes import HoleMachine
 
 
 class Plan(Protocol):
-    """The result of a planner of shapes or holes."""
-
     def locals(self) -> dict[str, float]:
         """Return the named locals of the sub."""
 
@@ -69,7 +67,6 @@ HOLE_CALLS: dict[str, Shape[HoleMachine]] = {
 
 
 def check_at_start() -> None:
-    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
     check_ini()
 
 
@@ -128,7 +125,6 @@ def prepare_holes(
 def hole_machine(
     interp: Interp, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> HoleMachine:
-    """Return the machine's state that holes depend on."""
     spindle = tool_spindle(interp)
     turning = type(interp).spindle_turning.fget(interp, spindle)  # a property with an argument
     return HoleMachine(
@@ -188,7 +184,6 @@ def start_of_shape(interp: Interp, name: str) -> SectionStart:
 
 
 def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
-    """Return the machine's settings that a shape depends on."""
     beside = setup.words.beside
     return ShapeMachine(
         diameters=setup.words.diameter,
@@ -201,7 +196,6 @@ def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
 
 
 def section_codes(entries: ShapeEntries) -> dict[str, float]:
-    """Return the locals with the G codes that begin and end the sub's section."""
     remaps = MACHINE.remaps.values()
     numbers = {}
     for name in ("polar_on", "polar_off"):

@@ -128,7 +128,6 @@ class PathControl:
         return EXACT_PATH if stop else ""
 
     def restore(self) -> None:
-        """Restore the commanded path control."""
         if self._blending != self._tolerances:
             self.set(self._tolerances)
         self.set(self._commanded)
@@ -320,7 +319,6 @@ class SectionOutput:
         interp.motion_mode = G1
 
     def _act(self, action: Action) -> None:
-        """Execute an action."""
         if action.text == BLOCK_END:
             return
         self.interp.sequence_number = action.line

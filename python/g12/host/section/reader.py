@@ -59,7 +59,6 @@ class MoveWords(NamedTuple):
 
 
 def block_of(parsed: ParsedBlock) -> SectionBlock:
-    """Return the interpreter's parsed block as plain data."""
     words = {
         letter: getattr(parsed, value)
         for letter, flag, value in WORD_ATTRIBUTES
@@ -116,7 +115,6 @@ class SectionReader:
 
     @property
     def location(self) -> BlockLocation:
-        """The source location of the line taken last, for messages."""
         return BlockLocation(self.start.location.code, self.program.shown_line)
 
     def refuse_failed(self) -> Exception:
@@ -124,13 +122,11 @@ class SectionReader:
         return self.location.refuse(error_text(self.interp))
 
     def remember_machine(self) -> None:
-        """Note the machine's position and modes from the interpreter's state."""
         interp = self.interp
         self._machine = interp.current_x, interp.current_z, interp.CC_current
         self._modes_of_machine = self.modes
 
     def show_machine(self) -> None:
-        """Set the interpreter's position to the machine's."""
         interp = self.interp
         interp.current_x, interp.current_z, interp.CC_current = self._machine
 
@@ -140,7 +136,6 @@ class SectionReader:
         self.set_modes(self._modes_of_machine)
 
     def deletes(self, line: TextLine) -> bool:
-        """Return whether a line is skipped with block delete."""
         return line.deletable and emccanon.GET_BLOCK_DELETE()
 
     def set_modes(self, modes: SectionModes) -> None:

@@ -248,7 +248,6 @@ class Section:
         self._phase = Phase.DONE
 
     def _emit(self) -> Generator[int, None, SectionPlan]:
-        """Plan the lines read so far, and execute the plan; return it."""
         reader = self.reader
         plan = self.plan(reader.contour)
         self._check_limits(plan)

@@ -55,7 +55,6 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
 
 
 def is_alone(block: ParsedBlock, words: str = "") -> bool:
-    """Return whether a block holds only its code and these words."""
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
 
