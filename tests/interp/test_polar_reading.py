@@ -87,8 +87,9 @@ def test_position_parameters_show_the_plane(lathe, name):
 
 
 def test_position_parameters_show_the_machine_again_behind_the_section(lathe):
-    traced = cut(lathe, "G1 C20", after=["(DEBUG,%.3f#5420 #5425)"])
-    assert texts(traced) == ["28.284 45.000"]
+    sub = ["o<next> sub", "o<next> endsub [#1 + 1]"]
+    body = section("G1 C20", "o<next> call [3]", after=["(DEBUG,%.3f#5420 #5425 #<_value>)"])
+    assert texts(lathe.trace_text([*sub, *body])) == ["28.284 45.000 4.000"]
 
 
 def test_a_parameter_that_does_not_exist_is_refused_on_its_line(lathe):
@@ -182,6 +183,11 @@ SUBS = {  # lines of a sub in front, of a section that calls it, and where the b
     "modes restored at its end": (
         ["o<s> sub", "M73", "G91 G1 U1 F50", "X1", "o<s> endsub"], ["G1 X12", "o<s> call", "X9"],
         [(12, 0), (13, 0), (14, 0), (9, 0)],
+    ),
+    "value returned": (
+        ["o<next> sub", "o<next> endsub [#1 + 1]"],
+        ["o<next> call [11]", "o<next> call [#<_value>]", "G1 X#<_value>"],
+        [(13, 0)],
     ),
     "parameters of its own": (
         ["o<flat> sub", "G1 X#1", "o<flat> endsub"], ["#1=15", "o<flat> call [12]", "X#1"],

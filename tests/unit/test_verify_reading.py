@@ -361,6 +361,7 @@ def test_saved_modes_come_back(save):
         ("o<flat> call", "calls o<flat>"),
         ("X[#<_x>+1]", "asks for a position"),
         (f"X[1{'+1' * 124}]", "is too long"),
+        ("X[#<_value>]", ""),
         ("o77 call", ""),
     ],
 )

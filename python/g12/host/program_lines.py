@@ -184,16 +184,19 @@ class ProgramLines:
         return position. `Interp::execute_call` (interp_o_word.cc) notes the position in the
         caller's frame, `Interp::execute_return` seeks it. A called sub is skipped to until its
         ``sub`` line is read (`Interp::control_back_to`), which here comes from a string. (Without
-        it: `test_line_numbers_inside_and_behind`; `test_subs_of_the_same_file` does not end.)
+        it: `test_line_numbers_inside_and_behind`; `test_subs_of_the_same_file` does not end.) The
+        return from it would set #<_value>, that of the program's last sub, to 0.
         """
         interp, line = self.interp, self.line
         if self._in_file != line:
+            returned = interp.return_value, interp.value_returned
             interp.read(f"o<{SKIPPED_OVER}> call")
             interp.execute(None)
             interp.sub_context[interp.call_level - 1].position = self.source.starts[line]
             for keyword in ("sub", "endsub"):
                 interp.read(f"o<{SKIPPED_OVER}> {keyword}")
                 interp.execute(None)
+            interp.return_value, interp.value_returned = returned
         self._in_file = interp.sequence_number = line
 
     def skipping(self) -> bool:

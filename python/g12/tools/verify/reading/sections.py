@@ -37,7 +37,8 @@ RESTORE, SAVE_FOR_SUB = 72.0, 73.0
 Pens = Mapping[str, Callable[[Block], Any]]
 SUB = re.compile(r"(?:n[0-9.]+)?o<?((?<=<)[^>]+|[0-9.]+)>?(?:sub)?")
 INSIDE = "#<_g12_inside>"  # in the copy: not 0 in a section, also in the subs that it calls
-POSITION = "#<_", "#54"  # position parameters, which a copy without motion cannot follow
+# position parameters, which a copy without motion cannot follow; #<_value> is a sub's
+POSITION = re.compile(r"#<_(?!value(_returned)?>)|#54")
 
 
 def bare(line: str) -> str:
@@ -54,7 +55,7 @@ def doubts_of(copies: Copies) -> dict[Text, str]:
             doubts[text] = f"line {text.number} calls o<{text.call}>"
         elif text.too_long:
             doubts[text] = f"line {text.number} is too long"
-        elif any(name in bare(line) for name in POSITION):
+        elif POSITION.search(bare(line)):
             doubts[text] = f"line {text.number} asks for a position"
     return doubts
 
