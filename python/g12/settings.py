@@ -12,6 +12,7 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -152,7 +153,8 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
     values: dict[str, Any] = {}
     for _, key, text in entries_of(lines, INI_SECTION):
         if key not in TABLE:
-            raise Refusal(f"[{INI_SECTION}] {key:.40} is not a setting. Known: {', '.join(TABLE)}")
+            (nearest,) = get_close_matches(key.upper(), TABLE, 1, 0.0)
+            raise Refusal(f"[{INI_SECTION}] {key:.40} is not a setting; the nearest is {nearest}")
         if key.lower() in values:
             raise Refusal(f"[{INI_SECTION}] {key} occurs twice")
         try:
