@@ -212,7 +212,11 @@ def test_lines_that_linuxcnc_does_not_read(found):
 def test_a_header_that_begins_no_section(found, header):
     (broken,) = found(GOOD + f"{header}\nCLEARING = spiral\n")
     assert (broken.level, broken.kind) == (PROBLEM, "header")
-    assert broken.text.startswith(f"mill.ini:{GOOD.count(chr(10)) + 1}: {header.strip()}: ")
+    begins = f"mill.ini:{GOOD.count(chr(10)) + 1}: {header}: begins no section: "
+    assert broken.text == f"{begins}what is below it does not act"
+    unread = "LinuxCNC does not read it: Invalid section. Missing ']': [G12"
+    (broken,) = found(GOOD + f"{header}\nCLEARING = spiral\n", failure=unread)
+    assert broken.text == f"{begins}LinuxCNC reads nothing of this INI"
 
 
 @pytest.mark.parametrize(

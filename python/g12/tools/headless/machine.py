@@ -10,6 +10,7 @@ rotary axes; sampled positions are those of the axes, tool length included, or o
 the kinematics changes the meaning of the axes (`polar_xzc`).
 """
 
+import re
 import shutil
 import socket
 import time
@@ -36,6 +37,7 @@ from g12.tools.preview.tracer import (
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
 ANSWER_MARGIN = 10.0  # s that an answer may take beyond the requested timeout
 LOG_LINES = 60
+INI_ERROR = re.compile(r"\.ini:(\d+): error: (.*)")  # of LinuxCNC 2.10
 FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the same text
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
@@ -243,8 +245,7 @@ class Machine:
         raise self._startup_error("LinuxCNC did not come up in time")
 
     def _startup_error(self, what: str) -> StartupError:
-        last = "\n".join(lines_to_last_error(self.log())[-LOG_LINES:])
-        return StartupError(f"{self.ini.path}: {what}; its log ends:\n{last}")
+        return StartupError(f"{self.ini.path}: {startup_error(what, self.log(), self.ini)}")
 
     # Requests to the recording screen.
 
@@ -273,6 +274,16 @@ def position_pins(ini: Ini) -> dict[str, str]:
     if joints:
         return {letter: f"joint.{joint}.pos-cmd" for joint, letter in enumerate(joints)}
     return {letter: f"axis.{letter.lower()}.pos-cmd" for letter in ini.axes}
+
+
+def startup_error(what: str, log: str, ini: Ini) -> str:
+    """Return a text for what happened at LinuxCNC's start with an INI, by its log."""
+    refused = INI_ERROR.search(log)
+    if refused:  # with the line's text: its number is that of a copy
+        line = ini.lines[int(refused[1]) - 1].strip()
+        return f"LinuxCNC does not read it: {refused[2]}: {line}"
+    last = "\n".join(lines_to_last_error(log)[-LOG_LINES:])
+    return f"{what}; its log ends:\n{last}"
 
 
 def lines_to_last_error(log: str) -> list[str]:

@@ -25,6 +25,7 @@ from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import spindle_c_findings
 from g12.tools.machine.ini import IniError
 from g12.tools.path.track import limits_of
+from g12.tools.preview.loading import UNREAD
 from g12.tools.system import COMMAND, PROGRAM
 from g12.tools.translate.blocks.control import ControlError, read_control
 
@@ -32,6 +33,7 @@ OLDEST = (2, 9)
 TRANSLATE = "translate"  # the command in a [FILTER] line
 WELL_FORMED_HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
+SETTINGS_PAGE = "configs/README.md has every setting"
 OWN_HEADER = f"[{INI_SECTION}]"
 LINE_FOR_REMAP = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
@@ -101,15 +103,16 @@ def lines_not_read(config: Config) -> Iterator[ConfigFinding]:
 
 
 def broken_headers(config: Config) -> Iterator[ConfigFinding]:
-    """Find a broken section header; LinuxCNC 2.9 does not report it."""
+    """Find a broken section header; some versions of LinuxCNC ignore it without a report."""
+    unread = (config.failure or "").startswith(UNREAD)
+    effect = "LinuxCNC reads nothing of this INI" if unread else "what is below it does not act"
     for line in config.text.lines():
         text = line.text.strip()
         other_case = text.upper().startswith(OWN_HEADER) and not text.startswith(OWN_HEADER)
         if HEADER_LIKE.match(text) and (other_case or not WELL_FORMED_HEADER.match(text)):
             yield problem(
                 "header",
-                f"{line.location}: {text:.40}: begins no section for LinuxCNC 2.9: "
-                "what is below it does not act",
+                f"{line.location}: {text:.40}: begins no section: {effect}",
                 f"write the section's name between brackets, without blanks: as {OWN_HEADER}",
             )
 
@@ -379,7 +382,9 @@ def bad_settings(config: Config) -> Iterator[ConfigFinding]:
     try:
         settings_from_lines(config.ini.lines)
     except Refusal as refusal:
-        yield problem("setting", refusal.message, f"correct the line in [{INI_SECTION}]")
+        yield problem(
+            "setting", refusal.message, f"correct the line in [{INI_SECTION}]: {SETTINGS_PAGE}"
+        )
 
 
 def refused_values(config: Config) -> Iterator[ConfigFinding]:

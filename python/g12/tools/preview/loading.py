@@ -11,6 +11,7 @@ from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
 
 VERSION = "import linuxcnc; print(linuxcnc.version)"
+UNREAD = "LinuxCNC does not read it"  # begins the text of `worker.ini_refused`
 CONFIGURE_FAILED = "Python plugin configure() failed"
 TRACEBACK_LINE = re.compile(r'File "([^"]+)", line (\d+)')
 

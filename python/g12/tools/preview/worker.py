@@ -652,14 +652,18 @@ def answered(machine: dict, tools: ToolTable, request: dict) -> dict:
 def ini_refused(machine: dict) -> str | None:
     """Return why this LinuxCNC cannot read the INI; the interpreter would continue without it.
 
-    2.9 reads any file, 2.10 none with a line that it does not understand.
+    2.9 reads any file, 2.10 none with a line that it does not understand. The INI is a copy, whose
+    line numbers mean nothing to the user: the text names the line itself.
     """
     import linuxcnc
 
     try:
         linuxcnc.ini(machine["ini"])
     except linuxcnc.error:
-        return f"LinuxCNC does not read it: {printed(machine['output']).rpartition(' error: ')[2]}"
+        before, _, reason = printed(machine["output"]).rpartition(": error: ")
+        with open(machine["ini"], encoding="utf-8", errors="replace") as file:
+            line = file.readlines()[int(before.rpartition(":")[2]) - 1]
+        return f"LinuxCNC does not read it: {reason.strip()}: {line.strip()}"
     return None
 
 
