@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from g12.tools.commands import check, install, uninstall
+from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.sim_machines import PROGRAMS, copy_of_machines
 from support.spindle_lathe import (
@@ -318,3 +319,21 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert install.main([str(ini), *options]) == 0  # again: nothing
     assert uninstall.main([str(ini)]) == 0
     assert ini.read_bytes() == before
+
+
+@needs_kinematics
+def test_installed_with_the_kinematics_of_the_face(tmp_path):
+    ini, pins = plain_lathe(tmp_path), tmp_path / "spindle.toml"
+    pins.write_text(PINS)
+    features = ["polar", "polar-kinematics", "spindle-c"]
+    assert install.main([str(ini), "--with", *features, "--pins", str(pins)]) == 0
+    with Machine(ini) as machine:
+        run = machine.run_text([*FIRST, *FLATS, "S300 M3", "G33 Z-5 K1", "M5", *FLATS, "M2"])
+        assert run.error is None
+        for block in ("M254", "G0 X20 C0", "G12.1"):
+            machine.mdi(block)
+        assert machine.get("motion.digital-in-03")
+        for block in ("G13.1", "G0 C90", "M255"):
+            machine.mdi(block)
+        assert machine.errors() == []
+        assert not machine.get("motion.digital-in-03")

@@ -23,6 +23,55 @@ LINEAR_UNITS = mm
 TOOL_TABLE = mill.tbl
 """
 LATHE = MILL.replace("X Y Z", "X Z C") + "\n[AXIS_C]\nWRAPPED_ROTARY = 1\n"
+# A lathe of the usual form, whose spindle has an encoder.
+TURNING_HAL = """\
+loadrt [KINS]KINEMATICS
+loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
+addf motion-command-handler servo-thread
+addf motion-controller servo-thread
+net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
+net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb
+net turns encoder.position => spindle.0.revs
+net rps encoder.velocity => spindle.0.speed-in
+net index encoder.index-enable <=> spindle.0.index-enable
+"""
+TURNING = """\
+[RS274NGC]
+PARAMETER_FILE = lathe.var
+
+[TRAJ]
+COORDINATES =   X Z C
+LINEAR_UNITS = mm
+
+[KINS]
+KINEMATICS = trivkins coordinates=xzc kinstype=B
+JOINTS = 3
+
+[HAL]
+HALFILE = motion.hal
+POSTGUI_HALFILE = later.hal
+
+[AXIS_X]
+MIN_LIMIT = -5.0
+MAX_LIMIT = 200.0
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+
+[JOINT_0]
+MIN_LIMIT = -5
+MAX_LIMIT = 200
+MAX_VELOCITY = 100
+MAX_ACCELERATION = 1000
+
+[AXIS_C]
+MIN_LIMIT = -99999
+MAX_LIMIT = 99999
+MAX_VELOCITY = 360
+MAX_ACCELERATION = 3600
+
+[JOINT_2]
+HOME_SEARCH_VEL = 0.0
+"""
 HAAS = """\
 REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done
 REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done

@@ -8,47 +8,10 @@ from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.plan import Refused, make_plan
+from support.small_configs import TURNING as LATHE
+from support.small_configs import TURNING_HAL as HAL
 from support.small_configs import config_of, content_of, write_config
 
-HAL = """\
-loadrt [KINS]KINEMATICS
-loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO_PERIOD num_joints=[KINS]JOINTS
-addf motion-command-handler servo-thread
-addf motion-controller servo-thread
-net x joint.0.motor-pos-cmd => joint.0.motor-pos-fb
-"""
-LATHE = """\
-[RS274NGC]
-PARAMETER_FILE = lathe.var
-
-[TRAJ]
-COORDINATES =   X Z C
-LINEAR_UNITS = mm
-
-[KINS]
-KINEMATICS = trivkins coordinates=xzc kinstype=B
-JOINTS = 3
-
-[HAL]
-HALFILE = motion.hal
-POSTGUI_HALFILE = later.hal
-
-[AXIS_X]
-MIN_LIMIT = -5.0
-MAX_LIMIT = 200.0
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 1000
-
-[JOINT_0]
-MIN_LIMIT = -5
-MAX_LIMIT = 200
-MAX_VELOCITY = 100
-MAX_ACCELERATION = 1000
-
-[AXIS_C]
-MAX_VELOCITY = 360
-MAX_ACCELERATION = 3600
-"""
 REFUSED = [  # what is changed of the INI, and what is said
     ("trivkins coordinates=xzc kinstype=B", "trivkins", "is not trivkins coordinates=…"),
     ("coordinates=xzc", "coordinates=xyzc", "without Y"),

@@ -7,43 +7,14 @@ from g12.tools.errors import UsageError
 from g12.tools.install import installation, package_copy, removal
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.lathe import kinematics_rules
+from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
 from g12.tools.install.plan import Refused, make_plan
+from support.small_configs import TURNING as LATHE
+from support.small_configs import TURNING_HAL as HAL
 from support.small_configs import config_of, content_of, write_config
 
-HAL = """\
-loadrt [KINS]KINEMATICS
-loadrt [EMCMOT]EMCMOT num_joints=3
-net turns encoder.position => spindle.0.revs
-net rps encoder.velocity => spindle.0.speed-in
-net index encoder.index-enable <=> spindle.0.index-enable
-net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb
-"""
-LATHE = """\
-[RS274NGC]
-PARAMETER_FILE = lathe.var
-
-[DISPLAY]
-GEOMETRY = CXZ!
-
-[TRAJ]
-COORDINATES = X Z C
-LINEAR_UNITS = mm
-
-[KINS]
-KINEMATICS = trivkins coordinates=XZC
-JOINTS = 3
-
-[HAL]
-HALFILE = motion.hal
-
-[AXIS_C]
-MIN_LIMIT = -99999
-MAX_LIMIT = 99999
-
-[JOINT_2]
-HOME_SEARCH_VEL = 0.0
-"""
 PINS = """\
 velocity = "drive.velocity"
 velocity_scale = 60
@@ -51,13 +22,11 @@ position = "drive.position"
 holds = "drive.mode"
 brake = "drive.brake"
 """
-REFUSED = [
+REFUSED = [  # what is changed of the INI or the HAL file, what is said
+    ("trivkins coordinates=xzc", "trivkins coordinates=xza", "no joint is C alone"),
     ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
     ("loadrt [KINS]", "loadrt lut5 count=1\nloadrt [KINS]", "loads lut5 too"),
     ("net c joint", "net d => motion.digital-out-02\nnet c joint", "motion.digital-out-02 is what"),
-]
-INI_REFUSED = [
-    ("coordinates=XZC", "coordinates=XZA", "no joint is C alone"),
 ]
 MISTAKES = [  # what is changed of an installed machine's INI, what is found
     ("JOINT = 2\n", "", "spindle-c"),
@@ -76,6 +45,8 @@ MISTAKES = [  # what is changed of an installed machine's INI, what is found
 @pytest.fixture(autouse=True)
 def small_package(monkeypatch):
     files = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
+    files += [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
+    files += ["python/toplevel.py", "python/remap.py"]
     package = {name: (features.ROOT / name).read_bytes() for name in files}
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(package))
 
@@ -97,6 +68,32 @@ def put_in(folder, text=LATHE, hal=HAL):
 def test_check_finds_nothing_and_uninstall_gives_every_byte_back(tmp_path):
     ini, before = put_in(tmp_path)
     assert list(spindle_c_findings(config_of(ini))) == []
+    list(removal.uninstall(IniText(ini), dry_run=False))
+    assert content_of(tmp_path) == before
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        [["polar", "polar-kinematics", "spindle-c"]],
+        [["polar", "spindle-c"], ["polar-kinematics"]],
+        [["polar", "polar-kinematics"], ["spindle-c"]],
+    ],
+)
+def test_the_kinematics_of_the_face_and_this_share_a_signal_in_each_order(
+    tmp_path, monkeypatch, steps
+):
+    monkeypatch.setattr(kinematics_rules, "module_file", lambda: tmp_path)
+    monkeypatch.setattr(kinematics_rules, "is_outdated", lambda _: False)
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
+    before, pins = content_of(tmp_path), pins_of(tmp_path)
+    loaded = {"remap_file": "g12/python/remap.py", "package": tmp_path / "g12" / "python" / "g12"}
+    for number, names in enumerate(steps):
+        config = config_of(ini, **(loaded if number else {}))
+        installation.write_changes(make_plan(config, names, pins), tmp_path)
+    config = config_of(ini)
+    assert [*spindle_c_findings(config), *kinematics_findings(config)] == []
+    assert config.ini.get("SPINDLE_C", "ENABLED") == "polar-enabled"
     list(removal.uninstall(IniText(ini), dry_run=False))
     assert content_of(tmp_path) == before
 
@@ -125,16 +122,9 @@ def test_install_asks_for_the_pins(tmp_path):
 
 
 @pytest.mark.parametrize(("old", "new", "said"), REFUSED)
-def test_refused_for_what_hal_files_do(tmp_path, old, new, said):
+def test_refused_for_what_the_machine_has(tmp_path, old, new, said):
     with pytest.raises(Refused) as refused:
-        put_in(tmp_path, hal=HAL.replace(old, new))
-    assert said in "".join(finding.text for finding in refused.value.args)
-
-
-@pytest.mark.parametrize(("old", "new", "said"), INI_REFUSED)
-def test_refused_for_what_the_ini_says(tmp_path, old, new, said):
-    with pytest.raises(Refused) as refused:
-        put_in(tmp_path, LATHE.replace(old, new))
+        put_in(tmp_path, LATHE.replace(old, new), HAL.replace(old, new))
     assert said in "".join(finding.text for finding in refused.value.args)
 
 

@@ -313,6 +313,10 @@ def face_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> d
     for section, key, value in kinematics_lines.in_place(config):
         line, _ = plan.text.entries(section, key)[0]
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
+    for key, signal in spindle_c.shared_with_kinematics().items():
+        for line, _ in plan.text.entries("SPINDLE_C", key):
+            if any(line in block for block in plan.text.blocks()):
+                plan.text.replace(line, f"{key} = {signal}")
     return kinematics_lines.added(config, requested, plan.prefix)
 
 
@@ -325,7 +329,7 @@ def spindle_lines(
     reasons = list(spindle_c.spindle_obstacles(config, pins))
     if reasons:
         raise Refused(*reasons)
-    return spindle_c.spindle_sections(config, pins, plan.prefix)
+    return spindle_c.spindle_sections(config, requested, pins, plan.prefix)
 
 
 def python_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:

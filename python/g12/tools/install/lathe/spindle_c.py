@@ -11,15 +11,18 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from g12.machine_ini import face_joints
 from g12.tools.errors import UsageError
-from g12.tools.install.config.features import ROOT
+from g12.tools.install.config.features import KINEMATICS, ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.kinematics_lines import joints
 from g12.tools.install.lathe.kinematics_rules import (
+    GUARD_HAL,
     HalLine,
     all_hal,
     hal_files,
+    hal_lines,
     names,
     pins_taken,
 )
@@ -138,7 +141,7 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
             "write them into a file and name it, --pins spindle.toml "
             f"({SPINDLE_C_PAGE}):\n{PINS_EXAMPLE}",
         )
-    if joints(config).count("C") != 1:
+    if letters_of_joints(config).count("C") != 1:
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
                       f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
     lines = all_hal(config)
@@ -154,10 +157,27 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
         yield from in_the_way(lines)
 
 
-def spindle_sections(config: Config, pins: Pins, prefix: str) -> dict[str, list[str]]:
+def letters_of_joints(config: Config) -> str:
+    """Return the letters of the joints, of trivkins or of the face's kinematics."""
+    return joints(config) or face_joints(config.ini.get)
+
+
+def shared_with_kinematics() -> dict[str, str]:
+    """Return the signals, by their keys, that the HAL file of the face's kinematics names.
+
+    HAL connects a pin to one signal.
+    """
+    found = signals(hal_lines(ROOT / GUARD_HAL))
+    return {key: found[pin] for key, (pin, _) in SIGNALS.items() if pin in found}
+
+
+def spindle_sections(
+    config: Config, requested: Sequence[str], pins: Pins, prefix: str
+) -> dict[str, list[str]]:
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
-    joint, found = joints(config).index("C"), signals(all_hal(config))
+    joint, found = letters_of_joints(config).index("C"), signals(all_hal(config))
     named = {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
+    named |= shared_with_kinematics() if KINEMATICS in requested else {}
     drive = [
         line
         for name, pin in pins.drive.items()
@@ -268,7 +288,7 @@ def travel_missing(config: Config) -> Iterator[ConfigFinding]:
 
 def homing_moves(config: Config) -> Iterator[ConfigFinding]:
     """Find a joint C that homes by moving, while the spindle is not C yet."""
-    joint = f"JOINT_{joints(config).find('C')}"
+    joint = f"JOINT_{letters_of_joints(config).find('C')}"
     for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
         value = config.ini.get(joint, key)
         if value and value.strip("0.- "):
