@@ -10,7 +10,7 @@ Lengths are millimetres, angles degrees.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,9 @@ from g12.machine_ini import AXIS_LETTERS
 from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.alignment import pairs
 from g12.tools.regress.recording_text import Note, RecordedStep, turns_only
+
+Numbers = Callable[[Move], tuple[float, ...]]  # of a move: nine of its end, three of its centre
+OfGap = Callable[[range, range], Iterator["Edit"]]
 
 NO_CENTRE = (0.0, 0.0, 0.0)
 MOST_OF = 0.8
@@ -33,7 +36,6 @@ class Tolerance(NamedTuple):
 
     @property
     def ends(self) -> tuple[float, ...]:
-        """Return the tolerance of each axis."""
         return tuple(self.length if linear else self.angle for linear in IS_LENGTH)
 
 
@@ -66,21 +68,73 @@ def edits_of(
     was: Sequence[RecordedStep], now: Sequence[RecordedStep], tolerance: Tolerance
 ) -> list[Edit]:
     """Return the edits between two recordings' steps, in order."""
-    found: list[Edit] = []
-    paired = _paired(was, now, _end_and_centre, tolerance)
-    for before, after, pair in _walk(paired, range(len(was)), range(len(now))):
-        found += _gap(was, now, before, after, tolerance)
-        found += _pair(was, now, pair, tolerance) if pair else []
-    return found
+    return list(_Comparison(was, now, tolerance).edits())
 
 
-def _paired(was, now, numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
-    """Return pairs of steps whose moves are equal within the tolerance."""
-    keys = _keys([*was, *now], numbers, tolerance)
-    return pairs(keys[: len(was)], keys[len(was) :])
+class _Comparison:
+    """Steps of two recordings; ``before`` and ``after`` are ranges of their indices."""
+
+    def __init__(
+        self, was: Sequence[RecordedStep], now: Sequence[RecordedStep], tolerance: Tolerance
+    ) -> None:
+        self._was, self._now, self._tolerance = was, now, tolerance
+
+    def edits(self) -> Iterator[Edit]:
+        before, after = range(len(self._was)), range(len(self._now))
+        paired = self._paired(before, after, _end_and_centre)
+        return self._around(paired, before, after, self._gap)
+
+    def _paired(self, before: range, after: range, numbers: Numbers) -> list[tuple[int, int]]:
+        """Return pairs of steps whose moves are equal in some numbers, within the tolerance."""
+        steps = [*self._was[before.start : before.stop], *self._now[after.start : after.stop]]
+        keys = _keys(steps, numbers, self._tolerance)
+        found = pairs(keys[: len(before)], keys[len(before) :])
+        return [(before.start + i, after.start + j) for i, j in found]
+
+    def _around(
+        self, paired: list[tuple[int, int]], before: range, after: range, of_gap: OfGap
+    ) -> Iterator[Edit]:
+        """Yield the edits of pairs, and of the steps between them."""
+        i, j = before.start, after.start
+        for pair in paired:
+            yield from of_gap(range(i, pair[0]), range(j, pair[1]))
+            yield from self._pair(*pair)
+            i, j = pair[0] + 1, pair[1] + 1
+        yield from of_gap(range(i, before.stop), range(j, after.stop))
+
+    def _gap(self, before: range, after: range) -> Iterator[Edit]:
+        same = len(_only(self._was, before, Move)) == len(_only(self._now, after, Move))
+        paired = [] if same else self._paired(before, after, _displacement)
+        if paired and len(paired) >= MOST_OF * min(len(before), len(after)):
+            return self._around(paired, before, after, self._in_order)
+        return self._in_order(before, after)
+
+    def _in_order(self, before: range, after: range) -> Iterator[Edit]:
+        """Yield the edits of an equal number of moves one by one, of others as one."""
+        moves, other_moves = _only(self._was, before, Move), _only(self._now, after, Move)
+        notes, other_notes = _only(self._was, before, Note), _only(self._now, after, Note)
+        if len(moves) != len(other_moves):
+            yield Edit(tuple(before), tuple(after))
+            return
+        paired = list(zip(moves, other_moves))
+        if len(notes) == len(other_notes):
+            paired = sorted([*paired, *zip(notes, other_notes)])
+        else:
+            yield Edit(notes, other_notes)
+        for pair in paired:
+            yield from self._pair(*pair)
+
+    def _pair(self, i: int, j: int) -> Iterator[Edit]:
+        found = changes(self._was[i], self._now[j], self._tolerance)
+        if found:
+            yield Edit((i,), (j,), tuple(found))
 
 
-def _keys(steps: Sequence[RecordedStep], numbers, tolerance: Tolerance) -> list[tuple[int, int]]:
+def _only(steps: Sequence[RecordedStep], indices: range, kind: type) -> tuple[int, ...]:
+    return tuple(index for index in indices if isinstance(steps[index], kind))
+
+
+def _keys(steps: Sequence[RecordedStep], numbers: Numbers, tolerance: Tolerance) -> list[Hashable]:
     """Return a key for each step, equal for moves that are equal within the tolerance."""
     rows = [numbers(step) for step in steps if isinstance(step, Move)]
     columns = np.array(rows).reshape(-1, 12).T
@@ -90,6 +144,14 @@ def _keys(steps: Sequence[RecordedStep], numbers, tolerance: Tolerance) -> list[
         (step.text,) if isinstance(step, Note) else (step.kind, step.turns, *next(clusters))
         for step in steps
     ]
+
+
+def _clusters(values: np.ndarray, tolerance: float) -> list[int]:
+    """Return cluster numbers of values; values nearer than the tolerance share one."""
+    order = np.argsort(values)
+    numbers = np.empty(len(values), int)
+    numbers[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > tolerance)
+    return numbers.tolist()
 
 
 def _end_and_centre(move: Move) -> tuple[float, ...]:
@@ -102,74 +164,7 @@ def _displacement(move: Move) -> tuple[float, ...]:
     return tuple(b - a for a, b in points)
 
 
-def _walk(paired, before: range, after: range) -> Iterator[tuple[range, range, tuple | None]]:
-    """Yield the steps on both sides before each pair, and the pair; None as the last pair."""
-    i, j = before.start, after.start
-    for pair in paired:
-        yield range(i, pair[0]), range(j, pair[1]), pair
-        i, j = pair[0] + 1, pair[1] + 1
-    yield range(i, before.stop), range(j, after.stop), None
-
-
-def _clusters(values: np.ndarray, tolerance: float) -> list[int]:
-    """Return cluster numbers of values; values nearer than the tolerance share one."""
-    order = np.argsort(values)
-    numbers = np.empty(len(values), int)
-    numbers[order] = np.cumsum(np.diff(values[order], prepend=values[order][:1]) > tolerance)
-    return numbers.tolist()
-
-
-def _gap(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
-    """Yield the edits of the steps between two pairs."""
-    if _same_number(was, now, before, after):
-        return _in_order(was, now, before, after, tolerance)
-    some, others = was[before.start : before.stop], now[after.start : after.stop]
-    paired = _paired(some, others, _displacement, tolerance)
-    if paired and len(paired) >= MOST_OF * min(len(some), len(others)):
-        paired = [(before.start + i, after.start + j) for i, j in paired]
-        return _shifted(was, now, paired, before, after, tolerance)
-    return iter([Edit(tuple(before), tuple(after))])
-
-
-def _shifted(was, now, paired, before, after, tolerance: Tolerance) -> Iterator[Edit]:
-    """Yield the edits of steps most of which have the same displacement from another position."""
-    for some, others, pair in _walk(paired, before, after):
-        if _same_number(was, now, some, others):
-            yield from _in_order(was, now, some, others, tolerance)
-        else:
-            yield Edit(tuple(some), tuple(others))
-        yield from _pair(was, now, pair, tolerance) if pair else ()
-
-
-def _same_number(was, now, before: range, after: range) -> bool:
-    return len(_only(was, before, Move)) == len(_only(now, after, Move))
-
-
-def _in_order(was, now, before: range, after: range, tolerance: Tolerance) -> Iterator[Edit]:
-    """Yield the edits between two pairs with an equal number of moves."""
-    both = list(zip(_only(was, before, Move), _only(now, after, Move)))
-    notes, other_notes = _only(was, before, Note), _only(now, after, Note)
-    if len(notes) == len(other_notes):
-        both = sorted([*both, *zip(notes, other_notes)])
-    elif notes or other_notes:
-        yield Edit(notes, other_notes)
-    for i, j in both:
-        yield from _pair(was, now, (i, j), tolerance)
-
-
-def _only(steps: Sequence[RecordedStep], indices: range, kind: type) -> tuple[int, ...]:
-    return tuple(index for index in indices if isinstance(steps[index], kind))
-
-
-def _pair(was, now, pair: tuple[int, int], tolerance: Tolerance) -> Iterator[Edit]:
-    i, j = pair
-    found = changes(was[i], now[j], tolerance)
-    if found:
-        yield Edit((i,), (j,), tuple(found))
-
-
 def changes(was: RecordedStep, now: RecordedStep, tolerance: Tolerance) -> list[Change]:
-    """Return the changes between two steps of the same kind."""
     if isinstance(was, Note) and isinstance(now, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
     assert isinstance(was, Move) and isinstance(now, Move)

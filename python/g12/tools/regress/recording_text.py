@@ -27,7 +27,7 @@ between builds of LinuxCNC.
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
@@ -81,12 +81,10 @@ class Recording:
 
     @property
     def unit(self) -> float:
-        """Return the machine unit in mm."""
         return UNITS[self.facts["units"]].mm
 
 
 def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recording:
-    """Return the recording of a program's trace."""
     steps = list(_steps(trace, UNITS[facts["units"]].mm))
     lines = program.read_bytes().decode(errors="replace").split("\n")
     numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
@@ -145,7 +143,6 @@ class RecordingWriter:
         self._feed = ("", "G94")
 
     def line(self, step: RecordedStep) -> str:
-        """Return the line of one step."""
         return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
 
     def _move(self, move: Move) -> list[str]:
@@ -190,7 +187,6 @@ def turns_only(move: Move) -> bool:
 
 
 def text_of(recording: Recording) -> str:
-    """Return a recording as text."""
     lines = [HEAD, *(f"{key} {recording.facts[key]}" for key in FACTS)]
     writer = RecordingWriter(recording.unit)
     block = None
@@ -207,17 +203,36 @@ def text_of(recording: Recording) -> str:
 
 
 class RecordingReader:
-    """Reads lines back into steps; ``unit`` is the machine unit in mm."""
+    """Reads lines back; ``unit`` is the machine unit in mm.
+
+    ``ending`` is None before the last line, then the program's error and its modal state.
+    """
 
     def __init__(self, unit: float) -> None:
+        self.steps: list[RecordedStep] = []
+        self.blocks: dict[int, str] = {}
+        self.ending: tuple[Error | None, str] | None = None
         self._scales = [unit if linear else 1.0 for linear in IS_LENGTH]
+        self._block = 0
         self._at: Position = (0.0,) * 9
         self._feed, self._mode = 0.0, "G94"
 
-    def step(self, block: int, line: str) -> RecordedStep:
-        """Return the step of a line of the program's line ``block``."""
-        if line.startswith("  * "):
-            return Note(block, line[4:])
+    def take(self, line: str) -> None:
+        """Read a line, or raise ValueError."""
+        start = BLOCK_LINE.fullmatch(line)
+        if self.ending and line:
+            raise TraceTextError("something after the end")
+        if start:
+            self._block = int(start.group(1))
+            self.blocks[self._block] = start.group(2) or ""
+        elif line.startswith("  * "):
+            self.steps.append(Note(self._block, line[4:]))
+        elif line.startswith("  "):
+            self.steps.append(self._move(line))
+        elif line:
+            self.ending = _ending(line)
+
+    def _move(self, line: str) -> Move:
         words = MOVE.fullmatch(line)
         if not words:
             raise TraceTextError("neither a move nor a note")
@@ -229,8 +244,8 @@ class RecordingReader:
         self._feed, self._mode = float(feed or self._feed), mode or self._mode
         move = Move(
             kind,
-            line=block,
-            block=block,
+            line=self._block,
+            block=self._block,
             start=start,
             end=self._at,
             feed=0.0,
@@ -255,6 +270,15 @@ class RecordingReader:
         return tuple(position)
 
 
+def _ending(line: str) -> tuple[Error | None, str]:
+    error = ERROR.fullmatch(line)
+    if error:
+        return Error(error.group(2), int(error.group(1))), ""
+    if not line.startswith("end: "):
+        raise TraceTextError("neither a line of the program nor its end")
+    return None, " ".join(code for code in line.split()[1:] if code != G92_OFF)
+
+
 def split_facts(text: str) -> tuple[dict[str, str], str]:
     """Split a text into the facts at its head and the rest."""
     head, *lines = text.split("\n", len(FACTS) + 1)
@@ -269,42 +293,12 @@ def split_facts(text: str) -> tuple[dict[str, str], str]:
 def read_recording(text: str) -> Recording:
     """Return the recording of a text, or raise TraceTextError with the line."""
     facts, body = split_facts(text)
-    steps, blocks = [], {}
-    reader, block = RecordingReader(UNITS[facts["units"]].mm), 0
-    lines = enumerate(body.split("\n"), start=len(FACTS) + 2)
-    for number_of_line, line in lines:
-        start = BLOCK_LINE.fullmatch(line)
-        if start:
-            block = int(start.group(1))
-            blocks[block] = start.group(2) or ""
-        elif line.startswith("  "):
-            steps.append(_step(reader, block, line, number_of_line))
-        elif line:
-            recording = _finished(Recording(facts, steps, blocks), line, number_of_line)
-            _require_end(lines)
-            return recording
-    raise TraceTextError("the last line, end or error, is missing")
-
-
-def _require_end(lines: Iterator[tuple[int, str]]) -> None:
-    """Raise TraceTextError if there is anything after the last line."""
-    for number_of_line, line in lines:
-        if line:
-            raise TraceTextError(f"line {number_of_line}: something after the end")
-
-
-def _step(reader: RecordingReader, block: int, line: str, number_of_line: int) -> RecordedStep:
-    try:
-        return reader.step(block, line)
-    except ValueError as problem:
-        raise TraceTextError(f"line {number_of_line}: {problem}") from None
-
-
-def _finished(recording: Recording, line: str, number_of_line: int) -> Recording:
-    error = ERROR.fullmatch(line)
-    if error:
-        return replace(recording, error=Error(error.group(2), int(error.group(1))))
-    if not line.startswith("end: "):
-        raise TraceTextError(f"line {number_of_line}: neither a line of the program nor its end")
-    codes = line.split()[1:]
-    return replace(recording, end=" ".join(code for code in codes if code != G92_OFF))
+    reader = RecordingReader(UNITS[facts["units"]].mm)
+    for number, line in enumerate(body.split("\n"), start=len(FACTS) + 2):
+        try:
+            reader.take(line)
+        except ValueError as problem:
+            raise TraceTextError(f"line {number}: {problem}") from None
+    if not reader.ending:
+        raise TraceTextError("the last line, end or error, is missing")
+    return Recording(facts, reader.steps, reader.blocks, *reader.ending)
