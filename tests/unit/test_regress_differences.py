@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Error, Move
 from g12.tools.regress.alignment import pairs
-from g12.tools.regress.differences import differences, program_lines
+from g12.tools.regress.differences import differences
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import Note, Recording
 from support.growth import growth
@@ -62,7 +62,7 @@ def test_an_inserted_block_is_one_difference():
     (difference,) = found(recording(*SQUARE), recording(*now))
     assert difference.kind == "added"
     assert difference.text == "2 moves added, X10 to 11 Y0 to 5"
-    assert program_lines(recording(*now), difference.now) == [4, 5]
+    assert difference.lines == [4, 5]
 
 
 def test_a_changed_depth_is_one_difference_with_its_amount():
@@ -158,7 +158,7 @@ def test_apart_is_measured_on_the_part_that_turns():
 def test_a_program_that_is_refused_now_is_one_difference():
     now = recording(*SQUARE[:4], error=Error("G12: no I", 5))
     (difference,) = found(recording(*SQUARE, "M5"), now)
-    assert (difference.kind, difference.line) == ("refused", 5)
+    assert (difference.kind, difference.lines) == ("refused", [5])
     assert difference.text == "refused: G12: no I; 3 moves are missing"
     (difference,) = found(recording(*SQUARE[:5]), now)
     assert difference.text == "refused: G12: no I; 1 move is missing"

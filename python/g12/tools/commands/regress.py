@@ -22,8 +22,8 @@ from g12.tools.commands.arguments import (
     one_line,
 )
 from g12.tools.progress import Report, working
-from g12.tools.regress.record_and_check import RecordRequest, Terms, check, record
-from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result
+from g12.tools.regress.record_and_check import RecordRequest, check, record
+from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result, Terms
 from g12.tools.regress.report import json_report, text_report
 
 DESCRIPTION = __doc__.partition("\n\n")[2].replace("`", "")

@@ -7,7 +7,7 @@ lines are one, too.
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,25 +29,32 @@ MOVED = (*AXIS_LETTERS, "radius")
 class Difference:
     """A difference: ``text`` describes it; ``was`` and ``now`` are its steps.
 
-    ``kind`` is moved, changed, added, missing, replaced, refused, accepted or end. ``by`` is the
-    largest change in machine units or degrees, along ``axis`` if it is one axis's. ``moves``
-    counts the moves, ``line`` is the program's for a difference without steps.
+    ``kind`` is moved, changed, added, missing, replaced, refused, accepted, end or failed. ``by``
+    is the largest change in machine units or degrees, along ``axis`` if it is one axis's. ``moves``
+    counts the moves, ``block`` is the text of the first line.
     """
 
     kind: str
     text: str
-    was: tuple[int, ...] = ()
-    now: tuple[int, ...] = ()
+    lines: list[int] = field(default_factory=list)
+    recorded_lines: list[int] = field(default_factory=list)
+    moves: int = 0
     axis: str = ""
     by: float = 0.0
-    moves: int = 0
-    line: int = 0
+    block: str = ""
+    was: tuple[int, ...] = ()
+    now: tuple[int, ...] = ()
 
 
 def differences(
     was: Recording, now: Recording, tolerance: Tolerance, part: Part
 ) -> list[Difference]:
     """Return the differences of a program, in its order; ``part`` is the machine's."""
+    found = _found(was, now, tolerance, part)
+    return [_located(difference, was, now) for difference in found]
+
+
+def _found(was: Recording, now: Recording, tolerance: Tolerance, part: Part) -> list[Difference]:
     edits = edits_of(was.steps, now.steps, tolerance)
     phrases = Phrases(was, now, part)
     lost = _lost(edits, was, now)
@@ -56,8 +63,15 @@ def differences(
     return [*_merged(found), *_endings(was, now, lost)]
 
 
-def program_lines(recording: Recording, steps: Iterable[int]) -> list[int]:
-    """Return the program's lines that steps come from, without repetition."""
+def _located(difference: Difference, was: Recording, now: Recording) -> Difference:
+    """Return a difference with the lines of its steps."""
+    lines = [*filter(None, difference.lines)] or _program_lines(now, difference.now)
+    recorded = _program_lines(was, difference.was)
+    block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
+    return replace(difference, lines=lines, recorded_lines=recorded, block=block)
+
+
+def _program_lines(recording: Recording, steps: Iterable[int]) -> list[int]:
     return sorted({recording.steps[index].block for index in steps})
 
 
@@ -236,17 +250,17 @@ def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Differenc
     if was.error and now.error and was.error.rule == now.error.rule:
         same = was.error.line == now.error.line or was.facts["program"] != now.facts["program"]
         text = f"refused at this line, was at line {was.error.line}: {now.error.rule}"
-        return [] if same else [Difference("refused", text, line=now.error.line)]
+        return [] if same else [Difference("refused", text, [now.error.line])]
     if not now.error:
         text = f"no longer refused, was at line {was.error.line}: {was.error.rule}"
-        return [Difference("accepted", text, line=was.error.line)]
+        return [Difference("accepted", text, [was.error.line])]
     steps = tuple(index for edit in lost for index in edit.was)
     count = sum(isinstance(was.steps[index], Move) for index in steps)
     before = f", was refused at line {was.error.line}: {was.error.rule}" if was.error else ""
     verb = "is" if count == 1 else "are"
     missing = f"; {counted_as(count, 'move')} {verb} missing" if count else ""
     text = f"refused: {now.error.rule}{missing}{before}"
-    return [Difference("refused", text, was=steps, moves=count, line=now.error.line)]
+    return [Difference("refused", text, [now.error.line], was=steps, moves=count)]
 
 
 def _ends(was: str, now: str) -> list[Difference]:

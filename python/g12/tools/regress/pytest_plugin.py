@@ -22,8 +22,8 @@ from pathlib import Path
 import pytest
 
 from g12.tools.errors import UsageError
-from g12.tools.regress.record_and_check import Terms, check
-from g12.tools.regress.recorder import SAME, Recorders
+from g12.tools.regress.record_and_check import check
+from g12.tools.regress.recorder import SAME, Recorders, Terms
 from g12.tools.regress.recordings import load
 from g12.tools.regress.report import text_report
 from g12.tools.system import COMMAND

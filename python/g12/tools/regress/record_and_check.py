@@ -10,8 +10,6 @@ from pathlib import Path
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.progress import Report, silent
-from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recorder import (
     ADDED,
     CHANGED,
@@ -20,6 +18,7 @@ from g12.tools.regress.recorder import (
     Job,
     Recorders,
     Result,
+    Terms,
     machine_of,
     results,
 )
@@ -31,26 +30,6 @@ from g12.tools.regress.recordings import (
     load,
     program_names,
 )
-
-
-@dataclass(frozen=True)
-class Terms:
-    """Tolerances, timeout and output of a check.
-
-    ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
-    cent; ``timeout`` is in seconds a program. ``report`` is called with the progress.
-    """
-
-    ends: float = 1e-6
-    feeds: float = 0.01
-    timeout: float = 600.0
-    jobs: int = 1
-    pictures: Path | None = None
-    report: Report = silent
-
-    def tolerance(self, ini: Path) -> Tolerance:
-        """Return the tolerance in mm on a machine."""
-        return Tolerance(self.ends * read_ini(ini).mm, self.ends, self.feeds / 100)
 
 
 @dataclass(frozen=True)
@@ -73,9 +52,9 @@ def record(
     baseline = _as_requested(start(directory.absolute(), request, named), request, named)
     names = _names(baseline, named)
     tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
-    machine = machine_of(baseline.ini, tools, parameters, terms.timeout)
-    job = Job(baseline, machine, baseline.programs, terms.tolerance(machine.ini), keep=True)
-    found = results(job, names, terms.jobs, terms.report, recorders)
+    machine = machine_of(baseline.ini, tools, parameters)
+    job = Job(baseline, machine, baseline.programs, terms, keep=True)
+    found = results(job, names, recorders)
     baseline.take_copies(tools, parameters)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
@@ -96,18 +75,16 @@ def check(
     ``programs`` is a folder with other versions of them, ``ini`` and ``tools`` replace those
     recorded. Returns the results, and notes on changed files.
     """
-    baseline, terms = load(directory.absolute()), terms or Terms()
+    baseline = load(directory.absolute())
     folder = _folder(programs) if programs else baseline.programs
     recorded = [_recorded(baseline, name) for name in names] or baseline.names()
     if not recorded:
         raise UsageError(f"{directory}: no program is recorded there")
     table = _absolute(tool_table(tools)) if tools else baseline.tools
-    ini = _machine(ini or baseline.ini)
-    machine = machine_of(ini, table, baseline.parameters, terms.timeout)
+    machine = machine_of(_machine(ini or baseline.ini), table, baseline.parameters)
     present = [name for name in recorded if (folder / name).is_file()]
-    tolerance = terms.tolerance(machine.ini)
-    job = Job(baseline, machine, folder, tolerance, pictures=terms.pictures)
-    found = results(job, present, terms.jobs, terms.report, recorders)
+    job = Job(baseline, machine, folder, terms or Terms())
+    found = results(job, present, recorders)
     found += [Result(name, MISSING) for name in recorded if name not in present]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self
+from typing import Self
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.filter import opened_program
@@ -19,8 +19,8 @@ from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
-from g12.tools.progress import Report
-from g12.tools.regress.differences import Difference, differences, program_lines
+from g12.tools.progress import Report, silent
+from g12.tools.regress.differences import Difference, differences
 from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
     Recording,
@@ -39,8 +39,29 @@ KILL_PERIOD = 0.1  # s
 
 
 @dataclass(frozen=True)
+class Terms:
+    """Tolerances, timeout and output of a check.
+
+    ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
+    cent; ``timeout`` is in seconds a program. ``pictures`` is a folder for pictures of changes,
+    ``report`` is called with the progress.
+    """
+
+    ends: float = 1e-6
+    feeds: float = 0.01
+    timeout: float = 600.0
+    jobs: int = 1
+    pictures: Path | None = None
+    report: Report = silent
+
+    def tolerance(self, unit: float) -> Tolerance:
+        """Return the tolerance of a machine whose unit is ``unit`` mm long."""
+        return Tolerance(self.ends * unit, self.ends, self.feeds / 100)
+
+
+@dataclass(frozen=True)
 class TracedMachine:
-    """The machine of traces; ``timeout`` is in seconds for each program.
+    """The machine of traces.
 
     ``contents`` is a hash of INI and tool table: changed files need another interpreter.
     """
@@ -48,7 +69,6 @@ class TracedMachine:
     ini: Path
     tools: Path | None
     parameters: Path | None
-    timeout: float
     linuxcnc: str
     contents: str
 
@@ -57,32 +77,14 @@ class TracedMachine:
 class Job:
     """The programs of a folder to trace on a machine and to compare with their recordings.
 
-    ``keep`` makes the traces the recordings; ``pictures`` is a folder for pictures of changes.
+    ``keep`` makes the traces the recordings.
     """
 
     baseline: Baseline
     machine: TracedMachine
     folder: Path
-    tolerance: Tolerance
+    terms: Terms
     keep: bool = False
-    pictures: Path | None = None
-
-
-@dataclass(frozen=True)
-class RegressFinding:
-    """A difference with its lines of the program.
-
-    ``block`` is the text of the first line; ``by`` is in machine units or degrees.
-    """
-
-    kind: str
-    text: str
-    lines: list[int] = field(default_factory=list)
-    recorded_lines: list[int] = field(default_factory=list)
-    moves: int = 0
-    axis: str = ""
-    by: float = 0.0
-    block: str = ""
 
 
 @dataclass(frozen=True)
@@ -95,22 +97,19 @@ class Result:
 
     program: str
     verdict: str
-    findings: list[RegressFinding] = field(default_factory=list)
+    findings: list[Difference] = field(default_factory=list)
     summary: str = ""
     notes: tuple[str, ...] = ()
     picture: str | None = None
 
 
-def machine_of(
-    ini: Path, tools: Path | None, parameters: Path | None, timeout: float
-) -> TracedMachine:
+def machine_of(ini: Path, tools: Path | None, parameters: Path | None) -> TracedMachine:
     """Return the machine of its present files."""
     contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
-    return TracedMachine(ini, tools, parameters, timeout, linuxcnc_version(), hash_of(contents))
+    return TracedMachine(ini, tools, parameters, linuxcnc_version(), hash_of(contents))
 
 
 def text_bytes(ini: Ini) -> bytes:
-    """Return the bytes of the expanded INI."""
     return ini.text.encode(errors="surrogateescape")
 
 
@@ -118,9 +117,8 @@ class Recorder:
     """A running interpreter that makes recordings on one machine."""
 
     def __init__(self, machine: TracedMachine) -> None:
-        ini = read_ini(machine.ini)
         self._machine = machine
-        self._ini = ini
+        self.ini = ini = read_ini(machine.ini)
         self.part = part_of(ini)
         self._tracer = Tracer(ini, tools=machine.tools)
         self._check_python()
@@ -135,7 +133,6 @@ class Recorder:
         self._tracer.kill()
 
     def close(self) -> None:
-        """End the interpreter."""
         self._tracer.close()
 
     def _check_python(self) -> None:
@@ -145,19 +142,16 @@ class Recorder:
             self.close()
             raise TraceFailure(f"{self._machine.ini}: its Python modules do not load: {error}")
 
-    def text(self, name: str, program: Path) -> str:
-        """Return the recording of a program as text."""
+    def text(self, name: str, program: Path, timeout: float) -> str:
+        """Return the recording of a program as text; ``timeout`` is in seconds."""
         facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
-        machine = self._machine
-        options: dict[str, Any] = {
-            "parameters": machine.parameters,
-            "timeout": machine.timeout,
-            "alone": True,
-        }
+        parameters = self._machine.parameters
         try:
-            with opened_program(program, self._ini) as opened:
-                trace = trace_in_source(self._tracer.trace(opened.path, **options), opened)
-                return text_of(recording_of(trace, opened.listed, facts))
+            with opened_program(program, self.ini) as opened:
+                trace = self._tracer.trace(
+                    opened.path, parameters=parameters, timeout=timeout, alone=True
+                )
+                return text_of(recording_of(trace_in_source(trace, opened), opened.listed, facts))
         except ProgramError as problem:
             raise TraceFailure(str(problem)) from None
 
@@ -205,10 +199,10 @@ def trace_and_compare(job: Job, name: str, recorders: Recorders) -> Result:
     """Return the result of a program's trace; store it if the job keeps it."""
     with recorders.one_of(job.machine) as recorder:
         try:
-            now = recorder.text(name, job.folder / name)
+            now = recorder.text(name, job.folder / name, job.terms.timeout)
         except TraceFailure as failure:
             text = f"no trace: {str(failure).splitlines()[0]}"
-            return Result(name, FAILED, [RegressFinding("failed", text)])
+            return Result(name, FAILED, [Difference("failed", text)])
         result = _compared(job, name, now, recorder)
     if job.keep:
         job.baseline.keep(name, now)
@@ -231,13 +225,13 @@ def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
         if job.keep:
             return Result(name, NEW, summary=_summary(read_recording(now)))
         raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
-    found = differences(*recordings, job.tolerance, recorder.part)
-    findings = [_finding(difference, *recordings) for difference in found]
-    verdict = CHANGED if found else SAME
+    tolerance = job.terms.tolerance(recorder.ini.mm)
+    found = differences(*recordings, tolerance, recorder.part)
     picture = None
-    if found and job.pictures:
-        picture = _picture(job.pictures, name, *recordings, found, recorder)
-    return Result(name, verdict, findings, _summary(recordings[1]), notes, picture)
+    if found and job.terms.pictures:
+        picture = _picture(job.terms.pictures, name, *recordings, found, recorder)
+    verdict = CHANGED if found else SAME
+    return Result(name, verdict, found, _summary(recordings[1]), notes, picture)
 
 
 def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
@@ -248,22 +242,6 @@ def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
         yield f"{now['machine'].rpartition(' ')[0]} has changed since the recording"
     if was["units"] != now["units"]:
         yield f"machine units {was['units']} when recorded, {now['units']} now"
-
-
-def _finding(difference: Difference, was: Recording, now: Recording) -> RegressFinding:
-    lines = program_lines(now, difference.now) or [difference.line] * bool(difference.line)
-    recorded = program_lines(was, difference.was)
-    block = now.blocks.get(lines[0], "") if lines else was.blocks.get((recorded or [0])[0], "")
-    return RegressFinding(
-        difference.kind,
-        difference.text,
-        lines,
-        recorded,
-        difference.moves,
-        difference.axis,
-        difference.by,
-        block,
-    )
 
 
 def _summary(recording: Recording) -> str:
@@ -284,19 +262,17 @@ def _picture(
     return str(path)
 
 
-def results(
-    job: Job, names: Sequence[str], workers: int, report: Report, recorders: Recorders
-) -> list[Result]:
+def results(job: Job, names: Sequence[str], recorders: Recorders) -> list[Result]:
     """Return the results of programs in their order, with some interpreters in parallel."""
     largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)
     found = {}
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(job.terms.jobs) as pool:
         futures = [pool.submit(trace_and_compare, job, name, recorders) for name in largest_first]
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 result = future.result()
                 found[result.program] = result
-                report(f"{done} of {len(names)}: {result.program}")
+                job.terms.report(f"{done} of {len(names)}: {result.program}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             _kill_running(futures, recorders)

@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
+from g12.tools.regress.differences import Difference
 from g12.tools.regress.recorder import (
     ADDED,
     CHANGED,
@@ -13,7 +14,6 @@ from g12.tools.regress.recorder import (
     MISSING,
     NEW,
     SAME,
-    RegressFinding,
     Result,
 )
 from g12.tools.units import counted_as
@@ -59,7 +59,7 @@ def lines_of_result(result: Result) -> Iterator[str]:
         yield f"{result.program}: see {result.picture}"
 
 
-def _finding(program: str, finding: RegressFinding) -> Iterator[str]:
+def _finding(program: str, finding: Difference) -> Iterator[str]:
     counts = finding.kind in ("moved", "changed") and finding.moves
     moves = f"{counted_as(finding.moves, 'move')}: " if counts else ""
     yield f"{program}{_where(finding)} {moves}{finding.text}"
@@ -67,7 +67,7 @@ def _finding(program: str, finding: RegressFinding) -> Iterator[str]:
         yield f"    {finding.block}"
 
 
-def _where(finding: RegressFinding) -> str:
+def _where(finding: Difference) -> str:
     """Return the lines: ``:14:``, with others of the same finding, or those recorded."""
     if not finding.lines and not finding.recorded_lines:
         return ":"
@@ -79,7 +79,6 @@ def _where(finding: RegressFinding) -> str:
 
 
 def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> str:
-    """Return the report as JSON."""
     programs = [_as_json(result) for result in results]
     return json.dumps({"good": good, "notes": list(notes), "programs": programs}, indent=2)
 
@@ -87,4 +86,6 @@ def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> 
 def _as_json(result: Result) -> dict:
     values = asdict(result)
     values.pop("notes")
+    for finding in values["findings"]:
+        del finding["was"], finding["now"]
     return values
