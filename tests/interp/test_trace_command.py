@@ -93,6 +93,16 @@ def test_a_number_that_is_none_is_one_line(reported, tmp_path):
     assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
 
 
+def test_an_error_comes_after_the_moves_before_it(tmp_path):
+    program = tmp_path / "part.ngc"
+    program.write_text("G0 X1\nG0 Q1 X\nM2\n")
+    command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
+    both = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    buffered = {**os.environ, "PYTHONUNBUFFERED": ""}
+    said = subprocess.run([*command, "--ini", str(INI)], env=buffered, **both).stdout
+    assert said.startswith("     1 rapid X1.000000\ng12 trace: ")
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_a_command_that_is_ended_leaves_nothing_behind(tmp_path, number, start):
     program, scratch = tmp_path / "part.ngc", tmp_path / "tmp"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Errors of the tools, which the commands print in one line, with an exit code."""
 
-from __future__ import annotations
+import sys
 
 
 class UsageError(ValueError):
@@ -10,3 +10,9 @@ class UsageError(ValueError):
 
 class ProgramError(RuntimeError):
     """The program does not run to its end; has its line and LinuxCNC's text."""
+
+
+def print_error(command: str, text: object) -> None:
+    """Print a command's error on standard error, after everything that it has printed before."""
+    sys.stdout.flush()
+    print(f"{command}: {text}", file=sys.stderr)

@@ -5,12 +5,11 @@ import argparse
 import functools
 import math
 import re
-import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
-from g12.tools.errors import ProgramError, UsageError
+from g12.tools.errors import ProgramError, UsageError, print_error
 from g12.tools.headless.machine import MachineError, StartupError
 from g12.tools.headless.run import run_program
 from g12.tools.machine.files import existing
@@ -27,6 +26,8 @@ from g12.tools.system import COMMAND
 from g12.tools.units import UNITS, clock
 
 GOOD, FINDING, USAGE = 0, 1, 2
+WRONG_USE = (UsageError, IniError, OSError)
+FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
 COMMAND_NAME = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
 # Python's line of an exception, and LinuxCNC's of a HAL line that it cannot load.
@@ -141,7 +142,7 @@ def samples_of_run(
 def report_line_numbers(name: str, opened: OpenedProgram) -> None:
     """Report if the lines of a command's output are not those of the user's file."""
     if opened.note:
-        print(f"g12 {name}: {opened.note}", file=sys.stderr)
+        print_error(f"g12 {name}", opened.note)
 
 
 def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
@@ -166,11 +167,11 @@ def one_line(name: str, refused: int = FINDING) -> Callable:
                 return command(arguments)
             except BrokenPipeError:  # main() handles it
                 raise
-            except (UsageError, IniError, OSError) as problem:
-                print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
+            except WRONG_USE as problem:
+                print_error(f"g12 {name}", _text(problem))
                 return USAGE
-            except (ProgramError, TraceFailure, StartupError, MachineError) as problem:
-                print(f"g12 {name}: {_text(problem)}", file=sys.stderr)
+            except FAILURES as problem:
+                print_error(f"g12 {name}", _text(problem))
                 return refused
 
         return guarded

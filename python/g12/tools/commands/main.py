@@ -11,6 +11,7 @@ from importlib import import_module
 from types import ModuleType
 
 from g12 import __version__
+from g12.tools.errors import print_error
 from g12.tools.system import COMMAND
 
 FAILURE = 1
@@ -45,11 +46,11 @@ def main(arguments: list[str]) -> int:
     try:
         return flushed(name, rest)
     except KeyboardInterrupt:
-        print(f"g12 {name}: interrupted", file=sys.stderr)
+        print_error(f"g12 {name}", "interrupted")
         return INTERRUPTED
     except BrokenPipeError as problem:
         if not nobody_reads():
-            print(f"g12 {name}: {problem}", file=sys.stderr)
+            print_error(f"g12 {name}", problem)
             return FAILURE
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return UNREAD
@@ -69,7 +70,7 @@ def command(name: str, arguments: list[str]) -> int:
         print(f"g12 {__version__}")
         return 0
     if name not in COMMANDS:
-        print(f"g12: no command {name!r} (usage: {COMMAND} --help)", file=sys.stderr)
+        print_error("g12", f"no command {name!r} (usage: {COMMAND} --help)")
         return 2
     return module_of(name).main(arguments)
 

@@ -8,7 +8,6 @@ refused line; of a section that line's contour is shown without compensation.
 """
 
 import argparse
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,7 +23,7 @@ from g12.tools.commands.arguments import (
     samples_of_run,
     stock_of,
 )
-from g12.tools.errors import UsageError
+from g12.tools.errors import UsageError, print_error
 from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
@@ -80,7 +79,7 @@ def main(arguments: list[str]) -> int:
         print(line)
     if scene.refusal:
         text = ended_text(options.program, trace_in_source(scene.subject.trace, opened).error)
-        print(f"g12 plot: {text}", file=sys.stderr)
+        print_error("g12 plot", text)
         report_line_numbers("plot", opened)
     return FINDING if scene.refusal else GOOD
 

@@ -6,7 +6,6 @@ written. It resumes at M0 and M1.
 """
 
 import re
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -24,6 +23,7 @@ from g12.tools.commands.arguments import (
     report_line_numbers,
     run_text,
 )
+from g12.tools.errors import print_error
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.filter import opened_program
@@ -119,6 +119,6 @@ def main(arguments: list[str]) -> int:
         line = opened.source_line(line_of_preview(result.error, preview))
         location = f"{options.program}:{line}" if line else options.program
         text = opened.in_source(explained_text(result.error.text, options.ini))
-        print(f"g12 run: {location}: {text}", file=sys.stderr)
+        print_error("g12 run", f"{location}: {text}")
         report_line_numbers("run", opened)
     return FINDING if result.error else GOOD
