@@ -4,15 +4,14 @@
 import os
 from pathlib import Path
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
-from g12.tools.demo.report import shown_or_failed
+from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, one_line
+from g12.tools.demo.report import show
 from g12.tools.demo.samples import PROGRAM_FOLDER, SAMPLES, runs
 from g12.tools.errors import UsageError
 from g12.tools.headless.namespaces import has_namespaces
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(prog="g12 demo", description=__doc__)
     parser.add_argument(
         "--output", type=Path, default=Path("build/demo"), help="folder of pictures"
@@ -22,7 +21,6 @@ def command_parser() -> Parser:
 
 @one_line("demo")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     if not PROGRAM_FOLDER.is_dir():
         raise UsageError(f"{PROGRAM_FOLDER}: the sample programs are not there")
@@ -31,7 +29,10 @@ def main(arguments: list[str]) -> int:
     print(f"running {len(SAMPLES)} programs, {workers} at a time, in real time\n", flush=True)
     bad = []
     for count, (sample, job) in enumerate(runs(SAMPLES, workers), start=1):
-        text, sound = shown_or_failed(sample, job, options.output)
+        try:
+            text, sound = show(sample, job.result(), options.output)
+        except FAILURES as problem:
+            text, sound = f"{sample.program}: FAILED: {problem}", False
         bad += [] if sound else [sample.program]
         print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)
     verdict = f"NOT everything came out right: {', '.join(bad)}"

@@ -2,50 +2,34 @@
 """The demo's report of a program: the verdict, its picture and its table."""
 
 from collections.abc import Sequence
-from concurrent.futures import Future
 from pathlib import Path
 
 from g12.tools.demo.samples import Sample
-from g12.tools.errors import ProgramError
-from g12.tools.headless.machine import MachineError, Run, StartupError
+from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import Scene, scene_of_proof
-from g12.tools.preview.tracer import TraceFailure
 from g12.tools.units import Unit, clock, plain
 from g12.tools.verify.proof import Proof, prove
 from g12.tools.verify.result.cut import MeasuredCut
 
-FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
 SECTION_HEADS = ("lines", "segments", "off contour", "allowed", "lowest feed", "C at most", "time")
 
 
 def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
-    """Draw a sample; return its table and whether its circles and contours are correct."""
+    """Draw a sample; return its table and whether its circles and contours are correct.
+
+    Some of the manuals' programs leave material, or have rapids through it: that is only reported.
+    """
     ini = read_ini(sample.ini)
     proof = prove(sample.path, ini, tools=sample.tools, samples=run.samples)
     scene = scene_of_proof(proof, sample.override)
     picture = output / f"{sample.path.parent.name}_{sample.path.stem}.png"
     style.save(picture_of(scene), picture)
-    return describe(sample, run, proof, scene, picture), is_sound(proof)
-
-
-def shown_or_failed(sample: Sample, job: Future, output: Path) -> tuple[str, bool]:
-    """Draw a sample whose run has ended; return its report, and whether it is correct."""
-    try:
-        return show(sample, job.result(), output)
-    except FAILURES as problem:
-        return f"{sample.program}: FAILED: {problem}", False
-
-
-def is_sound(proof: Proof) -> bool:
-    """Return whether every circle and contour is correct.
-
-    Some of the manuals' programs leave material, or have rapids through it: that is only reported.
-    """
-    return all(cut.sound for cut in (*proof.pockets, *proof.sections))
+    sound = all(cut.sound for cut in (*proof.pockets, *proof.sections))
+    return describe(sample, run, proof, scene, picture), sound
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
@@ -83,7 +67,6 @@ def pocket_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
 
 
 def section_row(cut: MeasuredCut, allowed: float, unit: Unit) -> tuple[str, ...]:
-    """Return a polar section's row of the table."""
     values = cut.values
     return (
         f"{cut.line}-{cut.last}",

@@ -28,12 +28,10 @@ class Sample(NamedTuple):
 
     @property
     def path(self) -> Path:
-        """Return the program's file."""
         return PROGRAM_FOLDER / self.program
 
     @property
     def ini(self) -> Path:
-        """Return the machine's INI file."""
         return MACHINE_FOLDER / f"{self.machine}_headless.ini"
 
     @property
