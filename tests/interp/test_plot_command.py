@@ -52,7 +52,7 @@ def test_only_what_the_picture_marks_is_said_to_be_in_red(plotted):
     texts, picture = plotted(FIRST_THE_FACE + into, LATHE)
     assert [text.partition(": ")[0] for text in texts] == [
         "finding, line 38",
-        "not judged, line 23",
+        "not judged, line 25",
         "not judged, line 40",
     ]
     assert "into material" not in picture

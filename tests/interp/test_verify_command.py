@@ -225,7 +225,7 @@ def test_plot_says_the_notes_of_verify(written, tmp_path, capsys):
     main(["verify", written(text), "--ini", MILL])
     notes = capsys.readouterr().out.partition("\nnotes\n")[2].partition("\n\n")[0].splitlines()
     assert len(notes) == 3
-    assert [f"note, {note.strip()}" for note in notes] == plotted[1:]
+    assert [f"note, {note.strip()}" for note in notes] == plotted[1:4]
 
 
 @pytest.mark.parametrize(

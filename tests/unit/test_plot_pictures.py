@@ -12,6 +12,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from shapely.geometry import Point
 
+from g12.tools.errors import UsageError
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
@@ -21,10 +22,10 @@ from g12.tools.plot.labels import spread_out
 from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
+from g12.tools.plot.seen import Seen
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.seen import Seen
 from g12.tools.verify.subject import subject_of
 from support.made_moves import Hand, samples_of
 
@@ -265,16 +266,14 @@ def test_a_short_rapid_is_a_line_in_either_unit(units):
     assert warned(shown) == ["rapid through material"] and drawn_in_red(shown) == (1, 0)
 
 
-@pytest.mark.parametrize(("surface", "shown_at"), [(20.0, 5.5), (22.0, 5.0), (0.0, None)])
+@pytest.mark.parametrize(("surface", "shown_at"), [(20.0, 5.5), (22.0, 5.0)])
 def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
-    """The path may be unrolled on a bar's radius; one that is found on the face is not shown."""
+    """The path may be unrolled on a bar's radius."""
     hit = rapid_through([5.5, 0, 24], [5.5, 0, 18], surface=surface)
     shown = unrolled(replace(scene(groove(), LATHE), seen=Seen((hit,), surface=20.0)))
-    assert warned(shown) == ["rapid straight down into material"] * (surface > 0)
-    assert drawn_in_red(shown) == (surface > 0, surface > 0)
-    assert [each.values["path"][0][0] for each in shown.seen.rapids] == (
-        [] if shown_at is None else [pytest.approx(shown_at)]
-    )
+    assert warned(shown) == ["rapid straight down into material"]
+    assert drawn_in_red(shown) == (1, 1)
+    assert [each.values["path"][0][0] for each in shown.seen.rapids] == [pytest.approx(shown_at)]
 
 
 def test_a_boss_is_in_the_side_view():
@@ -527,5 +526,5 @@ def test_a_pdf_is_one_and_an_svg_the_same_file_every_time(tmp_path):
     ],
 )
 def test_other_suffixes_and_folders_are_refused_by_name(name, why, tmp_path):
-    with pytest.raises(style.PictureError, match=why):
+    with pytest.raises(UsageError, match=why):
         style.check_format(tmp_path / name)

@@ -2,12 +2,13 @@
 """``g12 plot``: a picture of a program's cut, for any LinuxCNC program and machine.
 
 A mill program is shown from above and from the side, with the area its cutters sweep; a program
-that turns C on the face of the part, one whose sections are all on a cylinder on its unrolled
-surface, both over time too; a turning program in Z and X. A refused program is drawn up to the
-refused line; of a section that line's contour is shown without compensation.
+that turns C on the face of the part, one whose sections and holes are all on a cylinder on its
+unrolled surface, both over time too; a turning program in Z and X. A refused program is drawn up
+to the refused line; of a section that line's contour is shown without compensation.
 """
 
 import argparse
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -24,23 +25,20 @@ from g12.tools.commands.arguments import (
     stock_of,
 )
 from g12.tools.errors import UsageError, print_error
-from g12.tools.machine.filter import OpenedProgram, opened_program
+from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
-from g12.tools.plot.scene import Scene, scene_of
-from g12.tools.plot.side_holes import drilled_surface
+from g12.tools.plot.scene import Scene, scene_of, scene_of_proof
 from g12.tools.preview.ended import ended, ended_text, explained
 from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
-from g12.tools.preview.tracer import Tracer, trace
+from g12.tools.preview.tracer import Tracer
 from g12.tools.progress import working
-from g12.tools.units import Unit
 from g12.tools.verify.commanded import Commanded, commanded_by
-from g12.tools.verify.proof import prove_subject
-from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.seen import seen_of_proof
+from g12.tools.verify.proof import Proof, prove_subject
+from g12.tools.verify.report import line_text
 from g12.tools.verify.subject import subject_of
 
 EXAMPLES = """\
@@ -51,10 +49,10 @@ examples:
 
 exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 """
+KINDS = {"finding": "is_finding", "note": "is_note", "not judged": "is_not_judged"}
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     run = "run the program headless and draw its real motion over the programmed path"
     parser = cut_parser("plot", __doc__, EXAMPLES, run)
     parser.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
@@ -64,70 +62,55 @@ def command_parser() -> Parser:
 
 @one_line("plot")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     check_run(options)
     ini = checked_ini(options)
-    try:
-        style.check_format(options.output)
-    except style.PictureError as problem:
-        raise UsageError(str(problem)) from None
+    style.check_format(options.output)
     with opened_program(options.program, ini) as opened:
-        scene = write_picture(opened.path, ini, options)
-    print(f"{options.output} written")
-    for line in texts_beside(scene, opened):
-        print(line)
-    if scene.refusal:
-        text = ended_text(options.program, trace_in_source(scene.subject.trace, opened).error)
-        print_error("g12 plot", text)
-        report_line_numbers("plot", opened)
-    return FINDING if scene.refusal else GOOD
-
-
-def texts_beside(scene: Scene, opened: OpenedProgram) -> list[str]:
-    """Return the texts of the picture's red signs, notes and messages, with the user's lines."""
-    findings = (f"in red, {said(each, scene.unit, opened)}" for each in scene.seen.findings)
-    notes = (f"note, {said(each, scene.unit, opened)}" for each in scene.seen.notes)
+        found, commanded = moves_and_words(opened.path, ini, options)
+        samples = samples_of_run(opened.path, options, found, ini)
+        with working(f"drawing {options.output.name}"):
+            subject = subject_of(opened.path, ini, found, samples, commanded)
+            if found.error:
+                proof, scene = None, scene_of(subject, options.units, options.feeds)
+            else:
+                proof = replace(prove_subject(subject, stock=stock_of(options)), opened=opened)
+                scene = scene_of_proof(proof, options.override, options.units, options.feeds)
+            style.save(picture_of(scene), options.output)
+    in_source = trace_in_source(found, opened)
     x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
-    trace = trace_in_source(scene.subject.trace, opened)
-    return [*dict.fromkeys(findings), *x0, *dict.fromkeys(notes), *message_lines(trace.messages)]
+    judged = dict.fromkeys(judged_texts(proof, scene)) if proof else ()
+    texts = [f"{options.output} written", *x0, *judged, *message_lines(in_source.messages)]
+    print("\n".join(texts))
+    if in_source.error:
+        print_error("g12 plot", ended_text(options.program, in_source.error))
+        report_line_numbers("plot", opened)
+    return FINDING if found.error else GOOD
 
 
-def said(finding: Finding, unit: Unit, opened: OpenedProgram) -> str:
-    """Return the line and the sentence of a finding, with the user's lines."""
-    text = finding.text(unit)
-    if finding.file:
-        return f"line {finding.line} of {finding.file}: {text}"
-    return f"line {opened.source_line(finding.line)}: {opened.in_source(text)}"
-
-
-def words_of(program: Path, ini: Ini, options: argparse.Namespace, found: Trace) -> Commanded:
-    """Return what the words of a traced program command."""
-    with Tracer(ini, tools=options.tools) as tracer:
-        return commanded_by(tracer, program, found, options.tools, options.var)
-
-
-def write_picture(program: Path, ini: Ini, options: argparse.Namespace) -> Scene:
-    """Draw a program as LinuxCNC reads it; return its scene."""
-    with working(f"interpreting {program.name}"):
-        found = explained(
-            trace(program, options.ini, tools=options.tools, parameters=options.var), options.ini
-        )
+def moves_and_words(
+    program: Path, ini: Ini, options: argparse.Namespace
+) -> tuple[Trace, Commanded]:
+    """Return the moves to draw, and what the words command; of a refused program nothing."""
+    commanded = Commanded()
+    with working(f"interpreting {program.name}"), Tracer(ini, tools=options.tools) as tracer:
+        found = explained(tracer.trace(program, parameters=options.var), ini.path)
         if found.error and not options.run:
             found = with_refused_contour(program, ini, found, options.var)
         if options.run or not found.moves:
             ended(program, found)
         if not found.moves:
             raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-    samples = samples_of_run(program, options, found, ini)
-    with working(f"drawing {options.output.name}"):
-        commanded = Commanded() if found.error else words_of(program, ini, options, found)
-        subject = subject_of(program, ini, found, samples, commanded)
-        scene = scene_of(subject, options.units, options.feeds)
         if not found.error:
-            seen = seen_of_proof(prove_subject(subject, stock=stock_of(options)))
-            surface = seen.surface or drilled_surface(subject, options.tools, options.var)
-            seen = seen._replace(surface=surface)
-            scene = replace(scene, override=options.override, seen=seen)
-        style.save(picture_of(scene), options.output)
-    return scene
+            commanded = commanded_by(tracer, program, found, options.tools, options.var)
+    return found, commanded
+
+
+def judged_texts(proof: Proof, scene: Scene) -> Iterator[str]:
+    """Yield what ``verify`` says, by kind; a finding that the picture marks is "in red"."""
+    marked = set(map(id, scene.seen.findings))
+    for name, attribute in KINDS.items():
+        for each in (each for each in proof.judged if getattr(each, attribute)):
+            kind = "in red" if id(each) in marked else name
+            where = line_text(proof, each.line, each.file)
+            yield f"{kind}, {where}: {proof.text(each, scene.unit)}"

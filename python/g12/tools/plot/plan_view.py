@@ -51,7 +51,7 @@ class Level(NamedTuple):
 
 def milled_levels(scene: Scene) -> list[Level]:
     """Return the depths milled or drilled, from the top down; with many, in bands."""
-    cutting = [move for move in scene.moves if move.kind != "rapid" and removes(move)]
+    cutting = [move for move in scene.sweeping if removes(move)]
     if not cutting:
         return []
     depth = floors(cutting)
@@ -179,8 +179,13 @@ def draw_warnings(axes: Axes, scene: Scene) -> None:
     unit = scene.unit.mm
     for each in scene.seen.uncut:
         style.hatch(axes, scaled(each.values["shape"], 1 / unit, 1 / unit, origin=(0, 0)))
+    draw_signs(axes, scene, [0, 1])
+
+
+def draw_signs(axes: Axes, scene: Scene, pair: list[int]) -> None:
+    """Draw signs at the findings that are neither a rapid nor uncut material."""
     for finding in scene.seen.signs:
-        style.draw_sign(axes, np.array(finding.place[:2]) / unit)
+        style.draw_sign(axes, np.array(finding.place)[pair] / scene.unit.mm)
 
 
 def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
@@ -270,8 +275,9 @@ def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
     if scene.feed_colours:
         bands = feed_bands(scene)
         return [(paths(part, moves, PICTURE_CHORD), colour) for _, colour, moves in bands]
-    plunging = [m for m in scene.moves if m.kind != "rapid" and not is_sideways(m)]
-    below = [(paths(part, plunging), style.MUTED)]
+    others = [move for move in scene.sweeping if not is_sideways(move)]
+    others += [scene.moves[index] for index in scene.radial]
+    below = [(paths(part, others, PICTURE_CHORD), style.MUTED)]
     return below + [(level.lines, level.shade.line) for level in levels]
 
 
@@ -294,8 +300,7 @@ def at_feed(scene: Scene) -> list[int]:
 
 def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
     """Return the points of plunges straight down at feed, each with the tool's number."""
-    down = [m for m in scene.moves if m.kind != "rapid" and not is_sideways(m)]
-    down = [move for move in down if move.end[2] < move.start[2]]
+    down = [m for m in scene.sweeping if not is_sideways(m) and m.end[2] < m.start[2]]
     points = scene.path.part.points(np.array([m.end for m in down]).reshape(-1, 9))
     return sorted({(tuple(np.round(p[:2], 6)), m.tool) for p, m in zip(points, down)})
 
@@ -359,6 +364,8 @@ def motion_entries(scene: Scene) -> list:
         stock = scene.seen.stock.stock
         text = f"{'bar' if stock.diameter else 'stock'} {stock.text}"
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
+    if scene.radial:
+        listed.append(style.stroke(style.MUTED, "toolpath in the side"))
     if any(move.kind == "rapid" for move in scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:

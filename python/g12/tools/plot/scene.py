@@ -7,17 +7,18 @@ import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import takewhile
 from pathlib import Path
 
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import x0_text
 from g12.tools.path.track import Track
+from g12.tools.plot.seen import Seen, seen_of_proof
 from g12.tools.preview.executed_blocks import COMMENTS
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
 from g12.tools.verify.proof import Proof
-from g12.tools.verify.seen import Seen, seen_of_proof
 from g12.tools.verify.subject import Subject
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
@@ -58,6 +59,25 @@ class Scene:
         """Return the actual motion of the run, if there was one."""
         return self.subject.real
 
+    @cached_property
+    def fed(self) -> list[int]:
+        """The moves at feed, by their indices."""
+        return [index for index, move in enumerate(self.moves) if move.kind != "rapid"]
+
+    @cached_property
+    def radial(self) -> list[int]:
+        """The moves at feed whose tool points at the axis: the face's picture shows their path."""
+        if not self.path.part.turning or self.seen.surface:
+            return []
+        sideways = self.subject.sideways
+        return [index for index in self.fed if sideways[index] == {True}]
+
+    @property
+    def sweeping(self) -> list[Move]:
+        """The moves at feed whose tool points along the view."""
+        radial = set(self.radial)
+        return [self.moves[index] for index in self.fed if index not in radial]
+
     @property
     def x0_text(self) -> str:
         """Return a text with the position of a lathe program's X0, "" where it is the machine's."""
@@ -96,11 +116,16 @@ def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = Fa
     return Scene(subject, unit_of(subject.trace.modes.gcodes, units), feed_colours)
 
 
-def scene_of_proof(proof: Proof, override: float = 100.0) -> Scene:
+def scene_of_proof(
+    proof: Proof, override: float = 100.0, units: str | None = None, feed_colours: bool = False
+) -> Scene:
     """Return the scene of a verified program, its actual motion included."""
-    contour = max((facts.deviation for facts in proof.sections), default=None)
-    seen = seen_of_proof(proof)
-    return replace(scene_of(proof.subject), seen=seen, contour=contour, override=override)
+    return replace(
+        scene_of(proof.subject, units, feed_colours),
+        override=override,
+        seen=seen_of_proof(proof),
+        contour=max((facts.deviation for facts in proof.sections), default=None),
+    )
 
 
 def heading(program: Path) -> str:

@@ -26,6 +26,7 @@ from matplotlib.path import Path as Outline
 from shapely.geometry.base import BaseGeometry
 from shapely.geometry.polygon import orient
 
+from g12.tools.errors import UsageError
 from g12.tools.units import Unit
 
 FORMATS = ("png", "svg", "pdf")
@@ -79,17 +80,13 @@ CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorde
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-class PictureError(ValueError):
-    """A picture that cannot be written in the requested format."""
-
-
 def check_format(path: Path) -> None:
     """Refuse a file whose suffix is no picture format, before any work is done."""
     if path.suffix.lower().lstrip(".") not in FORMATS:
         known = ", ".join(f".{name}" for name in FORMATS)
-        raise PictureError(f"{path}: the suffix must be one of {known}")
+        raise UsageError(f"{path}: the suffix must be one of {known}")
     if not path.parent.is_dir():
-        raise PictureError(f"{path.parent}: no such directory")
+        raise UsageError(f"{path.parent}: no such directory")
 
 
 def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure:

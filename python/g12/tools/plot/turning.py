@@ -21,6 +21,7 @@ from g12.tools.plot.plan_view import (
     bounds_of,
     draw_arrows,
     draw_paths,
+    draw_signs,
     feed_entries,
     mark_worst,
     motion_entries,
@@ -59,6 +60,7 @@ def draw_profile(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) ->
     axes.axhline(0, **style.CENTRE_LINE)
     draw_paths(axes, scene, [everything(scene)], PROFILE)
     draw_arrows(axes, scene, PROFILE)
+    draw_signs(axes, scene, PROFILE)
 
 
 def everything(scene: Scene) -> Level:

@@ -120,14 +120,9 @@ def unrolled(scene: Scene) -> Scene:
     real = scene.real and replace(scene.real, positions=as_positions(scene.real.points))
     trace = replace(subject.trace, moves=moves)
     radius = scene.seen.surface
-    own = (on_radius(each, radius) for each in scene.seen.findings if seen_unrolled(each))
+    own = (on_radius(each, radius) for each in scene.seen.findings)
     shown = scene.seen._replace(findings=tuple(own), stock=None)  # a bar is round on the face alone
     return replace(scene, subject=replace(subject, trace=trace, drawn=(flat, real)), seen=shown)
-
-
-def seen_unrolled(finding: Finding) -> bool:
-    """Return whether a finding can be shown on the surface; a rapid on the face cannot."""
-    return finding.values.get("surface") != 0.0
 
 
 def on_radius(finding: Finding, radius: float) -> Finding:

@@ -235,7 +235,7 @@ def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     call = proof.subject.trace.moves[cut.own.start].block
     inside = not cut.last or (not cut.file and cut.line <= call <= cut.last)
     called = "" if inside else f", called in line {proof.user_line(call)}"
-    title = f"{_line_text(proof, cut.line, cut.file, cut.last)}{called}: {_code_text(cut)}"
+    title = f"{line_text(proof, cut.line, cut.file, cut.last)}{called}: {_code_text(cut)}"
     return paragraph(title, rows_of(FORMS[kind][1], values, unit))
 
 
@@ -262,7 +262,7 @@ def paragraph(title: str, rows: Iterable[Row]) -> str:
     return "\n".join([title, *(f"  {name:{NAMES}}  {text}".rstrip() for name, text in rows)])
 
 
-def _line_text(proof: Proof, line: int, file: str, last: int = 0) -> str:
+def line_text(proof: Proof, line: int, file: str, last: int = 0) -> str:
     """Return the user's line or lines in words, with the file of the sub in which they are."""
     end = f" to {proof.user_line(last, file)}" if last else ""
     of_file = f" of {file}" if file else ""
@@ -273,7 +273,7 @@ def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> s
     """Return findings under a title, "" without any; what is the same of several lines once."""
     lines: dict[str, list[str]] = {}
     for each in found:
-        where = _line_text(proof, each.line, each.file) if each.line else ""
+        where = line_text(proof, each.line, each.file) if each.line else ""
         lines.setdefault(proof.text(each, unit), []).append(where)
     rows = [f"{GAP}{_first_of_lines(where)}{text}" for text, where in lines.items()]
     return "\n".join([title, *rows]) if rows else ""
@@ -320,7 +320,7 @@ def _cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
         off = "not judged" if math.isnan(worst) else off
         seconds = [each.values.get("seconds") for each in inside or [cut]]
         time = "" if None in seconds else f"{plain(sum(seconds), 1)} s"
-        yield _line_text(proof, cut.line, cut.file, cut.last), _code_text(cut), what, off, time
+        yield line_text(proof, cut.line, cut.file, cut.last), _code_text(cut), what, off, time
 
 
 def _sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
