@@ -35,7 +35,6 @@ CLEAN_UP = 15.0  # s that LinuxCNC may take for it
 
 
 def running() -> list[str]:
-    """Return the processes of a running LinuxCNC."""
     names = {}
     for entry in filter(str.isdigit, os.listdir("/proc")):
         try:
@@ -47,7 +46,6 @@ def running() -> list[str]:
 
 
 def refuse_beside_another() -> None:
-    """Raise if a foreign LinuxCNC is running."""
     found = running()
     if found:
         raise IsolationError(
@@ -110,7 +108,6 @@ def put_in_front(covers: dict[str, str], folder: str) -> None:
 
 
 def shared_memory() -> set[int]:
-    """Return the numbers of the existing shared memory segments."""
     with open("/proc/sysvipc/shm", encoding="ascii") as file:
         return {int(line.split()[1]) for line in file.readlines()[1:]}
 
@@ -150,7 +147,6 @@ def end_all(before: set[int]) -> None:
 
 
 def main() -> int:
-    """Run the job and return its exit code."""
     job = json.loads(sys.stdin.readline())
     os.set_inheritable(job["turn"], False)  # the lock is held until this process ends
     refuse_beside_another()

@@ -172,7 +172,6 @@ class Machine:
         self._isolated.close()
 
     def log(self) -> str:
-        """Return what LinuxCNC has printed so far."""
         return self._isolated.log()
 
     def _samples(self, rows: bytes, lost: int) -> Samples:

@@ -87,7 +87,6 @@ class Isolated:
                 self._process = started(CONTAINED, job, log, turn.fileno())
 
     def exit_code(self) -> int | None:
-        """Return the exit code, None while it runs."""
         return self._process.poll()
 
     def wait(self, timeout: float) -> int:
@@ -95,7 +94,6 @@ class Isolated:
         return self._process.wait(timeout)
 
     def log(self) -> str:
-        """Return what was printed so far."""
         return (self.folder / "log.txt").read_text(encoding="utf-8", errors="replace")
 
     def close(self) -> None:

@@ -37,7 +37,6 @@ class IsolationError(OSError):
 
 
 def raise_if_failed(result: int, action: str) -> None:
-    """Raise with the kernel's reason for a failed call."""
     if result:
         raise IsolationError(f"{action}: {os.strerror(ctypes.get_errno())}")
 
@@ -56,7 +55,6 @@ def unshare() -> None:
 
 
 def write_text(path: str, text: str) -> None:
-    """Write a file in one go."""
     with open(path, "w", encoding="utf-8") as file:
         file.write(text)
 
@@ -68,7 +66,6 @@ def mount(source: str, target: str, kind: str | None, flags: int, options: str =
 
 
 def bind(source: str, target: str) -> None:
-    """Let ``target`` be another name of ``source``."""
     mount(source, target, None, MS_BIND | MS_REC)
 
 

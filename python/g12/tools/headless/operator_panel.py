@@ -131,13 +131,11 @@ class Panel:
     # Running.
 
     def open(self, program: str) -> None:
-        """Load a program file."""
         self._mode(linuxcnc.MODE_AUTO)
         self._do(self._command.program_open, program)
         self.wait(lambda stat: stat.file == program, GRACE, f"opening of {program}")
 
     def start(self) -> None:
-        """Cycle start."""
         self._mode(linuxcnc.MODE_AUTO)
         self._do(self._command.auto, linuxcnc.AUTO_RUN, 0)
 
@@ -157,7 +155,6 @@ class Panel:
 
     @staticmethod
     def is_idle(stat) -> bool:
-        """Return whether the interpreter is idle and the axes are at rest."""
         done = stat.interp_state == linuxcnc.INTERP_IDLE and not stat.queue
         return done and stat.inpos and stat.exec_state in (linuxcnc.EXEC_DONE, linuxcnc.EXEC_ERROR)
 

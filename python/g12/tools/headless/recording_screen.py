@@ -59,7 +59,6 @@ class Sampler:
         return self.rows.tobytes(), int(hal.get_value("sampler.0.overruns"))
 
     def drain(self) -> None:
-        """Read the samples from HAL's buffer."""
         row = self._stream.read()
         while row is not None:
             self.rows.extend(row)
@@ -83,7 +82,6 @@ class RecordingScreen:
             self._drained = time.monotonic()
 
     def answer(self, name: str, *arguments):
-        """Call the method of a request, here or of the panel."""
         return getattr(self if hasattr(self, name) else self.panel, name)(*arguments)
 
     def run(self, program: str, timeout: float) -> dict:
@@ -105,12 +103,10 @@ class RecordingScreen:
 
 
 def modes_of(stat) -> tuple[tuple, tuple, tuple]:
-    """Return the active G codes, M codes and settings of a status."""
     return stat.gcodes[1:], stat.mcodes[1:], stat.settings[1:]
 
 
 def halcmd(*words: str) -> None:
-    """Run one HAL command."""
     subprocess.run(["halcmd", *words], check=True, capture_output=True, text=True)
 
 
@@ -125,7 +121,6 @@ def connect(source: str, target: str, kind: str) -> None:
 
 
 def signals_by_pin() -> dict[str, str]:
-    """Return the signal of each pin that has one."""
     lines = subprocess.run(["halcmd", "-s", "show", "pin"], capture_output=True, text=True)
     words = (line.split() for line in lines.stdout.splitlines())
     return {line[4]: line[6] for line in words if len(line) > 6}

@@ -92,8 +92,6 @@ class _Sweep:
 
 
 class _Areas:
-    """Areas with their levels and moves, for a search by bounds."""
-
     def __init__(self) -> None:
         self._areas: list[Solid | Opening | _Sweep] = []
         self._rows: list[tuple[float, ...]] = []
@@ -129,8 +127,6 @@ class _Areas:
 
 
 class Material:
-    """The remaining material of a part; see the head of this file."""
-
     def __init__(
         self, solids: Iterable[Solid], openings: Iterable[Opening] = (), period: float = 0.0
     ) -> None:

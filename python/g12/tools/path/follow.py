@@ -48,11 +48,9 @@ class Followed:
         return speed(self.points, self.time)
 
     def largest(self, moves: Sequence[int]) -> float:
-        """Return the largest deviation from some moves, given by their indices."""
         return float(self.deviation[np.isin(self.move, moves)].max(initial=0.0))
 
     def worst(self, among: np.ndarray) -> int:
-        """Return the index of the largest deviation among the samples of a mask."""
         return int(np.flatnonzero(among)[np.argmax(self.deviation[among])])
 
 

@@ -77,7 +77,6 @@ class Part:
         return self.points(self.machine_points(move, chord_error))
 
     def _segments(self, move: Move, chord_error: float) -> int:
-        """Return the number of chords of a move."""
         if move.kind == "arc":
             return arc_segments(move.radius, move.sweep, chord_error)
         if self.turning:
@@ -222,7 +221,6 @@ def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
 
 
 def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERROR) -> BaseGeometry:
-    """Return the full disc about a point of the part plane."""
     segments = arc_segments(radius, math.pi / 2, chord_error)
     return Point(centre[0], centre[1]).buffer(radius, segments)
 

@@ -25,5 +25,4 @@ class Samples:
     lost: int
 
     def moving(self) -> np.ndarray:
-        """Return a mask of the samples in motion."""
         return self.kind != 0

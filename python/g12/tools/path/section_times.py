@@ -68,7 +68,6 @@ class _Stretch(NamedTuple):
 
 
 def section_times(legs: Sequence[Leg], axes: LatheAxes) -> SectionTimes:
-    """Return the estimated times of consecutive moves of the tool."""
     stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
     turns = sum(
         _turn(one.points[-1], other.points[0], axes) for one, other in zip(stretches, stretches[1:])
@@ -86,7 +85,6 @@ def section_times(legs: Sequence[Leg], axes: LatheAxes) -> SectionTimes:
 
 
 def _smooth(legs: Iterable[Leg]) -> Iterator[list[Leg]]:
-    """Yield moves without a corner between them."""
     run: list[Leg] = []
     for leg in legs:
         if run and abs(leg.curve.direction(0.0) - run[-1].curve.direction(1.0)) > SMOOTH_CORNER:

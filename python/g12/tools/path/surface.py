@@ -27,11 +27,9 @@ class Surface(Part):
 
     @property
     def letters(self) -> str:
-        """The axes that its points depend on."""
         return "CZX"
 
     def points(self, positions: np.ndarray) -> np.ndarray:
-        """Return part points (n, 3) of machine positions (n, 9)."""
         positions = np.atleast_2d(positions)
         around = np.radians(positions[:, C]) * self.radius
         return np.stack([around, positions[:, Z], positions[:, X]], axis=1)

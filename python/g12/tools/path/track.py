@@ -96,7 +96,6 @@ class Track:
         return slice(max(0, first - (1 if index else 0)), last)
 
     def end(self, index: int) -> tuple[float, ...]:
-        """Return the end of a move on the part."""
         return tuple(self.part.points(np.array(self.moves[index].end))[0])
 
     def part_length(self, index: int) -> float:
@@ -117,7 +116,6 @@ class Track:
 
 
 def limits_of(ini: Ini) -> Limits:
-    """Return the greatest speeds that an INI allows."""
     known, scale = ini.axis_limits, [ini.mm if linear else 1.0 for linear in IS_LENGTH]
     axes = [known[axis].velocity if axis in known else UNLIMITED for axis in AXIS_LETTERS]
     path = ini.number("TRAJ", "MAX_LINEAR_VELOCITY", UNLIMITED) * ini.mm
@@ -186,7 +184,6 @@ def vertices_of(
     seconds: Callable[[int], float],
     chord_error: float,
 ) -> Vertices:
-    """Return the vertices of moves, by their indices."""
     positions, offsets, owner, times = [], [], [], [np.zeros(1)]
     before = moves[own.start - 1].tool_offset if own.start else (0.0,) * 9
     for index in own:

@@ -127,7 +127,6 @@ class Phrases:
         self._unit, self._name = now.unit, UNITS[now.facts["units"]].name
 
     def of_run(self, run: list[Edit]) -> Difference:
-        """Return the difference of a run of edits."""
         was = tuple(index for edit in run for index in edit.was)
         now = tuple(index for edit in run for index in edit.now)
         steps = [self._now[index] for index in now] or [self._was[index] for index in was]
@@ -150,24 +149,24 @@ class Phrases:
         )
 
     def _of_changes(self, group: list[Change]) -> str:
-        """Return a text for all changes of one property."""
         what = group[0].what
         if isinstance(group[0].was, str):
             return ", ".join(dict.fromkeys(f"{c.was} → {c.now}" for c in group))
         scale = self._scale(what)
-        values = {distinguished(float(c.was) / scale, float(c.now) / scale) for c in group}
+        values = {_distinguished(float(c.was) / scale, float(c.now) / scale) for c in group}
         was, now = next(iter(values))
         most = max((change.by for change in group), key=abs)
         if "feed" in what:
             return f"F{was} → F{now}" if len(values) == 1 else f"feed by up to {most:+.3%}"
-        size = f"{most / scale:{SIZE_FORMAT}} {self._unit_of(what)}"
+        unit = "degrees" if what in "ABC" else self._name
+        size = f"{most / scale:+{SIZE_FORMAT}} {unit}"
         if what == "radius":
-            off = f"middle of the arc {size} off"
+            off = f"middle of the arc {size.lstrip('+')} off"
             return f"radius {was} → {now} ({off})" if len(values) == 1 else f"{off} at most"
         if len(values) == 1:
-            return f"{what}{was} → {what}{now} ({_signed(size)})"
+            return f"{what}{was} → {what}{now} ({size})"
         same = len({f"{change.by:{SIZE_FORMAT}}" for change in group}) == 1
-        return f"{what} by {_signed(size)}" if same else f"{what} by up to {_signed(size)}"
+        return f"{what} by {size}" if same else f"{what} by up to {size}"
 
     def _of_others(self, was: tuple[int, ...], now: tuple[int, ...]) -> Difference:
         """Return the difference of steps that were added, are missing, or replace others."""
@@ -179,8 +178,8 @@ class Phrases:
 
     def _of_moves(self, before: list[Move], after: list[Move]) -> list[str]:
         if before and after:
-            apart = self._apart(before, after)
-            far = "" if apart is None else f", up to {apart:{SIZE_FORMAT}} {self._name} apart"
+            gap = gap_between(self._part, before, after)
+            far = f", up to {gap.size / self._unit:{SIZE_FORMAT}} {self._name} apart" if gap else ""
             return [f"{counted_as(len(before), 'move')} became {len(after)}{far}"]
         if not before and not after:
             return []
@@ -189,7 +188,6 @@ class Phrases:
         return [f"{count} {kind}, {self._extent(before or after)}"]
 
     def _extent(self, moves: list[Move]) -> str:
-        """Return the extent of moves on each axis that they move."""
         ends = np.array([position for move in moves for position in (move.start, move.end)])
         low, high = ends.min(axis=0), ends.max(axis=0)
         scales = [self._scale(axis) for axis in AXIS_LETTERS]
@@ -199,20 +197,8 @@ class Phrases:
         words = [f"{axis}{a} to {b}" for axis, a, b in zip(AXIS_LETTERS, *texts) if a != b]
         return " ".join(words) or "standing still"
 
-    def _apart(self, before: list[Move], after: list[Move]) -> float | None:
-        """Return the distance between two paths, machine units; None where it has no meaning."""
-        gap = gap_between(self._part, before, after)
-        return gap.size / self._unit if gap else None
-
     def _scale(self, what: str) -> float:
         return 1.0 if what in "ABC" or what == "rotary feed" else self._unit
-
-    def _unit_of(self, what: str) -> str:
-        return "degrees" if what in "ABC" else self._name
-
-
-def _signed(size: str) -> str:
-    return size if size.startswith("-") else f"+{size}"
 
 
 def _of_notes(steps: Sequence[RecordedStep], indices: tuple[int, ...], word: str) -> str:
@@ -221,14 +207,13 @@ def _of_notes(steps: Sequence[RecordedStep], indices: tuple[int, ...], word: str
     return f"{word}: {', '.join(texts)}" if texts else ""
 
 
-def distinguished(*values: float) -> tuple[str, ...]:
-    """Return numbers as text, with as few digits as distinguish them."""
-    short = tuple(number_text(round(value, SHOWN_DECIMALS)) for value in values)
-    return short if len(set(short)) == len(values) else tuple(map(number_text, values))
+def _distinguished(was: float, now: float) -> tuple[str, str]:
+    """Return two numbers as text, with as few digits as distinguish them."""
+    old, new = (number_text(round(value, SHOWN_DECIMALS)) for value in (was, now))
+    return (old, new) if old != new else (number_text(was), number_text(now))
 
 
 def _merged(found: Sequence[Difference]) -> list[Difference]:
-    """Return equal differences merged into the first."""
     groups: dict[tuple, list[Difference]] = {}
     for difference in found:
         groups.setdefault((difference.kind, difference.text), []).append(difference)
@@ -244,7 +229,6 @@ def _merged(found: Sequence[Difference]) -> list[Difference]:
 
 
 def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Difference]:
-    """Return the difference between the programs' ends."""
     if not was.error and not now.error:
         return _ends(was.end, now.end)
     if was.error and now.error and was.error.rule == now.error.rule:

@@ -6,7 +6,6 @@ Lengths are millimetres until they are drawn; those of the layout are inches on 
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -23,8 +22,8 @@ from g12.tools.units import UNITS, Unit
 
 DRAWN_CHORD_ERROR = 0.005
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.3, 1.0, 0.65, 0.55
-PLAN, MOST_HIGH = 7.0, 5.6  # inches of the larger view
-LEAST_WIDE, LEAST_HIGH = 3.0, 1.4
+LARGEST_PLAN = np.array([7.0, 5.6])  # of the larger view, across and up
+LEAST_PLAN = np.array([3.0, 1.4])
 SIDE = 1.5  # height of the side view
 LEGEND, ROWS = 2.9, 1.6
 GAP_VIEW_SIZE = 2.0  # sides of the detail view of the largest gap
@@ -34,6 +33,7 @@ MARGIN_SHARE = 0.05
 LEAST_EXTENT = 1e-6  # an axis with less motion is not shown
 LONGEST_SUBTITLE = 130
 FINEST_CHORD_ERROR = 1e-6
+DASHES = {"linestyle": (0, (4, 3)), "capstyle": "butt"}
 STYLES = (  # colour, width, order: same, was, now
     (style.RAPID, 0.8, 2.5),
     (style.PATH, 3.0, 3.0),
@@ -62,81 +62,55 @@ class DrawnPaths(NamedTuple):
 
     @property
     def points(self) -> np.ndarray:
-        """Return every point (n, 3)."""
         lines = [line for paths_ in (self.feeds, self.rapids) for some in paths_ for line in some]
         return np.concatenate(lines) if lines else np.zeros((1, 3))
 
 
 class View:
-    """The layout of the axes on the page, and the unit."""
-
     def __init__(self, points: np.ndarray, unit: Unit, turning: bool) -> None:
         self.unit = unit
-        self.low, self.high = points.min(axis=0), points.max(axis=0)
-        spread = self.high - self.low
+        low, high = points.min(axis=0), points.max(axis=0)
+        spread = high - low
         self.letters = ("towards C0", "towards C90", "Z") if turning else "XYZ"
         profile = spread[1] < LEAST_EXTENT < spread[2]
         self.pairs = [[2, 0]] if profile else [[0, 1]] + [[0, 2]] * bool(spread[2] > LEAST_EXTENT)
         self.size = max(*spread, LEAST_EXTENT)
-        self.low, self.high = (
-            self.low - MARGIN_SHARE * self.size,
-            self.high + MARGIN_SHARE * self.size,
-        )
-        first, second = self.pairs[0]
-        across, up = (self.high - self.low)[self.pairs[0]]
-        scale = min(PLAN / across, MOST_HIGH / up)
-        self._widen(first, LEAST_WIDE / scale)
-        self._widen(second, LEAST_HIGH / scale)
-        self.plan = tuple((self.high - self.low)[self.pairs[0]] * scale)
+        margin, plan = MARGIN_SHARE * self.size, self.pairs[0]
+        self.low, self.high = low - margin, high + margin
+        extent = (self.high - self.low)[plan]
+        scale = (LARGEST_PLAN / extent).min()
+        more = np.maximum(0.0, LEAST_PLAN / scale - extent) / 2
+        self.low[plan], self.high[plan] = self.low[plan] - more, self.high[plan] + more
+        self.plan = tuple((self.high - self.low)[plan] * scale)
         views = self.plan[1] + (BETWEEN + SIDE) * (len(self.pairs) > 1)
         self.height = max(TOP + views + BOTTOM, TOP + ROWS + GAP_VIEW_SIZE + BOTTOM)
         self.width = LEFT + self.plan[0] + LEGEND + RIGHT
-
-    def _widen(self, axis: int, least: float) -> None:
-        """Widen an axis's range to a least size."""
-        more = max(0.0, least - (self.high[axis] - self.low[axis])) / 2
-        self.low[axis], self.high[axis] = self.low[axis] - more, self.high[axis] + more
 
     def panels(self, figure: Figure) -> Iterator[tuple[Axes, list[int]]]:
         """Yield the axes of each view with the part's two axes it shows."""
         bottom = self.height - TOP - self.plan[1]
         for pair, height in zip(self.pairs, (self.plan[1], SIDE)):
             axes = style.add_axes(figure, LEFT, bottom, self.plan[0], height)
-            yield self._framed(axes, pair), pair
+            names = [self.letters[axis] for axis in pair]
+            style.frame(axes, self.low[pair], self.high[pair], self.unit, names)
+            style.caption(axes, "The part" if pair == self.pairs[0] else "Side, not to scale")
+            yield axes, pair
             bottom -= BETWEEN + SIDE
-
-    def _framed(self, axes: Axes, pair: list[int]) -> Axes:
-        names = [self.letters[axis] for axis in pair]
-        style.frame(axes, self.low[pair], self.high[pair], self.unit, names)
-        style.caption(axes, "The part" if pair == self.pairs[0] else "Side, not to scale")
-        return axes
-
-    @property
-    def beside(self) -> tuple[float, float]:
-        """The corner of the legend, and of the detail view below it: left and top in inches."""
-        return LEFT + self.plan[0] + 0.35, self.height - TOP + 0.08
-
-
-def picture_file(folder: Path, program: str) -> Path:
-    """Return the path of a program's picture."""
-    path = folder / f"{program}.png"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    return path
 
 
 def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Figure:
-    """Return the picture of a program's differences."""
     drawn = drawn_of(was, now, found, part)
     view = View(drawn.points, UNITS[now.facts["units"]], part.turning)
     name = now.facts["program"].rpartition(" ")[0]
     figure = style.new_figure(view.width, view.height, name, subtitle(found))
     for axes, pair in view.panels(figure):
-        draw_both_paths(axes, drawn, pair, view.unit.mm)
+        _draw_styled(axes, drawn.feeds, pair, view.unit.mm)
+        _draw_styled(axes, drawn.rapids, pair, view.unit.mm, 0.6, **DASHES)
         if drawn.gap:
             at = drawn.gap.point[pair] / view.unit.mm
             axes.plot(*at, "o", color=style.WORST, markersize=9, fillstyle="none", zorder=6)
-    left, top = view.beside
-    style.draw_legend(figure, entries(drawn, view.unit), left, top, borderaxespad=0.0)
+    left, top = LEFT + view.plan[0] + 0.35, view.height - TOP + 0.08
+    style.draw_legend(figure, legend(drawn, view.unit), left, top, borderaxespad=0.0)
     if drawn.gap and drawn.gap.size < VISIBLE * view.size:
         axes = style.add_axes(
             figure, left, top - ROWS - GAP_VIEW_SIZE, GAP_VIEW_SIZE, GAP_VIEW_SIZE
@@ -146,7 +120,6 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
 
 
 def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> DrawnPaths:
-    """Return the paths to draw of two recordings."""
     old = {index for difference in found for index in difference.was}
     new = {index for difference in found for index in difference.now}
     moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
@@ -203,13 +176,8 @@ def subtitle(found: Sequence[Difference]) -> str:
     return text if len(text) <= LONGEST_SUBTITLE else f"{text[:LONGEST_SUBTITLE]}…"
 
 
-def draw_both_paths(axes: Axes, drawn: DrawnPaths, pair: list[int], unit: float) -> None:
-    """Draw the paths in two of the part's axes; ``unit`` is the unit shown in mm."""
-    _draw_styled(axes, drawn.feeds, pair, unit)
-    _draw_styled(axes, drawn.rapids, pair, unit, 0.6, linestyle=(0, (4, 3)), capstyle="butt")
-
-
 def _draw_styled(axes, drawn: Paths, pair: list[int], unit: float, share=1.0, **line) -> None:
+    """Draw paths in two of the part's axes; ``unit`` is the unit shown in mm."""
     for lines, (colour, width, order) in zip(drawn, STYLES):
         shown = [line[:, pair] / unit for line in lines]
         style.draw(axes, shown, colour, share * width, order, **line)
@@ -228,8 +196,7 @@ def draw_change(axes: Axes, drawn: DrawnPaths, view: View) -> None:
     style.frame_detail(axes, ends.mean(axis=0), half / unit.mm, title, text)
 
 
-def entries(drawn: DrawnPaths, unit: Unit) -> list:
-    """Return the legend."""
+def legend(drawn: DrawnPaths, unit: Unit) -> list:
     listed = [
         style.stroke(style.RAPID, "as recorded", 0.8),
         style.stroke(style.PATH, "recorded, not so any more", 3.0),

@@ -30,7 +30,6 @@ from g12.tools.system import COMMAND
 
 
 def recorded_programs(directory: str | os.PathLike) -> list[str]:
-    """Return the names of the programs recorded in a directory."""
     return load(Path(directory).absolute()).names()
 
 

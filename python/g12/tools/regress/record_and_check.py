@@ -34,8 +34,6 @@ from g12.tools.regress.recordings import (
 
 @dataclass(frozen=True)
 class RecordRequest:
-    """The programs and folders to record, and the machine's files."""
-
     programs: Sequence[Path] = ()
     ini: Path | None = None
     tools: Path | None = None
@@ -118,7 +116,6 @@ def _absolute(path: Path) -> Path:
 
 
 def _machine(path: Path) -> Path:
-    """Return the path of a machine's INI if it is one."""
     read_machine_ini(path)
     return _absolute(path)
 
@@ -130,7 +127,6 @@ def _folder(path: Path) -> Path:
 
 
 def _new(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
-    """Return a directory without recordings."""
     if directory.exists() and not directory.is_dir():
         raise UsageError(f"{directory}: not a directory")
     if not named:
@@ -141,7 +137,6 @@ def _new(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline
 
 
 def _known(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
-    """Return a recorded directory."""
     baseline = load(directory)
     if request.ini and named and _machine(request.ini) != baseline.ini:
         raise UsageError(
@@ -168,7 +163,6 @@ def _as_requested(baseline: Baseline, request: RecordRequest, named: list[Path])
 
 
 def _names(baseline: Baseline, named: list[Path]) -> list[str]:
-    """Return the programs to record: those named, or all."""
     if not named:
         names = {*baseline.names(), *baseline.in_folders(baseline.programs)}
         return sorted(name for name in names if (baseline.programs / name).is_file())
@@ -213,7 +207,6 @@ def _recorded(baseline: Baseline, name: str) -> str:
 
 
 def _dropped(baseline: Baseline) -> list[Result]:
-    """Remove the recordings of missing programs."""
     missing = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
     for name in missing:
         baseline.drop(name)

@@ -174,13 +174,11 @@ class Recorders:
             recorder.close()
 
     def kill(self) -> None:
-        """End the work of every interpreter that is running now."""
         for recorder in self._all:
             recorder.kill()
 
     @contextlib.contextmanager
     def one_of(self, machine: TracedMachine) -> Iterator[Recorder]:
-        """Yield a recorder for exclusive use."""
         try:
             recorder = self._idle[machine].pop()
         except IndexError:
@@ -235,7 +233,6 @@ def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
 
 
 def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
-    """Yield the other changes since the recording."""
     if was["linuxcnc"] != now["linuxcnc"]:
         yield f"LinuxCNC {was['linuxcnc']} when recorded, {now['linuxcnc']} now"
     if was["machine"] != now["machine"]:
@@ -255,15 +252,15 @@ def _picture(
 ) -> str:
     """Draw the differences; matplotlib takes a while to load."""
     from g12.tools.plot.style import save
-    from g12.tools.regress.overlay import draw_overlay, picture_file
+    from g12.tools.regress.overlay import draw_overlay
 
-    path = picture_file(folder, name)
+    path = folder / f"{name}.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
     save(draw_overlay(was, now, found, recorder.part), path)
     return str(path)
 
 
 def results(job: Job, names: Sequence[str], recorders: Recorders) -> list[Result]:
-    """Return the results of programs in their order, with some interpreters in parallel."""
     largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)
     found = {}
     with ThreadPoolExecutor(job.terms.jobs) as pool:

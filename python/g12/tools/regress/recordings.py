@@ -48,16 +48,13 @@ class Baseline:
         return self.directory / PARAMETERS if self.var_file else None
 
     def names(self) -> list[str]:
-        """Return the recorded programs, relative to their folder."""
         found = self.directory.rglob(f"*{SUFFIX}")
         return sorted(path.relative_to(self.directory).as_posix()[: -len(SUFFIX)] for path in found)
 
     def trace_file(self, name: str) -> Path:
-        """Return the path of a program's trace."""
         return self.directory / f"{name}{SUFFIX}"
 
     def keep(self, name: str, text: str) -> None:
-        """Write the trace of a program."""
         path = self.trace_file(name)
         path.parent.mkdir(parents=True, exist_ok=True)
         if not path.exists() or path.read_bytes() != text.encode():
@@ -77,11 +74,9 @@ class Baseline:
         return sorted({name for found in names for name in found})
 
     def name_of(self, program: Path) -> str:
-        """Return a program's name, its path below the programs' folder."""
         return _below(program, self.programs, self.directory)
 
     def save(self) -> None:
-        """Write regress.json."""
         self.directory.mkdir(parents=True, exist_ok=True)
         about = {
             "format": FORMAT,
@@ -94,7 +89,6 @@ class Baseline:
         write(self.directory / ABOUT, f"{json.dumps(about, indent=2)}\n".encode())
 
     def take_copies(self, tools: Path | None, parameters: Path | None) -> None:
-        """Copy the tool table and the var file to the directory."""
         self.directory.mkdir(parents=True, exist_ok=True)
         for source, copy in ((tools, self.tools), (parameters, self.parameters)):
             if source and source != copy:
@@ -105,7 +99,6 @@ class Baseline:
 
 
 def load(directory: Path) -> Baseline:
-    """Return a recorded directory."""
     about = directory / ABOUT
     if not about.is_file():
         raise UsageError(f"{directory}: nothing is recorded there (no {ABOUT})")

@@ -31,7 +31,6 @@ MOST_NAMED_LINES = 4
 
 
 def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str]:
-    """Yield the lines of a report."""
     for note in notes:
         yield f"note: {note}"
     for result in results:
@@ -44,7 +43,6 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
 
 
 def lines_of_result(result: Result) -> Iterator[str]:
-    """Yield the lines about one program."""
     if result.verdict == NEW:
         yield f"{result.program}: new, {result.summary}"
     if result.verdict == ADDED:
