@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.tools.headless.machine import StartupError, Timeout
+from g12.tools.headless.errors import Timeout
+from g12.tools.headless.machine import StartupError
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from g12.tools.headless.run import run_anyhow
 from support.operated_machine import Machine, kept_machine

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from g12.tools.headless import machine
-from g12.tools.headless.machine import Run, Timeout
+from g12.tools.headless.errors import Timeout
+from g12.tools.headless.machine import Run
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import start_block, write_program

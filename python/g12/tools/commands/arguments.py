@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from g12.tools.errors import ProgramError, UsageError, print_error
-from g12.tools.headless.machine import MachineError, StartupError
+from g12.tools.headless.errors import MachineError
+from g12.tools.headless.machine import StartupError
 from g12.tools.headless.run import run_program
 from g12.tools.machine.files import existing
 from g12.tools.machine.filter import OpenedProgram

@@ -22,6 +22,7 @@ from typing import Self
 import numpy as np
 
 from g12.machine_ini import face_joints
+from g12.tools.headless.errors import MachineError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
@@ -69,14 +70,6 @@ serve_runner({address!r}, {pins!r})
 
 class StartupError(RuntimeError):
     """LinuxCNC did not start; the text ends with LinuxCNC's own log."""
-
-
-class MachineError(RuntimeError):
-    """LinuxCNC did not carry out a command."""
-
-
-class Timeout(MachineError):
-    """The machine did not reach a state in time."""
 
 
 @dataclass(frozen=True)
@@ -258,13 +251,12 @@ class Machine:
     def _receive(self, timeout: float):
         try:
             answered = self._connection.poll(timeout + ANSWER_MARGIN)
-            worked, result = self._connection.recv() if answered else (False, ("timeout", "hangs"))
+            result = self._connection.recv() if answered else Timeout("hangs")
         except (EOFError, ConnectionError) as error:
             raise self._startup_error("LinuxCNC ended") from error
-        if worked:
-            return result
-        kind, text = result
-        raise (Timeout if kind == "timeout" else MachineError)(text)
+        if isinstance(result, MachineError):
+            raise result
+        return result
 
 
 def position_pins(ini: Ini) -> dict[str, str]:

@@ -10,6 +10,8 @@ from typing import Any
 
 import linuxcnc
 
+from g12.tools.headless.errors import MachineError, Timeout
+
 POLL_PERIOD = 0.01  # s
 QUIET = 1.0  # s without a joint homing: nothing to home, or done
 STALLED = 5.0  # s without motion while a joint is homing: longer than any home switch takes
@@ -22,14 +24,6 @@ TASK_MODES = {
     linuxcnc.MODE_AUTO: "auto",
     linuxcnc.MODE_MDI: "mdi",
 }
-
-
-class PanelError(RuntimeError):
-    """LinuxCNC did not carry out an operator's command."""
-
-
-class PanelTimeout(PanelError):
-    """LinuxCNC did not reach a state in time."""
 
 
 class Panel:
@@ -75,7 +69,7 @@ class Panel:
         while not condition(self.poll()):
             self._tick()
             if time.monotonic() > end:
-                raise PanelTimeout(f"no {what} within {timeout:g} s{self._complaints()}")
+                raise Timeout(f"no {what} within {timeout:g} s{self._complaints()}")
             time.sleep(POLL_PERIOD)
 
     def _complaints(self) -> str:
@@ -115,7 +109,7 @@ class Panel:
             if any(one["homing"] for one in stat.joint[: stat.joints]):
                 homing_at = now
                 if now - moved_at > STALLED:
-                    raise PanelError(f"homing stands still at {self._joint_positions(stat)}")
+                    raise MachineError(f"homing stands still at {self._joint_positions(stat)}")
             return self._homed(stat) or now - homing_at > QUIET
 
         self.wait(over, timeout, "end of homing")

@@ -2,7 +2,7 @@
 """The screen program of a headless run: takes the runner's requests over a socket.
 
 LinuxCNC starts it instead of the INI's screen.  A request is a tuple of a method's name and
-its arguments, the answer a pair: whether it worked, and the result or the error.
+its arguments, the answer its result or its error.
 """
 
 import array
@@ -13,7 +13,8 @@ from multiprocessing.connection import Connection
 
 import hal
 
-from g12.tools.headless.operator_panel import Panel, PanelError, PanelTimeout
+from g12.tools.headless.errors import MachineError
+from g12.tools.headless.operator_panel import Panel
 
 DEPTH = 20000  # samples in HAL's buffer: 20 s at 1 kHz
 DRAIN = 0.05  # s between reads of it
@@ -132,7 +133,7 @@ def serve_runner(address: str, positions: list[str], kind: type = RecordingScree
         client.connect(address)
         connection = Connection(client.detach())
     screen = kind(positions)
-    connection.send((True, "ready"))
+    connection.send("ready")
     while True:
         while not connection.poll(DRAIN):
             screen.tick()
@@ -141,9 +142,8 @@ def serve_runner(address: str, positions: list[str], kind: type = RecordingScree
         except EOFError:
             return
         try:
-            connection.send((True, screen.answer(*request)))
-        except PanelError as error:
-            outcome = "timeout" if isinstance(error, PanelTimeout) else "failure"
-            connection.send((False, (outcome, str(error))))
+            connection.send(screen.answer(*request))
+        except MachineError as error:
+            connection.send(error)
         except Exception as error:
-            connection.send((False, ("failure", f"{type(error).__name__}: {error}")))
+            connection.send(MachineError(f"{type(error).__name__}: {error}"))

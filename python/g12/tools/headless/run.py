@@ -5,7 +5,8 @@ import re
 from pathlib import Path
 
 from g12.tools.errors import ProgramError
-from g12.tools.headless.machine import Machine, MachineError, Run
+from g12.tools.headless.errors import MachineError
+from g12.tools.headless.machine import Machine, Run
 from g12.tools.preview.ended import explained_text
 from g12.tools.preview.tracer import Parameters, Tools
 

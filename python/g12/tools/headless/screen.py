@@ -17,7 +17,8 @@ if __name__ == "__main__":
     sys.path[0] = str(Path(__file__).resolve().parents[3])
 
 from g12.tools.errors import ProgramError
-from g12.tools.headless.operator_panel import Panel, PanelError
+from g12.tools.headless.errors import MachineError
+from g12.tools.headless.operator_panel import Panel
 from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini, read_ini
 
@@ -68,7 +69,7 @@ def main(arguments: list[str]) -> int:
     try:
         with opened_program(program, ini) if program else nullcontext() as opened:
             worked = run_to_end(panel, opened)
-    except (PanelError, ProgramError) as error:
+    except (MachineError, ProgramError) as error:
         print(f"error: {error}", file=sys.stderr)
         worked = False
     print(f"{program or 'homing'}: {'done' if worked else 'FAILED'}", flush=True)
