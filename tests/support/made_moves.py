@@ -92,7 +92,7 @@ class Hand:
 def seen_by(part, hand, diameters, real=None):
     """Return a hand's trace, its path on a part, and the run whose samples ``real`` makes."""
     path = track(part, hand.moves, LIMITS)
-    run = follow(path, hand.moves, real(path), 1.0) if real else None
+    run = follow(path, real(path), 1.0) if real else None
     return replace(hand.trace(), diameters=diameters), path, run
 
 

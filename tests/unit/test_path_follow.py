@@ -49,7 +49,7 @@ def test_a_track_tells_length_time_and_feed_of_each_move():
 def test_motion_beside_the_path_is_measured():
     moves = Hand().line(x=100).moves
     path = track(MILL, moves, LIMITS)
-    real = follow(path, moves, samples_of(path, shift=0.025), 1.0)
+    real = follow(path, samples_of(path, shift=0.025), 1.0)
     assert np.allclose(real.deviation, 0.025)
     assert worst_of(real, moves).deviation == pytest.approx(0.025)
 
@@ -61,7 +61,7 @@ def test_an_arc_is_followed_exactly_not_by_its_chords():
     angle = -np.linspace(0, 2 * math.pi, 3000)
     samples.axes.update(X=50.003 * np.cos(angle), Y=50.003 * np.sin(angle))
     samples.kind[:] = 3
-    real = follow(path, moves, samples, 1.0)
+    real = follow(path, samples, 1.0)
     inner = real.deviation[50:-50]
     assert np.allclose(inner, 0.003, atol=1e-9)
 
@@ -72,7 +72,7 @@ def test_a_path_that_crosses_and_repeats_itself_is_followed_in_order():
         hand.arc(1, 0, 0)
     hand.line(x=-10).line(y=10).line(x=0, y=-10)
     path = track(MILL, hand.moves, LIMITS)
-    real = follow(path, hand.moves, samples_of(path, 20000), 1.0)
+    real = follow(path, samples_of(path, 20000), 1.0)
     assert (np.diff(real.move) >= 0).all()
     assert set(real.move) == set(range(7))
     assert real.deviation.max() < 1e-3
@@ -86,7 +86,7 @@ def test_a_path_that_retraces_itself_is_followed_back():
         hand.line(z=-10).rapid(z=0)
     hand.line(x=20).rapid(x=40)
     path = track(MILL, hand.moves, LIMITS)
-    real = follow(path, hand.moves, samples_of(path, 5000, shift=0.04), 1.0)
+    real = follow(path, samples_of(path, 5000, shift=0.04), 1.0)
     assert set(real.move) == set(range(9))
     assert np.allclose(real.deviation, 0.04, atol=1e-6)
 
@@ -101,7 +101,7 @@ def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     lines = np.where(places < 1.5, 1, 2)
     axes = {"X": x, "Y": y, "Z": 0 * x}
     samples = Samples(places, axes, ones, ones, lines, 2 * ones.astype(int), 0)
-    real = follow(path, hand.moves, samples, 1.0)
+    real = follow(path, samples, 1.0)
     assert real.deviation.max() == pytest.approx(0.5, abs=0.01)  # between the legs
     assert (real.move == lines - 1).all()
     assert real.deviation[places > 2].max() < 1e-6
@@ -114,7 +114,7 @@ def test_the_tool_length_offset_is_taken_off():
     path = track(MILL, hand.moves, LIMITS)
     samples = samples_of(path, 4000)
     assert samples.axes["Z"].max() == pytest.approx(35)
-    real = follow(path, hand.moves, samples, 1.0)
+    real = follow(path, samples, 1.0)
     assert real.points[:, 2].max() == pytest.approx(5)
     assert real.deviation.max() < 1e-6
 
@@ -125,7 +125,7 @@ def test_machine_units_are_converted():
     samples = samples_of(path)
     inches = {letter: values / 25.4 for letter, values in samples.axes.items()}
     samples.axes.update(inches)
-    assert follow(path, moves, samples, 25.4).points[-1][0] == pytest.approx(25.4)
+    assert follow(path, samples, 25.4).points[-1][0] == pytest.approx(25.4)
 
 
 def test_standstill_is_left_out():
@@ -133,7 +133,7 @@ def test_standstill_is_left_out():
     path = track(MILL, moves, LIMITS)
     samples = samples_of(path)
     samples.kind[:500] = 0
-    assert len(follow(path, moves, samples, 1.0).time) == 1500
+    assert len(follow(path, samples, 1.0).time) == 1500
 
 
 def test_the_largest_deviation_is_looked_for_in_cuts_only():
@@ -142,7 +142,7 @@ def test_the_largest_deviation_is_looked_for_in_cuts_only():
     samples = samples_of(path, 4000)
     samples.axes["Y"][samples.axes["X"] < 50] += 3.0
     samples.axes["Y"][samples.axes["X"] > 150] += 0.01
-    real = follow(path, moves, samples, 1.0)
+    real = follow(path, samples, 1.0)
     worst = worst_of(real, moves)
     assert worst.deviation == pytest.approx(0.01)
     assert worst.move is moves[1]
@@ -167,7 +167,7 @@ def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
     samples = samples_of(path, len(times))
     samples.axes.update(X=place)
     samples = Samples(times, *list(vars(samples).values())[1:])
-    pace = pace_of([0], [0], path, follow(path, moves, samples, 1.0))
+    pace = pace_of([0], [0], path, follow(path, samples, 1.0))
     assert pace.lowest == pytest.approx(240, rel=0.01)
     assert 45 < pace.point[0] < 55
     assert pace.expected == pytest.approx(10)
@@ -185,8 +185,8 @@ def test_the_nearest_points_of_segments_are_found_for_many_points_at_once():
 def test_a_sample_may_be_on_its_lines_moves_or_in_a_corner_with_the_neighbours():
     hand = Hand().line(x=10).next_block().line(x=10, y=10).next_block().line(x=0, y=10)
     path, lines = track(MILL, hand.moves, LIMITS), np.array([1, 1, 2, 3])
-    windows = windows_of(path, hand.moves, lines)
+    windows = windows_of(path, lines)
     assert windows.on_its_line.tolist() == [[0, 0], [0, 0], [1, 1], [2, 2]]
     assert windows.with_neighbours.tolist() == [[0, 1], [0, 1], [0, 2], [1, 2]]
-    anywhere = windows_of(path, hand.moves, lines[::-1])
+    anywhere = windows_of(path, lines[::-1])
     assert anywhere.on_its_line.tolist() == anywhere.with_neighbours.tolist() == [[0, 2]] * 4

@@ -58,7 +58,7 @@ def made(expected, plane=17):
 def measure(moves, expected, real_shift=None):
     real, path = None, track(MILL, moves, LIMITS)
     if real_shift is not None:
-        real = follow(path, moves, samples_of(path, 8000, shift=real_shift), 1.0)
+        real = follow(path, samples_of(path, 8000, shift=real_shift), 1.0)
     pace = partial(pace_of, path=path)
     block = Block(None, {}, (), (), (), {}, 1, len(moves))
     loaded = {1: 2 * expected.cutter.loaded}

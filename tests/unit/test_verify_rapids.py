@@ -43,7 +43,7 @@ class Pockets(Hand):
 
     def in_material(self, real=None):
         path = track(MILL, self.moves, LIMITS)
-        run = follow(path, self.moves, real(path), 1.0) if real else None
+        run = follow(path, real(path), 1.0) if real else None
         words = Commanded(self.commanded)
         subject = Subject(None, None, self.trace(), MILL, commanded=words, drawn=(path, run))
         return assumed_workpiece(subject)

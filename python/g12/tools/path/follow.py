@@ -79,8 +79,8 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
     )
 
 
-def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) -> Followed:
-    """Map the samples in motion onto the path of moves; ``unit`` is one machine unit in mm.
+def follow(path: Track, samples: Samples, unit: float) -> Followed:
+    """Map the samples in motion onto a path; ``unit`` is one machine unit in mm.
 
     In a blended corner the tool has left the move of the line that LinuxCNC names. The distance is
     the one to that move or to its neighbours, whichever is nearest.
@@ -89,14 +89,14 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     axes = _positions(samples, unit)[moving]
     axes[:, Y] += path.part.beside  # the tool is beside the joints' position
     axis_points = path.part.points(axes)
-    windows = windows_of(path, moves, samples.line[moving])
+    windows = windows_of(path, samples.line[moving])
     segment = _segments(path.axis_points, axis_points, windows.on_its_line)
     following = np.minimum(segment + 1, len(path.move) - 1)
     positions = axes - _offsets(path, axis_points, segment, following)
     points = path.part.points(positions)
-    nearest = _programmed(path, moves, points, segment)
+    nearest = _programmed(path, points, segment)
     adjacent = _segments(path.axis_points, axis_points, windows.with_neighbours)
-    other = _programmed(path, moves, points, adjacent)
+    other = _programmed(path, points, adjacent)
     away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
     nearest = np.where((other_away < away)[:, None], other, nearest)
     deviation = np.minimum(away, other_away)
@@ -104,20 +104,18 @@ def follow(path: Track, moves: Sequence[Move], samples: Samples, unit: float) ->
     return Followed(samples.time[moving], positions, points, move, nearest, deviation)
 
 
-def _programmed(
-    path: Track, moves: Sequence[Move], points: np.ndarray, segment: np.ndarray
-) -> np.ndarray:
+def _programmed(path: Track, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
     """Return the programmed points next to points: of arcs the arcs themselves."""
     nearest = _nearest(path.points, points, segment)
     move = path.move[np.minimum(segment + 1, len(path.move) - 1)]
     for index in np.unique(move) if not path.part.turning else ():
-        if is_plain_arc(moves[index]):
+        if _is_plain_arc(path.moves[index]):
             own = move == index
-            nearest[own] = on_arc(moves[index], points[own], nearest[own])
+            nearest[own] = _on_arc(path.moves[index], points[own], nearest[own])
     return nearest
 
 
-def is_plain_arc(move: Move) -> bool:
+def _is_plain_arc(move: Move) -> bool:
     """Return whether a move is an arc of one radius in its plane."""
     if move.kind != "arc":
         return False
@@ -126,7 +124,7 @@ def is_plain_arc(move: Move) -> bool:
     return bool(abs(radius[1] - radius[0]) < 1e-6 and abs(ends[1, 2] - ends[0, 2]) < 1e-6)
 
 
-def on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
+def _on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
     """Return the points of an arc next to points, given the nearest ones of its chords.
 
     A nearest point that is an end of the arc is not changed.
@@ -176,11 +174,12 @@ class Windows(NamedTuple):
     with_neighbours: np.ndarray
 
 
-def windows_of(path: Track, moves: Sequence[Move], lines: np.ndarray) -> Windows:
+def windows_of(path: Track, lines: np.ndarray) -> Windows:
     """Return the windows of samples by their lines in motion.
 
     Where those lines do not come in the order of the moves, a window is the whole path.
     """
+    moves = path.moves
     going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
     groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
     named = [same for same in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(same)]

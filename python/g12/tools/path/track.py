@@ -34,7 +34,8 @@ class Vertices(NamedTuple):
     """A polyline: per vertex the machine position, the tool length offset, the move, the time.
 
     ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
-    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex.
+    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex,
+    ``time`` (n,) the seconds since the start.
     """
 
     positions: np.ndarray
@@ -62,22 +63,18 @@ class Track:
 
     @property
     def positions(self) -> np.ndarray:
-        """Machine positions (n, 9) of the controlled point."""
         return self._vertices.positions
 
     @property
     def offsets(self) -> np.ndarray:
-        """Tool length offsets (n, 9) in force."""
         return self._vertices.offsets
 
     @property
     def move(self) -> np.ndarray:
-        """The index (n,) of the move that ends at or passes each vertex."""
         return self._vertices.move
 
     @property
     def time(self) -> np.ndarray:
-        """Seconds (n,) since the start."""
         return self._vertices.time
 
     @cached_property

@@ -67,7 +67,7 @@ class Subject:
         """The motion of the run, laid on the path."""
         if self.drawn or not self.samples:
             return self.drawn[1] if self.drawn else None
-        return follow(self.path, self.moves, self.samples, self.ini.mm)
+        return follow(self.path, self.samples, self.ini.mm)
 
     def about(self, centre: float, own: range | None = None) -> Self:
         """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
