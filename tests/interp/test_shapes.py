@@ -11,9 +11,7 @@ import numpy as np
 import pytest
 
 from g12.request.context import Tool
-from g12.shapes import polygon as planned_polygon
-from g12.shapes import round_pocket
-from g12.shapes import slot as planned_slot
+from g12.shapes import polygon, round_pocket, slot
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM
@@ -22,25 +20,18 @@ from support.sim_machines import SIM, kept_tracer
 
 LEFT = -9999
 CUTTER = {1: 6.0, 2: 5.0, 3: 3.0}
-POLYGON = dict(
-    sides=6, across_flats=27, depth=5, stock_diameter=40, corner_radius=LEFT, depth_per_pass=LEFT,
-    allowance=LEFT, feed=400, plunge_feed=LEFT, angle=LEFT,
-)  # fmt: skip
-SLOT = dict(
-    width=8, length=30, depth=4, depth_per_pass=LEFT, allowance=LEFT, feed=400, plunge_feed=LEFT,
-    angle=LEFT,
-)  # fmt: skip
-POCKET = dict(
-    x=LEFT, c=LEFT, diameter=20, depth=4, depth_per_pass=LEFT, allowance=LEFT, feed=400,
-    plunge_feed=LEFT,
-)  # fmt: skip
 PLANNERS = {
-    "polar_polygon": (planned_polygon.POLYGON_ENTRIES, planned_polygon.plan_polygon),
-    "polar_slot": (planned_slot.SLOT_ENTRIES, planned_slot.plan_slot),
+    "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
+    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
     "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
 }
 MACHINE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
-SHAPES = {"polar_polygon": POLYGON, "polar_slot": SLOT, "polar_pocket": POCKET}
+EXAMPLES = {
+    "polar_polygon": dict(sides=6, across_flats=27, depth=5, stock_diameter=40, feed=400),
+    "polar_slot": dict(width=8, length=30, depth=4, feed=400),
+    "polar_pocket": dict(diameter=20, depth=4, feed=400),
+}
+SHAPES = {name: dict.fromkeys(PLANNERS[name][0], LEFT) | EXAMPLES[name] for name in PLANNERS}
 
 
 lathe = kept_tracer("lathe_mm")
@@ -72,18 +63,48 @@ def last_ends(traced):
 
 # ---------------------------------------------------------------- travel
 
-
-POLYGONS = [
-    (1, {}),
-    (3, dict(sides=2, across_flats=20, stock_diameter=30, angle=30)),
-    (3, dict(sides=2, across_flats=3, stock_diameter=28)),
-    (1, dict(sides=3, across_flats=16, stock_diameter=50, corner_radius=2, angle=-45)),
-    (3, dict(sides=3, across_flats=30, stock_diameter=44)),
-    (3, dict(sides=4, across_flats=20, stock_diameter=24, corner_radius=1)),
-    (2, dict(sides=5, across_flats=25, stock_diameter=36, angle=10)),
-    (3, dict(sides=7, across_flats=25, stock_diameter=27, corner_radius=5)),
-    (3, dict(sides=8, across_flats=30, stock_diameter=54, angle=200)),
+TO_AND_FRO = (dict(width=6), dict(x=4.5, c=0, diameter=28), dict(x=0, c=2.7, diameter=30))
+TRAVELS = [
+    ("polar_polygon", 1, {}),
+    ("polar_polygon", 1, dict(allowance=0.5)),
+    ("polar_polygon", 3, dict(sides=2, across_flats=20, stock_diameter=30, angle=30)),
+    ("polar_polygon", 3, dict(sides=2, across_flats=3, stock_diameter=28)),
+    ("polar_polygon", 1, dict(sides=3, across_flats=16, stock_diameter=50, corner_radius=2)),
+    ("polar_polygon", 3, dict(sides=3, across_flats=30, stock_diameter=44)),
+    ("polar_polygon", 2, dict(sides=5, across_flats=25, stock_diameter=36, angle=10)),
+    ("polar_slot", 3, {}),
+    ("polar_slot", 3, dict(width=6)),
+    ("polar_slot", 3, dict(width=20, length=45, angle=75, allowance=0.5)),
+    ("polar_slot", 2, dict(width=10.03, length=30)),
+    ("polar_pocket", 3, {}),
+    ("polar_pocket", 3, dict(diameter=6.5)),
+    ("polar_pocket", 3, dict(x=10, c=-4, diameter=16)),
+    ("polar_pocket", 3, dict(x=1, c=1, diameter=25, allowance=0.5)),
+    ("polar_pocket", 2, dict(x=4.5, c=0, diameter=28)),
+    ("polar_pocket", 3, dict(x=0, c=2.7, diameter=30)),
 ]
+
+
+@pytest.mark.parametrize(("shape", "tool", "entries"), TRAVELS)
+def test_the_travel_that_is_checked_is_that_of_the_tool(lathe, shape, tool, entries):
+    """Less would let it run into a limit amid the cut, more would refuse what fits.
+
+    What goes to and fro through the centre, or begins beside it, might turn on and on.
+    """
+    every = dict(entries, depth_per_pass=2)
+    moves = trace(lathe, shape, tool, **every).moves
+    moves = moves[next(k for k, move in enumerate(moves) if move.end[2] < 5) :]
+    ends = np.array([end for move in moves for end in (move.start, move.end)])
+    found = MM._replace(z=5.0, spindle_tool=Tool(tool, CUTTER[tool]))
+    names, planner = PLANNERS[shape]
+    call_ = ShapeEntries(shape, names, {**SHAPES[shape], **every}, found)
+    extent = planner(call_, MACHINE).extent
+    onward = {"polar_polygon": 0.01}.get(shape, math.inf if entries in TO_AND_FRO else 180)
+    for within, places, off, spare in zip(
+        extent, ends.T[[0, 2, 5]], (0.005, 1e-9, 1e-6), (0.005, 1e-9, onward)
+    ):
+        assert within[0] - off <= places.min() <= within[0] + spare
+        assert within[1] - spare <= places.max() <= within[1] + off
 
 
 @pytest.mark.parametrize(
@@ -99,62 +120,6 @@ POLYGONS = [
 def test_a_corner_where_a_round_begins_but_for_rounding(lathe, tool, entries):
     """The sub and the planner add up the same corner; a lead of their difference was no arc."""
     trace(lathe, "polar_polygon", tool, **entries)
-
-
-SLOTS = [
-    (3, {}),
-    (3, dict(width=6)),
-    (3, dict(width=20, length=45, angle=75)),
-    (2, dict(width=10.03, length=30)),
-    (3, dict(width=24, length=26, angle=-30)),
-]
-POCKETS = [
-    (3, {}),
-    (3, dict(diameter=6.5)),
-    (3, dict(x=10, c=-4, diameter=16)),
-    (3, dict(x=-12, c=5, diameter=10)),
-    (2, dict(x=4.5, c=0, diameter=28)),
-    (3, dict(x=0, c=2.7, diameter=30)),
-]
-
-
-HOLES = [("polar_slot", *each) for each in SLOTS] + [("polar_pocket", *each) for each in POCKETS]
-
-
-TO_AND_FRO = (dict(width=6), dict(x=4.5, c=0, diameter=28), dict(x=0, c=2.7, diameter=30))
-
-
-FINISHED = [
-    ("polar_polygon", 1, dict(allowance=0.5)),
-    ("polar_polygon", 3, dict(sides=3, across_flats=20, stock_diameter=35.4)),
-    ("polar_slot", 3, dict(width=20, length=45, allowance=0.5)),
-    ("polar_slot", 3, dict(allowance=0.2)),
-    ("polar_pocket", 3, dict(x=1, c=1, diameter=25, allowance=0.5)),
-]
-
-
-@pytest.mark.parametrize(
-    ("shape", "tool", "entries"), [("polar_polygon", *each) for each in POLYGONS] + HOLES + FINISHED
-)
-def test_the_travel_that_is_checked_is_that_of_the_tool(lathe, shape, tool, entries):
-    """Less would let it run into a limit amid the cut, more would refuse what fits.
-
-    What goes to and fro through the centre, or begins beside it, might turn on and on.
-    """
-    every = dict(entries, depth_per_pass=2)
-    moves = trace(lathe, shape, tool, **every).moves
-    moves = moves[next(k for k, move in enumerate(moves) if move.end[2] < 5) :]
-    ends = np.array([end for move in moves for end in (move.start, move.end)])
-    found = MM._replace(z=5.0, spindle_tool=Tool(tool, CUTTER[tool]))
-    names, planner = PLANNERS[shape]
-    values = {**SHAPES[shape], **every}
-    extent = planner(ShapeEntries(shape, names, values), found, MACHINE).extent()
-    onward = {"polar_polygon": 0.01}.get(shape, math.inf if entries in TO_AND_FRO else 180)
-    for within, places, off, spare in zip(
-        extent, ends.T[[0, 2, 5]], (0.005, 1e-9, 1e-6), (0.005, 1e-9, onward)
-    ):
-        assert within[0] - off <= places.min() <= within[0] + spare
-        assert within[1] - spare <= places.max() <= within[1] + off
 
 
 # ---------------------------------------------------------------- modes and units
@@ -198,15 +163,6 @@ def test_lengths_are_the_same_in_g7_and_g8_but_for_x(lathe, shape, mode, setting
 # ---------------------------------------------------------------- refusals
 
 
-REFUSED = [  # those of one planner are in unit/test_shapes.py
-    ("polar_polygon", dict(sides=LEFT), "sides is missing: how many, 2 for two flats"),
-    ("polar_polygon", dict(depth=501), "the Z axis would go to -501 mm, beyond its limit -500 mm"),
-    ("polar_slot", dict(depth=LEFT), "depth is missing: how deep, from the face at Z0"),
-    ("polar_pocket", dict(diameter=6),
-     "diameter 6 must leave the cutter room for a helix: at least 6.01016 and twice the allowance"),
-]  # fmt: skip
-
-
 def refused(lathe, text):
     """Return the message of a program that is refused before anything of the call moves."""
     traced = lathe.trace_text(text)
@@ -216,26 +172,29 @@ def refused(lathe, text):
     return traced.error.text
 
 
-@pytest.mark.parametrize(("shape", "entries", "rule"), REFUSED)
-def test_an_entry_is_refused_by_its_name(lathe, shape, entries, rule):
-    assert refused(lathe, program(call(shape, **entries))) == f"{shape} line 5: {rule}"
+ABOVE = "Z0: a shape begins at the tool's position, which must be above the face at Z0"
 
 
 @pytest.mark.parametrize(
-    ("changed", "rule"),
-    [
-        (dict(tool=0), "no tool is loaded: its diameter sets the path"),
-        (dict(start="G0 X40 Z0 C0"),
-         "Z0: a shape begins at the tool's position, which must be above the face at Z0"),
-        (dict(feed="G93"), "needs G94 or G95, not G93"),
-        (dict(feed="G19"), "needs G18 or G17, not G19"),
-        (dict(feed="G95 F.1"), "feed per revolution (G95) needs the spindle speed S"),
-        (dict(feed="G96 S100 M3"), "needs G97: with G96 the speed would change with X"),
+    ("shape", "entries", "changed", "rule"),
+    [  # those of one planner are in unit/test_shapes.py
+        ("polar_polygon", dict(depth=501), {},
+         "the Z axis would go to -501 mm, beyond its limit -500 mm"),
+        ("polar_slot", dict(depth=LEFT), {}, "depth is missing: how deep, from the face at Z0"),
+        ("polar_slot", dict(feed=LEFT), dict(feed="F0"), "feed is missing, and no F is active"),
+        ("polar_pocket", {}, dict(tool=0), "no tool is loaded: its diameter sets the path"),
+        ("polar_pocket", {}, dict(start="G0 X40 Z0 C0"), ABOVE),
+        ("polar_slot", {}, dict(feed="G93"), "needs G94 or G95, not G93"),
+        ("polar_polygon", {}, dict(feed="G19"), "needs G18 or G17, not G19"),
+        ("polar_slot", {}, dict(feed="G95 F.1"),
+         "feed per revolution (G95) needs the spindle speed S"),
+        ("polar_pocket", {}, dict(feed="G96 S100 M3"),
+         "needs G97: with G96 the speed would change with X"),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("shape", SHAPES)
-def test_a_shape_is_refused_where_no_section_can_begin(lathe, shape, changed, rule):
-    assert refused(lathe, program(call(shape), **changed)) == f"{shape} line 5: {rule}"
+def test_a_call_is_refused_by_name_where_it_cannot_be_cut(lathe, shape, entries, changed, rule):
+    text = program(call(shape, **entries), **changed)
+    assert refused(lathe, text) == f"{shape} line 5: {rule}"
 
 
 def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):
@@ -247,38 +206,19 @@ def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):
     assert traces[0].error is None and traces[0].moves == traces[1].moves
 
 
-def test_without_a_feed_anywhere(lathe):
-    text = program(call("polar_slot", feed=LEFT), feed="F0")
-    assert refused(lathe, text) == "polar_slot line 5: feed is missing, and no F is active"
-
-
-@pytest.mark.parametrize(
-    ("entries", "reported"),
-    [
-        (dict(width=0.25, length=1), "width 0.25 must not be less than the cutter's 6.35 mm"),
-        (dict(width=7, allowance=0.5),
-         "allowance 0.5: the cutter of 6.35 mm does not fit between the walls that it leaves"),
-        (dict(width=24, allowance=5),
-         "allowance 5 must be at most 4.7625, what one round of the cutter of 6.35 mm takes"),
-    ],
-)  # fmt: skip
-def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another(entries, reported):
+def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another():
     with Tracer(SIM / "lathe_inch.ini", tools={1: 0.25}) as inch:
-        text = program(call("polar_slot", **entries), tool=1, start="G0 X40 Z5 C0")
-        assert refused(inch, text) == f"polar_slot line 5: {reported}"
+        text = program(call("polar_slot", width=0.25, length=1), tool=1)
+        rule = "width 0.25 must not be less than the cutter's 6.35 mm"
+        assert refused(inch, text) == f"polar_slot line 5: {rule}"
 
 
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])
-def test_the_codes_stand_in_the_subs_alone(lathe, code):
+def test_the_codes_stand_in_the_subs_and_in_blocks_of_their_own(lathe, code):
     assert refused(lathe, program(code)) == (
         f"{code} line 5: belongs in the subs polar_polygon, polar_slot, polar_pocket,"
-        " face_holes, side_holes and face_hole_at: "
-        "call one of them"
+        " face_holes, side_holes and face_hole_at: call one of them"
     )
-
-
-@pytest.mark.parametrize("code", ["G12.4", "G13.4"])
-def test_the_codes_stand_alone_in_their_blocks(lathe, code):
     edited = ["o<polar_slot> sub", f"{code} X5", "o<polar_slot> endsub", "o<polar_slot> call"]
     assert refused(lathe, program(*edited)) == f"{code} line 6: must be alone in its block"
 
@@ -301,9 +241,7 @@ def test_no_way_through_the_centre_where_it_is_refused(shape, entries, why):
     ("shape", "entries", "nearest"),
     [
         ("polar_polygon", dict(sides=2, across_flats=3), "4.5"),
-        ("polar_slot", {}, "1"),
         ("polar_slot", dict(width=24, length=25), "0.5"),
-        ("polar_pocket", {}, "1.35"),
         ("polar_pocket", dict(x=4, diameter=16), "1"),
     ],
 )
@@ -320,14 +258,13 @@ def test_a_shape_nearer_to_the_centre_than_a_tool_beside_x_can_come_is_refused(
 wrapped = kept_tracer("lathe_mm", overrides={"AXIS_C": {"WRAPPED_ROTARY": "1"}})
 
 
-@pytest.mark.parametrize("stands", [0, 200])
 @pytest.mark.parametrize(
-    ("shape", "entries"),
+    ("shape", "entries", "stands"),
     [
-        ("polar_polygon", dict(sides=2, angle=-110)),
-        ("polar_slot", dict(angle=-30)),
-        ("polar_slot", dict(angle=360)),
-        ("polar_pocket", dict(x=15, c=-6, diameter=12)),
+        ("polar_polygon", dict(sides=2, angle=-110), 0),
+        ("polar_slot", dict(angle=-30), 200),
+        ("polar_slot", dict(angle=360), 0),
+        ("polar_pocket", dict(x=15, c=-6, diameter=12), 200),
     ],
 )
 def test_a_wrapped_c_axis_reads_no_sign_of_the_angle(lathe, wrapped, shape, entries, stands):

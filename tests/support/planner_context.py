@@ -30,16 +30,12 @@ INCH = MM._replace(
     spindle_tool=Tool(1, 0.25),
     tool_in_table={1: Tool(1, 0.25), 2: Tool(2, 0.125)}.get,
 )
-BAD_MODES = [
-    (dict(inverse_time=True), "needs feed per minute or revolution (G94, G95), but G93 is active"),
-    (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
-    (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
-]
 
 
-def words_of(text):
-    """Return the words of a block, as "I50 R-40 D2"."""
-    return {word[0]: float(word[1:]) for word in text.split()}
+def words_of(*texts):
+    """Return the words of texts, as "I50 R-40 D2"; a letter without a number takes its word out."""
+    words = {word[0]: word[1:] for text in texts for word in text.split()}
+    return {letter: float(value) for letter, value in words.items() if value}
 
 
 def reported(planner, *arguments, **options):

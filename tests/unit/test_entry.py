@@ -47,22 +47,22 @@ def test_no_helix_goes_straight_down_and_nothing_up():
 
 
 def down(first, heights, entry=HELIX):
-    return pocket_descent(Words("G13", {}), MM._replace(feed=600.0), entry, first, 5.0, heights)
+    words = Words("G13", {}, MM._replace(feed=600.0))
+    return pocket_descent(words, entry, first, 5.0, heights)
 
 
 @pytest.mark.parametrize(("first", "side"), [(3.0, 1), (8.0, -1)])
 def test_what_the_subroutine_is_told(first, side):
-    way = down(first, (3.0, 2.0))
-    passed = way.locals(first)
+    passed, helix = down(first, (3.0, 2.0)), helix_of(HELIX, first, 5.0)
     assert passed["side"] == side
     assert passed["helix_radius"] == min(first, 4.5)
-    assert (passed["turns"], passed["fall"]) == way.first == way.helix.descent(3.0)
-    assert (passed["next_turns"], passed["next_fall"]) == way.further == way.helix.descent(2.0)
+    assert (passed["turns"], passed["fall"]) == helix.descent(3.0)
+    assert (passed["next_turns"], passed["next_fall"]) == helix.descent(2.0)
     assert passed["last_turns"] == 3
 
 
 def test_straight_down_is_at_its_share_of_the_feed():
-    passed = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0)).locals(3.0)
+    passed = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0))
     assert passed == {"turns": 0, "feed": 600.0, "plunge_feed": 240.0}
 
 
@@ -85,7 +85,7 @@ def test_the_advice_of_a_refused_helix_holds(cutter, height, advice):
     """With D0 no size of the cutter limits the helix."""
 
     def narrow(first, deep):
-        pocket_descent(Words("G13", {}), MM, HELIX, first, cutter, (deep, 1.0))
+        pocket_descent(Words("G13", {}, MM), HELIX, first, cutter, (deep, 1.0))
 
     with pytest.raises(Refusal) as refused:
         narrow(0.01, height)

@@ -32,20 +32,18 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 
 from typing import NamedTuple
 
+from g12.cycles.plan import CyclePlan
 from g12.errors import number
-from g12.lengths import ROUNDING_MM
 from g12.request.common import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
-    SMALLEST_RING_MM,
     check_count,
     check_modes,
-    coordinate,
     loaded_tool,
     steps_between,
 )
-from g12.request.context import XY, Context, Tool
+from g12.request.context import XY, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
@@ -89,7 +87,6 @@ class EventEntries(NamedTuple):
 
     words: Words
     letters: EntryLetters
-    context: Context
     plane: float | None
     pocket: bool
     finish: float
@@ -108,119 +105,33 @@ class EventCircle(NamedTuple):
     finish_arc: int
 
 
-class EventPosition(NamedTuple):
-    """The event's XY positions and reference planes; ``below``: the tool starts below W."""
-
-    x: float
-    y: float
-    start_x: float
-    start_y: float
-    first_plane: float
-    second_plane: float
-    below: bool
-
-
-class Roughing(NamedTuple):
-    """The circles of one level, radii of the tool centre; a perimeter is one ring.
-
-    ``plunge_radius`` is the distance of the plunge point from the centre, in -Y.
-    """
-
-    pocket: bool
-    plunge_radius: float
-    rings: int
-    roughing_width: float
-    rough_radius: float
-    rough_arc: int
-
-
-class Depths(NamedTuple):
-    """The levels: ``pecks`` of them above the last rough one, ``z`` the first one's depth."""
-
-    levels: int
-    pecks: int
-    peck: float
-    z: float
-    rough_z: float
-    final_z: float
-    retract: float
-
-
-class SideFinish(NamedTuple):
-    """The finish pass along the side, ``side_finish`` False for none, and its tangent entry."""
-
-    side_finish: bool
-    finish_radius: float
-    finish_arc: int
-    entry_arc: int
-
-    @property
-    def radius(self) -> float:
-        return self.finish_radius if self.side_finish else 0.0
-
-
-class EventFeeds(NamedTuple):
-    """Feeds per minute or revolution."""
-
-    plunge_feed: float
-    feed: float
-    finish_feed: float
-
-
-class MillEvent(NamedTuple):
-    """A checked event. Lengths and feeds are in program units."""
-
-    position: EventPosition
-    roughing: Roughing
-    depths: Depths
-    side_finish: SideFinish
-    feeds: EventFeeds
-    message: str | None  # for the operator, never a refusal
-
-    def extent(self) -> CycleExtent:
-        position, final = self.position, self.depths.final_z
-        radius = max(self.roughing.rough_radius, self.side_finish.radius)
-        heights = (position.first_plane, position.second_plane, final)
-        return CycleExtent(XY, (position.x, position.y, final), radius, heights)
-
-    def locals(self) -> dict[str, float]:
-        groups = (self.position, self.roughing, self.depths, self.side_finish, self.feeds)
-        return {name: value for group in groups for name, value in group._asdict().items()}
-
-
-def plan_code(words: Words, context: Context, plane: float | None, pocket: bool) -> MillEvent:
+def plan_code(words: Words, plane: float | None, pocket: bool) -> CyclePlan:
     """Return the event of a code block (G12.2, or G13.2: ``pocket``), or raise `Refusal`.
 
     ``plane`` is the first reference plane last commanded, None if there is none.
     """
-    check_modes(words, context)
+    check_modes(words)
     words.check_known(EVENT_WORDS)
     finish, bottom = finish_of_code(words)
-    return plan_event(
-        EventEntries(
-            words, CODE_LETTERS, context, plane, pocket, finish, bottom, finish_feed=context.feed
-        )
-    )
+    feed = words.context.feed
+    return plan_event(EventEntries(words, CODE_LETTERS, plane, pocket, finish, bottom, feed))
 
 
-def plan_call(words: Words, context: Context, plane: float | None) -> MillEvent:
+def plan_call(words: Words, plane: float | None) -> CyclePlan:
     """Return the event of one ``o<circle_mill> call``, or raise `Refusal`."""
     finish_feed = finish_feed_of_call(words)
-    context = context._replace(feed=words.take_positive("F") or context.feed)
-    check_modes(words, context)
+    feed = words.take_positive("F") or words.context.feed
+    words.context = words.context._replace(feed=feed)
+    check_modes(words)
     cycle = words.take("G") or PERIMETER_CYCLE
     if cycle not in (PERIMETER_CYCLE, POCKET_CYCLE):
-        raise words.refuse(f"G{number(cycle)} must be 0 (perimeter) or 7 (pocket)")
-    pocket = cycle == POCKET_CYCLE
+        raise words.refuse_word("G", cycle, "must be 0 (perimeter) or 7 (pocket)")
     finish, bottom = finish_of_call(words)
-    feed = finish_feed or context.feed
-    return plan_event(
-        EventEntries(words, CALL_LETTERS, context, plane, pocket, finish, bottom, finish_feed=feed)
-    )
+    pocket, finish_feed = cycle == POCKET_CYCLE, finish_feed or feed
+    return plan_event(EventEntries(words, CALL_LETTERS, plane, pocket, finish, bottom, finish_feed))
 
 
 def entries_by_letter(values: list[float]) -> dict[str, float]:
-    """Return a call's entries by letter, without those that are left out."""
     return {letter: value for letter, value in zip(EVENT_ENTRIES, values) if value != LEFT_OUT}
 
 
@@ -228,10 +139,8 @@ def finish_feed_of_call(words: Words) -> float | None:
     """Return V, the last entry: LinuxCNC makes it 0 if the call is too short."""
     feed = words.take("V")
     if feed is not None and feed <= 0:
-        raise words.refuse(
-            f"V{number(feed)} must be greater than 0 (a call has {len(EVENT_ENTRIES)} entries,"
-            f" {number(LEFT_OUT)} leaves one out)"
-        )
+        call = f"a call has {len(EVENT_ENTRIES)} entries, {number(LEFT_OUT)} leaves one out"
+        raise words.refuse_word("V", feed, f"must be greater than 0 ({call})")
     return feed
 
 
@@ -252,32 +161,45 @@ def finish_of_call(words: Words) -> tuple[float, bool]:
     return abs(finish or 0.0), (finish or 0.0) > 0
 
 
-def plan_event(entries: EventEntries) -> MillEvent:
-    words, context = entries.words, entries.context
+def plan_event(entries: EventEntries) -> CyclePlan:
+    words, context = entries.words, entries.words.context
     circle = circle_of(entries)
     first_plane, second_plane = planes_of(entries)
     depth = words.require("Z", "the final depth")
     peck = words.take_positive("K")
     width = words.take_positive("J")
     plunge_feed = words.take_positive("P") or context.feed
-    tool = loaded_tool(words, context)
+    tool = loaded_tool(words)
     roughing = roughing_of(entries, circle, tool, width)
     depths = depths_of(entries, depth, first_plane, peck)
-    check_count(words, roughing.rings * depths.levels, "J and K make")
-    below = context.z < first_plane - context.length(ROUNDING_MM)
-    return MillEvent(
-        EventPosition(circle.x, circle.y, context.x, context.y, first_plane, second_plane, below),
-        roughing,
-        depths,
-        side_finish_of(entries, circle, tool),
-        EventFeeds(plunge_feed, context.feed, entries.finish_feed),
-        uncut_material(entries, roughing, tool),
+    check_count(words, round(roughing["rings"] * depths["levels"]), "J and K make")
+    side = side_finish_of(entries, circle, tool)
+    position = {
+        "x": circle.x,
+        "y": circle.y,
+        "start_x": context.x,
+        "start_y": context.y,
+        "first_plane": first_plane,
+        "second_plane": second_plane,
+        "below": context.z < first_plane - context.rounding,
+    }
+    feeds = {
+        "plunge_feed": plunge_feed,
+        "feed": context.feed,
+        "finish_feed": entries.finish_feed,
+    }
+    largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
+    final = depths["final_z"]
+    return CyclePlan(
+        position | roughing | depths | side | feeds,
+        CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
+        uncut_material(words, roughing["roughing_width"], tool),
     )
 
 
 def circle_of(entries: EventEntries) -> EventCircle:
     """Return centre, radius, side and directions: X, Y, R, D and C."""
-    words, letter = entries.words, entries.letters.side
+    words, context, letter = entries.words, entries.words.context, entries.letters.side
     x = words.require("X", "the circle's centre")
     y = words.require("Y", "the circle's centre")
     radius = words.require_positive("R", "the circle's radius")
@@ -292,17 +214,16 @@ def circle_of(entries: EventEntries) -> EventCircle:
     rough_arc, finish_arc = ROUGH_FINISH_ARCS[direction]
     side = TOOL_SIDES[rough_arc][compensation]
     if entries.pocket and side != INNER_SIDE:
-        raise entries.words.refuse(
+        raise words.refuse(
             f"D{direction} with {letter}{compensation} does not put the tool inside the pocket:"
             f" D0 and D2 need {letter}2, D1 and D3 need {letter}1"
         )
     if side == ON_CIRCLE and entries.finish:
-        raise entries.words.refuse(
+        raise words.refuse(
             f"{entries.letters.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
         )
-    context = entries.context
-    x, y = coordinate(x, context.x, context), coordinate(y, context.y, context)
+    x, y = context.absolute(x, context.x), context.absolute(y, context.y)
     return EventCircle(x, y, radius, side, rough_arc, finish_arc)
 
 
@@ -313,114 +234,122 @@ def planes_of(entries: EventEntries) -> tuple[float, float]:
     if first is None:
         first = entries.plane
     if first is None:
-        raise entries.words.refuse(
+        raise words.refuse(
             f"{letters.first_plane} is missing: the first reference plane,"
             " which no earlier event has commanded"
         )
     if second is None:
         second = first
-    if second < first - entries.context.length(ROUNDING_MM):
-        raise entries.words.refuse(
-            f"{letters.second_plane}{number(second)} must not be below the first reference"
-            f" plane {letters.first_plane}{number(first)}"
-        )
+    if second < first - words.context.rounding:
+        plane = f"{letters.first_plane}{number(first)}"
+        rule = f"must not be below the first reference plane {plane}"
+        raise words.refuse_word(letters.second_plane, second, rule)
     return first, second
 
 
 def roughing_of(
     entries: EventEntries, circle: EventCircle, tool: Tool, width: float | None
-) -> Roughing:
+) -> dict[str, float]:
+    """Return the locals of the circles of one level; a perimeter is one ring."""
     radius = circle.radius + circle.side * (tool.radius + entries.finish)
     check_room(entries, circle, tool, radius)
-    if not entries.pocket:
-        if width is not None:
-            raise entries.words.refuse(f"J{number(width)} is the roughing width of a pocket")
-        return Roughing(False, radius, 1, 0.0, radius, circle.rough_arc)
-    rings = rings_of(entries, radius, tool, width)
-    return Roughing(True, 0.0, rings, radius / rings, radius, circle.rough_arc)
+    if entries.pocket:
+        rings = rings_of(entries, radius, tool, width)
+    elif width is not None:
+        raise entries.words.refuse_word("J", width, "is the roughing width of a pocket")
+    else:
+        rings = 1
+    return {
+        "pocket": entries.pocket,
+        "plunge_radius": 0.0 if entries.pocket else radius,
+        "rings": rings,
+        "roughing_width": radius / rings if entries.pocket else 0.0,
+        "rough_radius": radius,
+        "rough_arc": circle.rough_arc,
+    }
 
 
 def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: float) -> None:
     """Refuse a circle too small for its tool and finish: ``radius`` is the tool centre's."""
-    smallest = entries.context.length(SMALLEST_RING_MM)
-    if radius >= smallest:
+    words, context = entries.words, entries.words.context
+    if radius >= context.smallest_ring:
         return
     if circle.side == ON_CIRCLE:
-        raise entries.words.refuse(f"R{number(circle.radius)} must be at least {number(smallest)}")
-    finish = f" + {entries.letters.finish}{number(entries.finish)}" if entries.finish else ""
-    raise entries.words.refuse(
-        f"R{number(circle.radius)} must be greater than the tool radius"
-        f" {entries.context.tool_size(tool.radius)} (T{tool.number}){finish}"
-    )
+        rule = f"must be at least {number(context.smallest_ring)}"
+    else:
+        size = f"{context.tool_size(tool.radius)} (T{tool.number})"
+        rule = f"must be greater than the tool radius {size}"
+        if entries.finish:
+            rule += f" + {entries.letters.finish}{number(entries.finish)}"
+    raise words.refuse_word("R", circle.radius, rule)
 
 
 def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float | None) -> int:
     """Return the number of equal steps outward to the last ring, none wider than ``width``."""
-    length = entries.context.length
-    widest = 2 * tool.radius - length(NARROWER_MM) if width is None else width
-    least = length(SMALLEST_RING_MM)
+    words, context = entries.words, entries.words.context
+    narrower, least = context.length(NARROWER_MM), context.smallest_ring
+    widest = 2 * tool.radius - narrower if width is None else width
     if widest < least and width is None:
-        size = entries.context.tool_size(2 * tool.radius)
-        raise entries.words.refuse(
-            f"J is missing: its default, the tool diameter {size}"
-            f" less {number(length(NARROWER_MM))}, is too small"
+        raise words.refuse(
+            f"J is missing: its default, the tool diameter {context.tool_size(2 * tool.radius)}"
+            f" less {number(narrower)}, is too small"
         )
     if widest < least:
-        raise entries.words.refuse(f"J{number(widest)} must be at least {number(least)}")
-    return max(1, steps_between(0.0, outermost, widest, length(ROUNDING_MM)))
+        raise words.refuse_word("J", widest, f"must be at least {number(least)}")
+    return max(1, steps_between(0.0, outermost, widest, context.rounding))
 
 
 def depths_of(
     entries: EventEntries, depth: float, first_plane: float, peck: float | None
-) -> Depths:
-    """Return the levels from W down to Z; refuse a Z that is not below W."""
-    context = entries.context
+) -> dict[str, float]:
+    """Return the locals of the levels from W down to Z; refuse a Z that is not below W."""
+    context, letters = entries.words.context, entries.letters
     final = first_plane + depth if context.incremental else depth
     rough = final + entries.finish if entries.bottom else final
     distance = first_plane - rough
-    if distance <= context.length(ROUNDING_MM):
-        finish = (
-            f" by more than {entries.letters.finish}{number(entries.finish)}"
-            if entries.bottom
-            else ""
-        )
-        raise entries.words.refuse(
-            f"Z{number(depth)} must be below the first reference plane"
-            f" {entries.letters.first_plane}{number(first_plane)}{finish}"
-        )
+    if distance <= context.rounding:
+        plane = f"{letters.first_plane}{number(first_plane)}"
+        rule = f"must be below the first reference plane {plane}"
+        if entries.bottom:
+            rule += f" by more than {letters.finish}{number(entries.finish)}"
+        raise entries.words.refuse_word("Z", depth, rule)
     peck = peck or distance
-    pecks = max(0, steps_between(0.0, distance, peck, context.length(ROUNDING_MM)) - 1)
-    first = first_plane - peck if pecks else rough
-    levels = pecks + 1 + entries.bottom
-    return Depths(levels, pecks, peck, first, rough, final, context.length(RETRACT_MM))
+    pecks = max(0, steps_between(0.0, distance, peck, context.rounding) - 1)
+    return {
+        "levels": pecks + 1 + entries.bottom,
+        "pecks": pecks,
+        "peck": peck,
+        "z": first_plane - peck if pecks else rough,
+        "rough_z": rough,
+        "final_z": final,
+        "retract": context.length(RETRACT_MM),
+    }
 
 
-def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> SideFinish:
-    """Return the side finish; refuse a finish dimension too small for its entry arcs.
+def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> dict[str, float]:
+    """Return the locals of the side finish; refuse a finish too small for its entry arcs.
 
     Inside, the entry arc has the direction of the cut; outside, the opposite one.
     """
-    smallest = entries.context.length(SMALLEST_RING_MM)
+    smallest = entries.words.context.smallest_ring
     if 0 < entries.finish < smallest:
-        raise entries.words.refuse(
-            f"{entries.letters.finish}{number(entries.finish)} must be at least {number(smallest)}"
-        )
+        rule = f"must be at least {number(smallest)}"
+        raise entries.words.refuse_word(entries.letters.finish, entries.finish, rule)
     other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
-    return SideFinish(
-        side_finish=entries.finish > 0,
-        finish_radius=circle.radius + circle.side * tool.radius,
-        finish_arc=circle.finish_arc,
-        entry_arc=circle.finish_arc if circle.side == INNER_SIDE else other,
-    )
+    return {
+        "side_finish": entries.finish > 0,
+        "finish_radius": circle.radius + circle.side * tool.radius,
+        "finish_arc": circle.finish_arc,
+        "entry_arc": circle.finish_arc if circle.side == INNER_SIDE else other,
+    }
 
 
-def uncut_material(entries: EventEntries, roughing: Roughing, tool: Tool) -> str | None:
+def uncut_material(words: Words, width: float, tool: Tool) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None."""
-    rounding = entries.context.length(ROUNDING_MM)
-    if roughing.roughing_width <= 2 * tool.radius + rounding:
+    if width <= 2 * tool.radius + words.context.rounding:
         return None
     return (
-        f"{entries.words.code}: the roughing width {number(roughing.roughing_width)} is greater"
-        f" than the tool diameter {entries.context.tool_size(2 * tool.radius)}: material is left"
+        f"{words.code}: the roughing width {number(width)} is greater"
+        f" than the tool diameter {words.context.tool_size(2 * tool.radius)}: material is left"
         " between the rings"
     )

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from g12.errors import number
 from g12.request.common import CLEARED
-from g12.request.context import Context
 from g12.request.words import Words
 
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
@@ -56,34 +55,6 @@ class Helix(NamedTuple):
         return Descent(turns, height / (turns + rest))
 
 
-class PocketDescent(NamedTuple):
-    """The descent to a pocket's first level and to each further one; F in the plane and down."""
-
-    helix: Helix
-    first: Descent
-    further: Descent
-    feed: float
-    plunge_feed: float
-
-    def locals(self, first_radius: float) -> dict[str, float]:
-        """Return the named locals of `ngc/g12_haas.ngc` for the descent."""
-        common = {
-            "turns": self.first.turns,
-            "feed": self.feed,
-            "plunge_feed": self.plunge_feed,
-        }
-        if not self.first.turns:
-            return common
-        return common | {
-            "fall": self.first.fall,
-            "next_turns": self.further.turns,
-            "next_fall": self.further.fall,
-            "last_turns": self.helix.last,
-            "helix_radius": self.helix.radius,
-            "side": -1 if first_radius > self.helix.radius else 1,
-        }
-
-
 def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
     if not entry.helix:
@@ -94,24 +65,31 @@ def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
 
 
 def pocket_descent(
-    words: Words,
-    context: Context,
-    entry: PocketEntry,
-    first: float,
-    cutter: float,
-    heights: tuple[float, float],
-) -> PocketDescent:
-    """Return the descent in a pocket, or refuse a helix of too many turns.
+    words: Words, entry: PocketEntry, first: float, cutter: float, heights: tuple[float, float]
+) -> dict[str, float]:
+    """Return the locals of the descent in a pocket, or refuse a helix of too many turns.
 
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.
     """
-    helix = helix_of(entry, first, cutter)
+    helix, feed = helix_of(entry, first, cutter), words.context.feed
     check_helix(words, helix, heights[0], cutter)
     to_first, further = map(helix.descent, heights)
-    return PocketDescent(
-        helix, to_first, further, context.feed, context.feed * (entry.feed / 100.0)
-    )
+    numbers = {
+        "turns": to_first.turns,
+        "feed": feed,
+        "plunge_feed": feed * (entry.feed / 100.0),
+    }
+    if not to_first.turns:
+        return numbers
+    return numbers | {
+        "fall": to_first.fall,
+        "next_turns": further.turns,
+        "next_fall": further.fall,
+        "last_turns": helix.last,
+        "helix_radius": helix.radius,
+        "side": -1 if first > helix.radius else 1,
+    }
 
 
 def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:

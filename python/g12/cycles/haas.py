@@ -22,141 +22,86 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
-from typing import NamedTuple
-
-from g12.cycles.entry import STRAIGHT_DOWN, PocketDescent, PocketEntry, pocket_descent
+from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
+from g12.cycles.plan import CyclePlan
 from g12.errors import number
-from g12.lengths import ROUNDING_MM
 from g12.request.common import (
     CLEARED,
-    SMALLEST_RING_MM,
     check_count,
     check_modes,
     check_start,
     commanded_tool,
-    coordinate,
     sound_tool,
     steps_between,
 )
-from g12.request.context import XY, Context, Tool
+from g12.request.context import XY, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 
 
-class Pocket(NamedTuple):
-    """A checked pocket. Lengths in program units, radii of the tool centre."""
-
-    x: float
-    y: float
-    move_to_centre: bool
-    z: float  # depth of the first level
-    z_step: float  # signed distance to each further level, 0 for spring passes
-    levels: int
-    first_radius: float
-    last_radius: float
-    links: int  # stepovers, or half turns of the spiral; the last ends at last_radius
-    first_grow: float  # growth of the radius by the first link
-    shrink: float  # the share of that by which the last of several is shorter
-    spiral: bool
-    down: PocketDescent
-    commanded_radius: float | None  # of the cutter that D names, None without D
-    message: str | None  # for the operator, never a refusal
-
-    def extent(self) -> CycleExtent:
-        """Return the largest circle, and the first and last depth."""
-        deepest = self.z + self.z_step * (self.levels - 1)
-        return CycleExtent(XY, (self.x, self.y, self.z), self.last_radius, (self.z, deepest))
-
-    def locals(self) -> dict[str, float]:
-        """Return the named locals of `ngc/g12_haas.ngc`, but for the direction."""
-        goes_on = not self.z_step or self.down.further.turns
-        return {
-            "x": self.x,
-            "y": self.y,
-            "move_to_centre": self.move_to_centre,
-            "z": self.z,
-            "z_step": self.z_step,
-            "levels": self.levels,
-            "first_radius": self.first_radius,
-            "links": self.links,
-            "step": self.first_grow,
-            "shorter": self.shrink * self.first_grow,
-            "restart": not goes_on,
-            "rings": not self.spiral,
-            **self.down.locals(self.first_radius),
-        }
-
-
 def plan_pocket(
-    words: Words, context: Context, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
-) -> Pocket:
-    check_modes(words, context)
+    words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
+) -> CyclePlan:
+    """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
+    context = words.context
+    check_modes(words)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
     outward = words.take_pair("K", "Q")
     levels = words.take_whole("L", least=1, default=1)
-    centre_word = "X" in words or "Y" in words
-    x = coordinate(words.take("X"), context.x, context)
-    y = coordinate(words.take("Y"), context.y, context)
+    names_centre = "X" in words or "Y" in words
+    x = context.absolute(words.take("X"), context.x)
+    y = context.absolute(words.take("Y"), context.y)
     depth = words.take("Z")
-    if not centre_word:
-        check_start(words, context)
+    if not names_centre:
+        check_start(words)
     with_d = "D" in words
-    cutter, source = choose_cutter(words, context)
-    check_radii(words, context, first, outward, cutter, source)
+    cutter, source = choose_cutter(words)
+    check_radii(words, first, outward, cutter, source)
 
-    finished, links, first_grow, shrink = links_outward(
-        words, first, outward, clearing, levels, context
-    )
-    z = coordinate(depth, context.z, context)
+    finished, stepover = outward or (first, first)
+    links = links_outward(words, first, finished, stepover, clearing, levels)
+    z = context.absolute(depth, context.z)
     z_step = depth or 0.0 if context.incremental else 0.0
+    first_radius = first - cutter.radius
     heights = context.z - z, -z_step
-    down = pocket_descent(words, context, entry, first - cutter.radius, cutter.radius, heights)
-    return Pocket(
-        x=x,
-        y=y,
-        move_to_centre=centre_word,
-        z=z,
-        z_step=z_step,
-        levels=levels,
-        first_radius=first - cutter.radius,
-        last_radius=finished - cutter.radius,
-        links=links,
-        first_grow=first_grow,
-        shrink=shrink,
-        spiral=clearing == "spiral",
-        down=down,
-        commanded_radius=cutter.radius if with_d else None,
-        message=upward(words, depth, context)
-        or uncut_material(words, outward, first, cutter, context, CLEARED * entry.helix),
-    )
+    down = pocket_descent(words, entry, first_radius, cutter.radius, heights)
+    numbers = {
+        "x": x,
+        "y": y,
+        "move_to_centre": names_centre,
+        "z": z,
+        "z_step": z_step,
+        "levels": levels,
+        "first_radius": first_radius,
+        "restart": z_step != 0 and not down["turns"],
+        "rings": clearing != "spiral",
+    }
+    message = upward(words, depth)
+    message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
+    extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
+    return CyclePlan(numbers | links | down, extent, message, cutter.radius if with_d else None)
 
 
 def links_outward(
-    words: Words,
-    first: float,
-    outward: tuple[float, float] | None,
-    clearing: str,
-    levels: int,
-    context: Context,
-) -> tuple[float, int, float, float]:
-    """Return the finished radius, the links to it, the first one's growth, and `Pocket.shrink`."""
-    finished, stepover = outward or (first, first)
+    words: Words, first: float, finished: float, stepover: float, clearing: str, levels: int
+) -> dict[str, float]:
+    """Return the locals of the links: stepovers, or half turns of the spiral."""
     growth = stepover / 2 if clearing == "spiral" else stepover
-    links = steps_between(first, finished, growth, context.length(ROUNDING_MM))
+    links = steps_between(first, finished, growth, words.context.rounding)
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
-    last_grow = finished - first - growth * (links - 1)
-    return finished, links, min(growth, finished - first), 1 - last_grow / growth
+    step, last_step = min(growth, finished - first), finished - first - growth * (links - 1)
+    return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
 
 
-def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
+def choose_cutter(words: Words) -> tuple[Tool, str]:
     """Return the cutter of the block and its source, for messages.
 
     The source is D in the block, else the D last commanded, else the tool in the spindle.
     """
-    tool = commanded_tool(words, context)
+    context, tool = words.context, commanded_tool(words)
     if tool is not None:
         return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
     if context.last_radius is not None:
@@ -168,39 +113,31 @@ def choose_cutter(words: Words, context: Context) -> tuple[Tool, str]:
 
 
 def check_radii(
-    words: Words,
-    context: Context,
-    first: float,
-    outward: tuple[float, float] | None,
-    cutter: Tool,
-    source: str,
+    words: Words, first: float, outward: tuple[float, float] | None, cutter: Tool, source: str
 ) -> None:
     """Refuse circles that the cutter cannot mill, or that do not grow."""
-    rounding = context.length(ROUNDING_MM)
+    context, rounding = words.context, words.context.rounding
     if first <= rounding:
-        raise words.refuse(f"I{number(first)} must be greater than 0")
+        raise words.refuse_word("I", first, "must be greater than 0")
+    size = context.tool_size(cutter.radius)
     if first <= cutter.radius + rounding:
-        raise words.refuse(
-            f"I{number(first)} must be greater than the tool radius"
-            f" {context.tool_size(cutter.radius)} ({source})"
-        )
-    smallest = context.length(SMALLEST_RING_MM)
-    if first - cutter.radius < smallest - rounding:
-        raise words.refuse(
-            f"I{number(first)} must exceed the tool radius {context.tool_size(cutter.radius)}"
-            f" ({source}) by at least {number(smallest)}"
-        )
+        rule = f"must be greater than the tool radius {size} ({source})"
+        raise words.refuse_word("I", first, rule)
+    if first - cutter.radius < context.smallest_ring - rounding:
+        least = number(context.smallest_ring)
+        rule = f"must exceed the tool radius {size} ({source}) by at least {least}"
+        raise words.refuse_word("I", first, rule)
     if outward and outward[0] <= first + rounding:
-        raise words.refuse(f"I{number(first)} must be less than K{number(outward[0])}")
+        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
 
-def upward(words: Words, depth: float | None, context: Context) -> str | None:
+def upward(words: Words, depth: float | None) -> str | None:
     """Return the operator message of a pocket that begins above the tool, or None.
 
     It looks like a lost minus sign. The control would go up and cut there, too.
     """
-    first = coordinate(depth, context.z, context)
-    if depth is None or first <= context.z + context.length(ROUNDING_MM):
+    context = words.context
+    if depth is None or context.absolute(depth, context.z) <= context.z + context.rounding:
         return None
     return (
         f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}:"
@@ -209,12 +146,7 @@ def upward(words: Words, depth: float | None, context: Context) -> str | None:
 
 
 def uncut_material(
-    words: Words,
-    outward: tuple[float, float] | None,
-    first: float,
-    cutter: Tool,
-    context: Context,
-    helix: float,
+    words: Words, outward: tuple[float, float] | None, first: float, cutter: Tool, helix: float
 ) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
 
@@ -225,11 +157,12 @@ def uncut_material(
     """
     if outward is None or cutter.radius == 0:
         return None
-    (finished, stepover), rounding = outward, context.length(ROUNDING_MM)
+    (finished, stepover), rounding = outward, words.context.rounding
+    diameter = words.context.tool_size(2 * cutter.radius)
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
         return (
-            f"{words.code}: Q{number(stepover)} is greater than the tool diameter"
-            f" {context.tool_size(2 * cutter.radius)}: material is left between the rings"
+            f"{words.code}: Q{number(stepover)} is greater than the tool diameter {diameter}:"
+            " material is left between the rings"
         )
     # The entry cuts up to the tool radius plus the helix, the first ring from I - 2 tool radii on.
     most = 3 + helix
@@ -237,6 +170,6 @@ def uncut_material(
         remains = "a ring is left about the centre" if helix else "a core is left in the centre"
         return (
             f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
-            f" {context.tool_size(2 * cutter.radius)}: {remains}"
+            f" {diameter}: {remains}"
         )
     return None

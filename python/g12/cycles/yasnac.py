@@ -27,10 +27,9 @@ too many circles.
 from math import copysign
 from typing import NamedTuple
 
+from g12.cycles.plan import CyclePlan
 from g12.errors import BlockRefusal, number
-from g12.lengths import ROUNDING_MM
 from g12.request.common import (
-    SMALLEST_RING_MM,
     check_count,
     check_modes,
     check_start,
@@ -38,32 +37,11 @@ from g12.request.common import (
     sound_tool,
     steps_between,
 )
-from g12.request.context import XY, Context, Tool
+from g12.request.context import XY, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
-
-
-class YasnacCircle(NamedTuple):
-    """A checked circle: the named locals of `ngc/g12_yasnac.ngc`.
-
-    Lengths in program units; ``approach``, ``first``, ``growth`` and ``radius`` are those of the
-    tool centre along X, with the sign of I.
-    """
-
-    x: float
-    y: float
-    approach: float
-    first: float
-    half_turns: int
-    growth: float  # of the first half turn
-    shrink: float  # relative reduction of that in the half turns of the last turn
-    radius: float
-    circles: int
-
-    def extent(self, z: float) -> CycleExtent:
-        return CycleExtent(XY, (self.x, self.y, z), abs(self.radius))
 
 
 class OffsetRadii(NamedTuple):
@@ -72,52 +50,50 @@ class OffsetRadii(NamedTuple):
     words: Words
     offset: float
     cutter: str  # for messages
-    rounding: float
-    smallest: float
 
     def position(self, word: float) -> float:
         """Return the tool-centre position; exactly 0 if it differs from the centre by rounding."""
         position = word - self.offset
-        return position if abs(position) > self.rounding else 0.0
+        return position if abs(position) > self.words.context.rounding else 0.0
 
     def refuse(self, letter: str, word: float, rule: str) -> BlockRefusal:
         """Return the refusal of a word whose position breaks ``rule`` (the caller raises it)."""
-        position = number(self.position(word))
-        return self.words.refuse(
-            f"{letter}{number(word)} puts the tool centre at X{position} from the circle's centre"
-            f" ({self.cutter}): {rule}"
-        )
+        position = f"X{number(self.position(word))} from the circle's centre ({self.cutter})"
+        return self.words.refuse_word(letter, word, f"puts the tool centre at {position}: {rule}")
 
     def check_apart(self, letter: str, word: float, other: float, source: str) -> None:
         """Refuse a word whose position is nearer to another than the smallest arc."""
-        apart = abs(self.position(word) - other)
-        if apart < self.smallest - self.rounding:
-            raise self.refuse(
-                letter,
-                word,
-                f"only {number(apart)} from X{number(other)}, {source};"
-                f" the smallest arc needs {number(self.smallest)}",
-            )
+        apart, context = abs(self.position(word) - other), self.words.context
+        if apart < context.smallest_ring - context.rounding:
+            needed = f"the smallest arc needs {number(context.smallest_ring)}"
+            rule = f"only {number(apart)} from X{number(other)}, {source}; {needed}"
+            raise self.refuse(letter, word, rule)
 
 
-def plan_circle(words: Words, context: Context) -> YasnacCircle:
-    check_modes(words, context)
+def plan_circle(words: Words) -> CyclePlan:
+    context = words.context
+    check_modes(words)
     words.check_known(YASNAC_WORDS)
-    check_start(words, context)
+    check_start(words)
     finished = words.require("I", "the radius of the finished circle")
     traverse = take_traverse(words)
     spiral = take_spiral(words)
     circles = words.take_whole("L", least=1, default=1)
-    tool = commanded_tool(words, context) or Tool(0, 0.0)
-    radii = offset_radii(words, context, finished, sound_tool(words, tool, f"D{tool.number}"))
+    tool = commanded_tool(words) or Tool(0, 0.0)
+    radii = offset_radii(words, finished, sound_tool(words, tool, f"D{tool.number}"))
 
     radius = radii.position(finished)
     approach = approach_of(radii, traverse, finished)
-    first, half_turns, growth, shrink = half_turns_of(radii, spiral, approach, finished)
-    check_count(words, half_turns + circles, "K, Q and L make")
-    return YasnacCircle(
-        context.x, context.y, approach, first, half_turns, growth, shrink, radius, circles
-    )
+    turns = half_turns_of(radii, spiral, approach, finished)
+    check_count(words, round(turns["half_turns"]) + circles, "K, Q and L make")
+    numbers = {
+        "x": context.x,
+        "y": context.y,
+        "approach": approach,
+        "radius": radius,
+        "circles": circles,
+    }
+    return CyclePlan(numbers | turns, CycleExtent(XY, context.position, abs(radius)))
 
 
 def take_traverse(words: Words) -> tuple[str, float] | None:
@@ -135,20 +111,16 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
     return None if first is None or pitch is None else (first, pitch)
 
 
-def offset_radii(words: Words, context: Context, finished: float, tool: Tool) -> OffsetRadii:
+def offset_radii(words: Words, finished: float, tool: Tool) -> OffsetRadii:
     """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
-    size = context.tool_size(tool.radius)
-    cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
-    smallest = context.length(SMALLEST_RING_MM)
-    room = abs(finished) - tool.radius
+    size, smallest = words.context.tool_size(tool.radius), words.context.smallest_ring
     if abs(finished) < smallest:
-        raise words.refuse(f"I{number(finished)} must not be 0")
-    if room < smallest:
-        raise words.refuse(
-            f"I{number(finished)} must exceed the tool radius {size} (D{tool.number}) in size"
-        )
-    offset = copysign(tool.radius, finished)
-    return OffsetRadii(words, offset, cutter, context.length(ROUNDING_MM), smallest)
+        raise words.refuse_word("I", finished, "must not be 0")
+    if abs(finished) - tool.radius < smallest:
+        rule = f"must exceed the tool radius {size} (D{tool.number}) in size"
+        raise words.refuse_word("I", finished, rule)
+    cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
+    return OffsetRadii(words, copysign(tool.radius, finished), cutter)
 
 
 def approach_of(radii: OffsetRadii, traverse: tuple[str, float] | None, finished: float) -> float:
@@ -165,15 +137,15 @@ def approach_of(radii: OffsetRadii, traverse: tuple[str, float] | None, finished
 
 def half_turns_of(
     radii: OffsetRadii, spiral: tuple[float, float] | None, approach: float, finished: float
-) -> tuple[float, int, float, float]:
-    """Return first radius, number, growth and shrink of the spiral's half turns.
+) -> dict[str, float]:
+    """Return the locals of the spiral's half turns.
 
     Whole turns only, so that the finished circle begins on the side of I. The last turn grows by
     the remainder.
     """
     last = radii.position(finished)
     if spiral is None:
-        return last, 0, 0.0, 0.0
+        return {"first": last, "half_turns": 0, "growth": 0.0, "shrink": 0.0}
     first, pitch = radii.position(spiral[0]), spiral[1]
     source = f"where I{number(finished)} puts it"
     if not approach / last < first / last < 1.0:
@@ -181,7 +153,12 @@ def half_turns_of(
         raise radii.refuse("K", spiral[0], f"it must be {bounds}")
     radii.check_apart("K", spiral[0], approach, "where the cut begins")
     radii.check_apart("K", spiral[0], last, source)
-    turns = steps_between(abs(first), abs(last), pitch, radii.rounding)
+    turns = steps_between(abs(first), abs(last), pitch, radii.words.context.rounding)
     rest = abs(last) - abs(first) - pitch * (turns - 1)
     growth = copysign(pitch if turns > 1 else rest, last) / 2
-    return first, 2 * turns, growth, 1 - rest / pitch
+    return {
+        "first": first,
+        "half_turns": 2 * turns,
+        "growth": growth,
+        "shrink": 1 - rest / pitch,
+    }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Rules that the cycles of every dialect share: modes, coordinates, the tool of D, counts.
+"""Rules that the cycles of every dialect share: modes, the tool of D, counts.
 
 Counts of rings, levels and turns are decided here once, never rounded again in NGC.
 
@@ -10,10 +10,9 @@ import math
 from collections.abc import Collection
 
 from g12.errors import number
-from g12.request.context import XY, Context, Tool
+from g12.request.context import XY, Tool
 from g12.request.words import Words
 
-SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
 CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
 LEFT_OUT = -9999.0  # an entry of a call that is left out
@@ -22,11 +21,12 @@ COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceilin
 MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
 
 
-def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,)) -> None:
+def check_modes(words: Words, planes: Collection[str] = (XY,)) -> None:
     """Refuse the modes in which no circle can be cut.
 
     In this order: another plane, G93, G95 without a spindle speed, G41/G42, a feed of 0.
     """
+    context = words.context
     if context.plane not in planes:
         *others, last = planes
         needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
@@ -41,27 +41,20 @@ def check_modes(words: Words, context: Context, planes: Collection[str] = (XY,))
         raise words.refuse(f"F{number(context.feed)} must be greater than 0 (no feed commanded?)")
 
 
-def check_start(words: Words, context: Context) -> None:
+def check_start(words: Words) -> None:
     """Refuse to begin while the tool is still offset from the programmed point after a G40."""
-    if context.offset_pending:
+    if words.context.offset_pending:
         raise words.refuse("the tool is still offset: after G40 move in X or Y first")
 
 
-def coordinate(word: float | None, present: float, context: Context) -> float:
-    """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
-    if word is None:
-        return present
-    return present + word if context.incremental else word
-
-
-def commanded_tool(words: Words, context: Context) -> Tool | None:
+def commanded_tool(words: Words) -> Tool | None:
     """Return the tool that D names, None without D; D0 is a cutter without size."""
     if "D" not in words:
         return None
     tool_number = words.take_whole("D", least=0)
     if tool_number == 0:
         return Tool(0, 0.0)
-    tool = context.tool_in_table(tool_number)
+    tool = words.context.tool_in_table(tool_number)
     if tool is None:
         raise words.refuse(f"D{tool_number} is not in the tool table")
     return tool
@@ -76,9 +69,9 @@ def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
     return tool
 
 
-def loaded_tool(words: Words, context: Context) -> Tool:
+def loaded_tool(words: Words) -> Tool:
     """Return the tool in the spindle, which must have a diameter."""
-    tool = context.spindle_tool
+    tool = words.context.spindle_tool
     if tool is None:
         raise words.refuse("no tool is loaded: its diameter sets the path")
     if tool.radius <= 0:
@@ -89,14 +82,13 @@ def loaded_tool(words: Words, context: Context) -> Tool:
     return tool
 
 
-def other_cutter(
-    code: str, d_word: float | None, context: Context, last_radius: float | None = None
-) -> str | None:
+def other_cutter(words: Words, last_radius: float | None = None) -> str | None:
     """Return the operator message where D is not the loaded tool by more than wear, or None.
 
     The cycle uses D: the loaded tool may be the mistake. Without D ``last_radius`` counts. There is
     no comparison without a tool, or with one without a diameter.
     """
+    d_word, context = words.value("D"), words.context
     named = context.tool_in_table(round(d_word)) if d_word else None
     radius = named.radius if named else last_radius if d_word is None else None
     loaded = context.spindle_tool
@@ -107,7 +99,7 @@ def other_cutter(
     source = f"D{named.number}" if named else "the D last commanded"
     size, loaded_size = (context.tool_size(2 * size) for size in (radius, loaded.radius))
     used = f"the cycle uses {source}, diameter {size}"
-    return f"{code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
+    return f"{words.code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
 
 
 def check_count(words: Words, circles: int, cause: str) -> None:

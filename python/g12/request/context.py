@@ -5,9 +5,10 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import MM_PER_INCH
+from g12.lengths import MM_PER_INCH, ROUNDING_MM
 
 XY, YZ, XZ = "G17", "G19", "G18"
+SMALLEST_RING_MM = 0.00508  # 0.0002 in: its half circles are twice what LinuxCNC needs
 
 
 class Tool(NamedTuple):
@@ -48,6 +49,27 @@ class Context(NamedTuple):
     def length(self, millimetres: float) -> float:
         """Return a length given in mm in program units."""
         return millimetres / MM_PER_INCH if self.inch else millimetres
+
+    @property
+    def position(self) -> tuple[float, float, float]:
+        """The tool's X, Y and Z."""
+        return self.x, self.y, self.z
+
+    @property
+    def rounding(self) -> float:
+        """The greatest difference of equal lengths."""
+        return self.length(ROUNDING_MM)
+
+    @property
+    def smallest_ring(self) -> float:
+        """The smallest radius of a circle, and of a difference of two."""
+        return self.length(SMALLEST_RING_MM)
+
+    def absolute(self, word: float | None, present: float) -> float:
+        """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
+        if word is None:
+            return present
+        return present + word if self.incremental else word
 
     def tool_size(self, length: float) -> str:
         """Return a tool's radius or diameter for a message: ``3.175``, or ``3.175 mm``."""

@@ -7,24 +7,25 @@ the rule and the value in the same way.
 
 from g12.errors import BlockRefusal, number
 from g12.lengths import LARGEST
+from g12.request.context import Context
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
 
 
 class Words:
-    """The words of a block, to be taken one by one.
+    """The words of a block, to be taken one by one, and the state before it.
 
     ``code`` names the block in messages (``G12``), ``values`` maps upper-case letters to
     numbers as the parser gave them: program units, expressions already resolved. A number beyond
     any machine is refused at once.
     """
 
-    def __init__(self, code: str, values: dict[str, float]) -> None:
-        self.code = code
+    def __init__(self, code: str, values: dict[str, float], context: Context) -> None:
+        self.code, self.context = code, context
         self._remaining = dict(values)
         for letter, value in values.items():
             if not abs(value) <= LARGEST:
-                raise self.refuse(f"{self.written(letter, value)} is beyond {number(LARGEST)}")
+                raise self.refuse_word(letter, value, f"is beyond {number(LARGEST)}")
 
     def __contains__(self, letter: str) -> bool:
         """Return whether the word is in the block and not yet taken."""
@@ -32,6 +33,10 @@ class Words:
 
     def refuse(self, rule: str) -> BlockRefusal:
         return BlockRefusal(self.code, rule)
+
+    def refuse_word(self, letter: str, value: float, rule: str) -> BlockRefusal:
+        """Return the refusal of a word and its value for breaking ``rule``."""
+        return self.refuse(f"{self.written(letter, value)} {rule}")
 
     @staticmethod
     def written(letter: str, value: float) -> str:
@@ -76,25 +81,24 @@ class Words:
     def _positive(self, letter: str) -> float:
         value = self._remaining.pop(letter)
         if not value > 0:
-            raise self.refuse(f"{self.written(letter, value)} must be greater than 0")
+            raise self.refuse_word(letter, value, "must be greater than 0")
         return value
 
     def _whole(self, letter: str, least: int, most: int | None) -> int:
         value = self._remaining.pop(letter)
         if abs(value - round(value)) > WHOLE:
-            raise self.refuse(f"{self.written(letter, value)} must be a whole number")
+            raise self.refuse_word(letter, value, "must be a whole number")
         if round(value) < least:
-            raise self.refuse(f"{self.written(letter, value)} must be at least {least}")
+            raise self.refuse_word(letter, value, f"must be at least {least}")
         if most is not None and round(value) > most:
-            raise self.refuse(f"{self.written(letter, value)} must be at most {most}")
+            raise self.refuse_word(letter, value, f"must be at most {most}")
         return round(value)
 
     def has_pair(self, first: str, second: str) -> bool:
         """Return whether two words are in the block; refuse one without the other."""
         if (first in self) != (second in self):
             present, absent = (first, second) if first in self else (second, first)
-            given = self.written(present, self._remaining[present])
-            raise self.refuse(f"{given} needs {absent} as well")
+            raise self.refuse_word(present, self._remaining[present], f"needs {absent} as well")
         return first in self
 
     def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
@@ -107,5 +111,5 @@ class Words:
         """Refuse a word that the dialect does not have; ``known`` lists its letters."""
         for letter, value in self._remaining.items():
             if letter not in known:
-                word = self.written(letter, value)
-                raise self.refuse(f"{word} is not a word of this cycle, which knows {known}")
+                rule = f"is not a word of this cycle, which knows {known}"
+                raise self.refuse_word(letter, value, rule)

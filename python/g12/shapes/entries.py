@@ -7,10 +7,10 @@ Lengths are in program units.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import atan2, degrees, hypot
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import ROUNDING_MM
 from g12.request.common import LEFT_OUT, steps_between
 from g12.request.context import Context
 from g12.request.words import Words
@@ -25,9 +25,12 @@ MOST_ANGLE = 360.0  # LinuxCNC's limit of a position on a wrapped rotary axis
 class ShapeEntries(Words):
     """The entries of one call, to be taken one by one; ``code`` is the name of the sub."""
 
-    def __init__(self, code: str, names: Sequence[str], values: Mapping[str, float]) -> None:
+    def __init__(
+        self, code: str, names: Sequence[str], values: Mapping[str, float], context: Context
+    ) -> None:
         self._count = len(names)
-        super().__init__(code, {name: values[name] for name in names if values[name] != LEFT_OUT})
+        given = {name: values[name] for name in names if values[name] != LEFT_OUT}
+        super().__init__(code, given, context)
 
     @staticmethod
     def written(letter: str, value: float) -> str:
@@ -46,14 +49,14 @@ class ShapeEntries(Words):
         """Return an entry that is zero or more, zero if it is left out."""
         value = self.take(letter) or 0.0
         if value < 0:
-            raise self.refuse(f"{self.written(letter, value)} must not be below 0")
+            raise self.refuse_word(letter, value, "must not be below 0")
         return value
 
     def angle(self, letter: str) -> float:
         value = self.take(letter) or 0.0
         if abs(value) > MOST_ANGLE:
             rule = f"must lie between -{number(MOST_ANGLE)} and {number(MOST_ANGLE)}"
-            raise self.refuse(f"{self.written(letter, value)} {rule}")
+            raise self.refuse_word(letter, value, rule)
         return value
 
     def _above_zero(self, letter: str, value: float) -> float:
@@ -61,7 +64,7 @@ class ShapeEntries(Words):
         if value > 0:
             return value
         call = f"a call has {self._count} entries, {number(LEFT_OUT)} leaves one out"
-        raise self.refuse(f"{self.written(letter, value)} must be greater than 0 ({call})")
+        raise self.refuse_word(letter, value, f"must be greater than 0 ({call})")
 
 
 class ShapeMachine(NamedTuple):
@@ -87,6 +90,11 @@ class Levels(NamedTuple):
     levels: int
     step_down: float
 
+    @property
+    def bottom(self) -> float:
+        """Z of the last one."""
+        return -self.levels * self.step_down
+
 
 class Feeds(NamedTuple):
     """Feeds per minute, or per revolution under G95."""
@@ -102,19 +110,38 @@ class Heights(NamedTuple):
     near_z: float
 
 
-def levels_of(entries: ShapeEntries, context: Context) -> Levels:
+class Extent(NamedTuple):
+    """The extent of the tool centre's path: X as a radius, Z, C in degrees; lowest and highest."""
+
+    x: tuple[float, float]
+    z: tuple[float, float]
+    c: tuple[float, float]
+
+
+class ShapePlan(NamedTuple):
+    """A checked shape, or holes: the named locals of its sub beside the entries, and its extent.
+
+    Lengths and feeds are in program units, X is a radius, angles are in degrees.
+    """
+
+    locals: dict[str, float]
+    extent: Extent
+
+
+def levels_of(entries: ShapeEntries) -> Levels:
     """Return the levels: depth and depth_per_pass."""
     depth = entries.require_positive("depth", "how deep, from the face at Z0")
     most = entries.positive("depth_per_pass", depth)
-    levels = max(1, steps_between(0.0, depth, most, context.length(ROUNDING_MM)))
+    levels = max(1, steps_between(0.0, depth, most, entries.context.rounding))
     if levels > MOST_SHAPE_PASSES:
         rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_SHAPE_PASSES}"
-        raise entries.refuse(f"{entries.written('depth_per_pass', most)} {rule}")
+        raise entries.refuse_word("depth_per_pass", most, rule)
     return Levels(levels, depth / levels)
 
 
-def feed_of(entries: ShapeEntries, context: Context) -> float:
+def feed_of(entries: ShapeEntries) -> float:
     """Return the entry feed, by default the active F."""
+    context = entries.context
     feed = entries.positive("feed", context.feed)
     if not feed > 0:
         raise entries.refuse("feed is missing, and no F is active")
@@ -123,25 +150,25 @@ def feed_of(entries: ShapeEntries, context: Context) -> float:
     return feed
 
 
-def feeds_of(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> Feeds:
-    feed = feed_of(entries, context)
+def feeds_of(entries: ShapeEntries, machine: ShapeMachine) -> Feeds:
+    feed = feed_of(entries)
     return Feeds(feed, entries.positive("plunge_feed", feed * machine.plunge_share))
 
 
-def heights_of(entries: ShapeEntries, context: Context) -> Heights:
+def heights_of(entries: ShapeEntries) -> Heights:
     """Return the heights of a tool, which must be above the face."""
+    context = entries.context
     if not context.z > 0:
         rule = "a shape begins at the tool's position, which must be above the face at Z0"
         raise entries.refuse(f"Z{number(context.z)}: {rule}")
     return Heights(context.z, min(context.z, context.length(CLEAR_MM)))
 
 
-class Extent(NamedTuple):
-    """The extent of the tool centre's path: X as a radius, Z, C in degrees; lowest and highest."""
-
-    x: tuple[float, float]
-    z: tuple[float, float]
-    c: tuple[float, float]
+def polar_position(entries: ShapeEntries, diameters: bool) -> tuple[float, float]:
+    """Return radius and angle in degrees of the entries x, a diameter if so, and c."""
+    x, c = entries.take("x") or 0.0, entries.take("c") or 0.0
+    x = x / 2 if diameters else x
+    return hypot(x, c), degrees(atan2(c, x))
 
 
 def check_nearest(entries: ShapeEntries, extent: Extent, machine: ShapeMachine) -> None:
@@ -153,13 +180,13 @@ def check_nearest(entries: ShapeEntries, extent: Extent, machine: ShapeMachine) 
         )
 
 
-def check_finish(entries: ShapeEntries, context: Context, allowance: float, cutter: float) -> None:
+def check_finish(entries: ShapeEntries, allowance: float, cutter: float) -> None:
     """Refuse an allowance that one round of the cutter cannot remove."""
     most = WIDEST * 2 * cutter
     if allowance > most:
-        rule = f"must be at most {number(most)}, what one round of the cutter of"
-        size = context.tool_size(2 * cutter)
-        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule} {size} takes")
+        size = entries.context.tool_size(2 * cutter)
+        rule = f"must be at most {number(most)}, what one round of the cutter of {size} takes"
+        raise entries.refuse_word("allowance", allowance, rule)
 
 
 def check_moves(entries: ShapeEntries, moves: int, cause: str) -> None:

@@ -16,13 +16,21 @@ the surface.
 
 from __future__ import annotations
 
-from math import atan2, ceil, degrees, hypot, sqrt
+from math import atan2, ceil, degrees, sqrt
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import DEGREES_PER_TURN, ROUNDING_MM
-from g12.request.context import Context
-from g12.shapes.entries import Extent, ShapeEntries, check_moves, feed_of
+from g12.lengths import DEGREES_PER_TURN
+from g12.request.common import steps_between
+from g12.shapes.entries import (
+    Extent,
+    ShapeEntries,
+    ShapePlan,
+    check_moves,
+    feed_of,
+    locals_of,
+    polar_position,
+)
 
 HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 FACE_HOLES = ("count", "circle_diameter", "first_angle", "step_angle", *HOLE)
@@ -83,97 +91,61 @@ class Hole(NamedTuple):
     kind: int
 
 
-class HolesPlan(NamedTuple):
-    """Checked holes: ``holes`` of them, with a turn of C by ``turn`` from one to the next.
-
-    ``first_turn`` is the turn of C from ``c`` to the first one, ``travel`` the tool's height during
-    it.
-    """
-
-    holes: int
-    c: float
-    first_turn: float
-    turn: float
-    travel: float
-    position: HolePosition
-    hole: Hole
-
-    def locals(self) -> dict[str, float]:
-        """Return the named locals of the subs beside their entries; X is a radius."""
-        own = {name: getattr(self, name) for name in ("first_turn", "turn", "travel")}
-        position = {f"at_{name}": value for name, value in self.position._asdict().items()}
-        return {"count": self.holes, **own, **position, **self.hole._asdict()}
-
-    def extent(self) -> Extent:
-        """Return the extent of the axes' motion, from the travel height."""
-        position, heights = self.position, (-self.hole.depth, self.travel)
-        first = self.c + self.first_turn
-        angles = (self.c, first, first + self.turn * (self.holes - 1))
-        ends = [
-            (position.x + position.x_axis * height, position.z + position.z_axis * height)
-            for height in heights
-        ]
-        x, z = zip(*ends)
-        return Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
-
-
-def plan_face_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    check_tool(entries, context)
+def plan_face_holes(entries: ShapeEntries, machine: HoleMachine) -> ShapePlan:
+    check_tool(entries)
     count = count_of(entries)
     radius = entries.require_positive("circle_diameter", "of the circle of holes") / 2
     angle, turn = entries.angle("first_angle"), hole_turn(entries, count)
-    return plan_holes(entries, context, machine, on_face(entries, context, machine, radius, angle),
-                      count, turn)  # fmt: skip
+    return plan_holes(entries, machine, on_face(entries, machine, radius, angle), count, turn)
 
 
-def plan_face_hole_at(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    check_tool(entries, context)
-    x = (entries.take("x") or 0.0) / (2 if machine.diameters else 1)
-    c = entries.take("c") or 0.0
-    position = on_face(entries, context, machine, hypot(x, c), degrees(atan2(c, x)))
-    return plan_holes(entries, context, machine, position, 1, 0.0)
+def plan_face_hole_at(entries: ShapeEntries, machine: HoleMachine) -> ShapePlan:
+    check_tool(entries)
+    position = on_face(entries, machine, *polar_position(entries, machine.diameters))
+    return plan_holes(entries, machine, position, 1, 0.0)
 
 
-def plan_side_holes(entries: ShapeEntries, context: Context, machine: HoleMachine) -> HolesPlan:
-    check_tool(entries, context)
+def plan_side_holes(entries: ShapeEntries, machine: HoleMachine) -> ShapePlan:
+    check_tool(entries)
     count = count_of(entries)
     z = entries.require("z", "where the holes are along the part")
     angle, turn = entries.angle("first_angle"), hole_turn(entries, count)
     radius = entries.require_positive("surface_diameter", "of the turned surface") / 2
     if machine.beside:
         raise entries.refuse("needs a tool on the X line, not [G12] POLAR_TOOL_OFFSET beside it")
-    if context.x <= radius:
+    height = entries.context.x - radius
+    if height <= 0:
         raise entries.refuse(
-            f"X{number(context.x)} (radius): the tool must be outside the surface, beyond"
+            f"X{number(entries.context.x)} (radius): the tool must be outside the surface, beyond"
             f" {number(radius)}"
         )
-    position = HolePosition(radius, z, angle, 1, 0, context.x - radius)
-    return plan_holes(entries, context, machine, position, count, turn)
+    return plan_holes(entries, machine, HolePosition(radius, z, angle, 1, 0, height), count, turn)
 
 
 def plan_holes(
-    entries: ShapeEntries,
-    context: Context,
-    machine: HoleMachine,
-    position: HolePosition,
-    count: int,
-    turn: float,
-) -> HolesPlan:
-    hole = hole_of(entries, context, machine)
+    entries: ShapeEntries, machine: HoleMachine, position: HolePosition, count: int, turn: float
+) -> ShapePlan:
+    """Return the holes from a position on, with a turn of C by ``turn`` from one to the next."""
+    hole = hole_of(entries, machine)
     check_moves(entries, count * (3 * hole.pecks + 3), "count and peck make")
-    return HolesPlan(
-        holes=count,
-        c=machine.c,
-        first_turn=shorter_turn(position.angle - machine.c),
-        turn=shorter_turn(turn),
-        travel=max(position.height, hole.retract),
-        position=position,
-        hole=hole,
+    first_turn, turn = shorter_turn(position.angle - machine.c), shorter_turn(turn)
+    travel = max(position.height, hole.retract)  # the tool's height during the first turn
+    first = machine.c + first_turn
+    angles = (machine.c, first, first + turn * (count - 1))
+    x, z = zip(
+        *(
+            (position.x + position.x_axis * height, position.z + position.z_axis * height)
+            for height in (-hole.depth, travel)
+        )
     )
+    extent = Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
+    own = {"count": count, "first_turn": first_turn, "turn": turn, "travel": travel}
+    at = {f"at_{name}": value for name, value in locals_of(position).items()}
+    return ShapePlan(own | at | locals_of(hole), extent)
 
 
-def check_tool(entries: ShapeEntries, context: Context) -> None:
-    if context.spindle_tool is None:
+def check_tool(entries: ShapeEntries) -> None:
+    if entries.context.spindle_tool is None:
         raise entries.refuse("no tool is loaded")
 
 
@@ -195,11 +167,12 @@ def shorter_turn(angle: float) -> float:
 
 
 def on_face(
-    entries: ShapeEntries, context: Context, machine: HoleMachine, radius: float, angle: float
+    entries: ShapeEntries, machine: HoleMachine, radius: float, angle: float
 ) -> HolePosition:
     """Return the position of a hole on the face; with a tool beside the X line X is smaller."""
-    if not context.z > 0:
-        raise entries.refuse(f"Z{number(context.z)}: the tool must be above the face at Z0")
+    height = entries.context.z
+    if not height > 0:
+        raise entries.refuse(f"Z{number(height)}: the tool must be above the face at Z0")
     beside = machine.beside
     if abs(beside) > radius:
         raise entries.refuse(
@@ -207,28 +180,26 @@ def on_face(
             f" lets the tool no nearer than {number(abs(beside))}"
         )
     x = sqrt(radius**2 - beside**2)
-    return HolePosition(x, 0.0, angle - degrees(atan2(beside, x)), 0, 1, context.z)
+    return HolePosition(x, 0.0, angle - degrees(atan2(beside, x)), 0, 1, height)
 
 
-def hole_of(entries: ShapeEntries, context: Context, machine: HoleMachine) -> Hole:
+def hole_of(entries: ShapeEntries, machine: HoleMachine) -> Hole:
     depth = entries.require_positive("depth", "how deep, from the face or surface")
     retract = entries.require_positive("retract", "the height at which the tool is clear")
     kind = entries.take_whole("kind", least=DRILL, most=BORE, default=DRILL)
     tap = kind in TAP_SPINDLE_CODES
-    feed = entries.require_positive("feed", "a tap's pitch") if tap else feed_of(entries, context)
+    feed = entries.require_positive("feed", "a tap's pitch") if tap else feed_of(entries)
     peck = entries.take("peck") or 0.0
     if peck and kind != DRILL:
         rule = f"is for drilling (kind {DRILL}), not for kind {kind}"
-        raise entries.refuse(f"{entries.written('peck', peck)} {rule}")
+        raise entries.refuse_word("peck", peck, rule)
     dwell = entries.from_zero("dwell")
     if tap:
         check_tapping(entries, machine, kind)
-    rounding = context.length(ROUNDING_MM)
-    pecks = ceil(min((depth - rounding) / abs(peck), 1e9)) if peck else 1
-    clear = min(context.length(CHIP_MM), abs(peck) / 2) if peck else 0.0
-    return Hole(
-        depth, retract, feed, max(1, pecks), abs(peck) or depth, int(peck > 0), clear, dwell, kind
-    )
+    step, context = abs(peck) or depth, entries.context
+    pecks = max(1, steps_between(0.0, depth, step, context.rounding))
+    clear = min(context.length(CHIP_MM), step / 2) if peck else 0.0
+    return Hole(depth, retract, feed, pecks, step, int(peck > 0), clear, dwell, kind)
 
 
 def check_tapping(entries: ShapeEntries, machine: HoleMachine, kind: int) -> None:

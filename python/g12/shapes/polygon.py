@@ -26,17 +26,13 @@ from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import ROUNDING_MM
 from g12.request.common import loaded_tool
-from g12.request.context import Context
 from g12.shapes.entries import (
     CLEAR_MM,
     Extent,
-    Feeds,
-    Heights,
-    Levels,
     ShapeEntries,
     ShapeMachine,
+    ShapePlan,
     check_finish,
     check_moves,
     feeds_of,
@@ -118,48 +114,32 @@ class PolygonRounds(NamedTuple):
     outside: float
 
 
-class PolygonPlan(NamedTuple):
-    """A checked polygon. Lengths and feeds are in program units, angles in degrees."""
-
-    form: PolygonForm
-    rounds: PolygonRounds
-    levels: Levels
-    feeds: Feeds
-    heights: Heights
-    start_angle: float
-
-    def locals(self) -> dict[str, float]:
-        form = {name: getattr(self.form, name) for name in ("inner", "side", "corner", "half_turn")}
-        numbers = locals_of(self.rounds, self.levels, self.feeds, self.heights)
-        return form | numbers | {"start_angle": self.start_angle, "flush": FLUSH}
-
-    def extent(self) -> Extent:
-        """Return the extent of the tool's centre; every round is one turn of C, backwards."""
-        rounds, levels = self.rounds, self.levels
-        turns = levels.levels * rounds.rounds + rounds.finish
-        return Extent(
-            (rounds.finish_apothem, rounds.outside),
-            (-levels.levels * levels.step_down, self.heights.start_z),
-            (
-                self.start_angle - 360.0 * turns - self._lead(rounds.finish_apothem),
-                self.start_angle + self._lead(rounds.apothem),
-            ),
-        )
-
-    def _lead(self, apothem: float) -> float:
-        """Return the angle of a round's lead-in and lead-out from the zero line, in degrees."""
-        top = corner_distance(self.form, apothem, self.rounds.clip)
-        return degrees(acos(top / self.rounds.outside))
-
-
-def plan_polygon(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> PolygonPlan:
-    cutter = loaded_tool(entries, context).radius
+def plan_polygon(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
+    cutter = loaded_tool(entries).radius
     form, stock = form_of(entries)
-    levels = levels_of(entries, context)
-    rounds = rounds_of(entries, context, form, stock, cutter, levels.levels)
-    feeds = feeds_of(entries, context, machine)
+    levels = levels_of(entries)
+    rounds = rounds_of(entries, form, stock, cutter, levels.levels)
+    feeds = feeds_of(entries, machine)
     angle = fmod(entries.angle("angle") + form.half_turn, 360.0)
-    return PolygonPlan(form, rounds, levels, feeds, heights_of(entries, context), angle)
+    heights = heights_of(entries)
+    # every round is one turn of C, backwards
+    turns = levels.levels * rounds.rounds + rounds.finish
+    extent = Extent(
+        (rounds.finish_apothem, rounds.outside),
+        (levels.bottom, heights.start_z),
+        (
+            angle - 360.0 * turns - lead_angle(form, rounds, rounds.finish_apothem),
+            angle + lead_angle(form, rounds, rounds.apothem),
+        ),
+    )
+    own = {name: getattr(form, name) for name in ("inner", "side", "corner", "half_turn")}
+    own |= {"start_angle": angle, "flush": FLUSH}
+    return ShapePlan(own | locals_of(rounds, levels, feeds, heights), extent)
+
+
+def lead_angle(form: PolygonForm, rounds: PolygonRounds, apothem: float) -> float:
+    """Return the angle of a round's lead-in and lead-out from the zero line, in degrees."""
+    return degrees(acos(corner_distance(form, apothem, rounds.clip) / rounds.outside))
 
 
 def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
@@ -168,35 +148,28 @@ def form_of(entries: ShapeEntries) -> tuple[PolygonForm, float]:
     stock = entries.require_positive("stock_diameter", "the bar's")
     if not stock > flats:
         rule = f"must be greater than across_flats {number(flats)}"
-        raise entries.refuse(f"{entries.written('stock_diameter', stock)} {rule}")
+        raise entries.refuse_word("stock_diameter", stock, rule)
     radius = entries.from_zero("corner_radius")
     if radius and sides == TWO_FLATS:
-        raise entries.refuse(
-            f"{entries.written('corner_radius', radius)}: two flats have no corners"
-        )
+        word = entries.written("corner_radius", radius)
+        raise entries.refuse(f"{word}: two flats have no corners")
     if not radius < flats / 2:
         rule = f"must be less than half of across_flats {number(flats)}"
-        raise entries.refuse(f"{entries.written('corner_radius', radius)} {rule}")
+        raise entries.refuse_word("corner_radius", radius, rule)
     return PolygonForm(sides, flats / 2, radius), stock / 2
 
 
 def rounds_of(
-    entries: ShapeEntries,
-    context: Context,
-    form: PolygonForm,
-    stock: float,
-    cutter: float,
-    levels: int,
+    entries: ShapeEntries, form: PolygonForm, stock: float, cutter: float, levels: int
 ) -> PolygonRounds:
     """Return the rounds from the stock's radius to the polygon and its allowance."""
-    allowance = entries.from_zero("allowance")
+    allowance, context = entries.from_zero("allowance"), entries.context
     height = stock - form.apothem - allowance
-    rounding = context.length(ROUNDING_MM)
-    if not height > rounding:
+    if not height > context.rounding:
         rule = f"must be less than the {number(stock - form.apothem)} from the stock to the flats"
-        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
-    check_finish(entries, context, allowance, cutter)
-    rounds = max(1, rounds_between(0.0, height, cutter, rounding))
+        raise entries.refuse_word("allowance", allowance, rule)
+    check_finish(entries, allowance, cutter)
+    rounds = max(1, rounds_between(0.0, height, cutter, context.rounding))
     check_moves(entries, levels * rounds * form.moves, "stock_diameter and depth_per_pass make")
     step = height / rounds
     final = form.apothem + cutter

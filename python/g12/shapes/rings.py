@@ -16,9 +16,7 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import ROUNDING_MM
-from g12.request.common import CLEARED, SMALLEST_RING_MM
-from g12.request.context import Context
+from g12.request.common import CLEARED
 from g12.shapes.entries import (
     Heights,
     Levels,
@@ -73,26 +71,20 @@ class RampDown(NamedTuple):
     line_share: float
 
 
-def clearing_rings(
-    entries: ShapeEntries, context: Context, width: str, size: float, cutter: float
-) -> ClearingRings:
+def clearing_rings(entries: ShapeEntries, width: str, size: float, cutter: float) -> ClearingRings:
     """Return the rings for a slot or pocket whose entry ``width`` is ``size`` wide."""
-    allowance = entries.from_zero("allowance")
+    allowance, context = entries.from_zero("allowance"), entries.context
     final, rough = size / 2 - cutter, size / 2 - cutter - allowance
-    rounding = context.length(ROUNDING_MM)
-    if final < -rounding:
-        rule = f"must not be less than the cutter's {context.tool_size(2 * cutter)}"
-        raise entries.refuse(f"{entries.written(width, size)} {rule}")
-    if rough < -rounding:
-        diameter = context.tool_size(2 * cutter)
+    diameter, smallest = context.tool_size(2 * cutter), context.smallest_ring
+    if final < -context.rounding:
+        raise entries.refuse_word(width, size, f"must not be less than the cutter's {diameter}")
+    if rough < -context.rounding:
         rule = f"the cutter of {diameter} does not fit between the walls that it leaves"
         raise entries.refuse(f"{entries.written('allowance', allowance)}: {rule}")
-    check_finish(entries, context, allowance, cutter)
-    smallest = context.length(SMALLEST_RING_MM)
+    check_finish(entries, allowance, cutter)
     if 0 < allowance < smallest:
-        rule = f"must be at least {number(smallest)}"
-        raise entries.refuse(f"{entries.written('allowance', allowance)} {rule}")
-    first = min(rough, CLEARED * cutter) if rough > smallest - rounding else 0.0
+        raise entries.refuse_word("allowance", allowance, f"must be at least {number(smallest)}")
+    first = min(rough, CLEARED * cutter) if rough > smallest - context.rounding else 0.0
     further = rounds_between(first, rough, cutter, smallest) if first else 0
     step = (rough - first) / further if further else 0.0
     return ClearingRings(first, step, further, int(allowance > 0), max(final, 0.0))

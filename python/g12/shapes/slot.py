@@ -13,24 +13,19 @@ through the centre where [G12] POLAR_POLE refuses it.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 from g12.errors import number
 from g12.request.common import loaded_tool
-from g12.request.context import Context
 from g12.shapes.entries import (
     Extent,
-    Feeds,
-    Heights,
-    Levels,
     ShapeEntries,
     ShapeMachine,
+    ShapePlan,
     feeds_of,
     heights_of,
     levels_of,
     locals_of,
 )
-from g12.shapes.rings import ClearingRings, RampDown, clearing_rings, half_turns_in_all, ramp_of
+from g12.shapes.rings import clearing_rings, half_turns_in_all, ramp_of
 
 SLOT_ENTRIES = (
     "width",
@@ -44,53 +39,33 @@ SLOT_ENTRIES = (
 )
 
 
-class SlotPlan(NamedTuple):
-    """A checked slot; ``end_distance`` is that of each end's centre from the middle.
-
-    Lengths and feeds are in program units, ``start_angle`` in degrees.
-    """
-
-    end_distance: float
-    rings: ClearingRings
-    ramp: RampDown
-    levels: Levels
-    feeds: Feeds
-    heights: Heights
-    start_angle: float
-
-    def locals(self) -> dict[str, float]:
-        numbers = locals_of(self.rings, self.ramp, self.levels, self.feeds, self.heights)
-        return numbers | {"end_distance": self.end_distance, "start_angle": self.start_angle}
-
-    def extent(self) -> Extent:
-        """Return the extent of the tool's centre; every half turn is half a turn of C, onward."""
-        turned = 180.0 * (half_turns_in_all(self.rings, self.levels, self.ramp) + 1)
-        to_and_fro = not self.rings.first_ring
-        return Extent(
-            (min(self.rings.first_ring, self.end_distance), self.end_distance + self.rings.largest),
-            (-self.levels.levels * self.levels.step_down, self.heights.start_z),
-            (self.start_angle - 180.0 * to_and_fro, self.start_angle + turned),
-        )
-
-
-def plan_slot(entries: ShapeEntries, context: Context, machine: ShapeMachine) -> SlotPlan:
-    cutter = loaded_tool(entries, context).radius
+def plan_slot(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
+    cutter = loaded_tool(entries).radius
     width = entries.require_positive("width", "from wall to wall")
     length = entries.require_positive("length", "over all")
     if not length > width:
         rule = f"must be greater than width {number(width)} (polar_pocket makes a round one)"
-        raise entries.refuse(f"{entries.written('length', length)} {rule}")
-    levels = levels_of(entries, context)
-    rings = clearing_rings(entries, context, "width", width, cutter)
-    feeds = feeds_of(entries, context, machine)
+        raise entries.refuse_word("length", length, rule)
+    levels = levels_of(entries)
+    rings = clearing_rings(entries, "width", width, cutter)
+    feeds = feeds_of(entries, machine)
     angle = entries.angle("angle")
-    heights = heights_of(entries, context)
-    end_distance = (length - width) / 2
+    heights = heights_of(entries)
+    end_distance = (length - width) / 2  # of each end's centre from the middle
     ramp = ramp_of(entries, machine, rings, levels, heights, 2 * end_distance)
     if machine.pole_refused and min(rings.first_ring, end_distance) <= machine.pole:
-        size = context.tool_size(2 * cutter)
+        size = entries.context.tool_size(2 * cutter)
         raise entries.refuse(
             f"{entries.written('width', width)}: the cutter of {size} would pass"
             " through the spindle's centre, which [G12] POLAR_POLE = refuse forbids"
         )
-    return SlotPlan(end_distance, rings, ramp, levels, feeds, heights, angle)
+    own = {"end_distance": end_distance, "start_angle": angle}
+    # every half turn is half a turn of C, onward
+    turned = 180.0 * (half_turns_in_all(rings, levels, ramp) + 1)
+    to_and_fro = not rings.first_ring
+    extent = Extent(
+        (min(rings.first_ring, end_distance), end_distance + rings.largest),
+        (levels.bottom, heights.start_z),
+        (angle - 180.0 * to_and_fro, angle + turned),
+    )
+    return ShapePlan(own | locals_of(rings, ramp, levels, feeds, heights), extent)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import itertools
 
-from g12.cycles.entry import PocketEntry
 from g12.host.interp import (
     INVERSE_TIME,
     PER_REVOLUTION,
@@ -19,7 +18,7 @@ from g12.host.interp import (
     ToolTableEntry,
 )
 from g12.host.machine import MACHINE
-from g12.host.messages import code_of_block, main_program, message_once
+from g12.host.messages import code_of_block, main_program
 from g12.host.modes import (
     INCH_UNITS,
     diameter_mode,
@@ -83,7 +82,10 @@ def state_of(interp: Interp) -> CycleState:
 
 
 def words_of_block(interp: Interp) -> Words:
-    """Return the words of the block being remapped; refuse a second code that reads them."""
+    """Return the words of the block being remapped, and the state before it.
+
+    Refuses a second code that reads them.
+    """
     block = interp.blocks[interp.remap_level]
     values = {
         letter: getattr(block, field) for letter, flag, field in WORD_FIELDS if getattr(block, flag)
@@ -94,7 +96,7 @@ def words_of_block(interp: Interp) -> Words:
         values["@"] = block.radius
     if block.theta_flag:
         values["^"] = block.theta
-    words = Words(code_of_block(interp), values)
+    words = Words(code_of_block(interp), values, snapshot(interp))
     other = code_reading_words(block, words)
     if other:
         raise words.refuse(f"{other} cannot be in the same block")
@@ -168,12 +170,6 @@ def remember_radius(interp: Interp, radius: float) -> None:
     state_of(interp).radius_commanded = True
 
 
-def report_other_cutter(interp: Interp, context: Context, text: str | None) -> None:
-    """Show the operator that D is not the loaded tool: once for each program and tool."""
-    if text and context.spindle_tool:
-        message_once(interp, context.spindle_tool.number, text)
-
-
 def first_plane(interp: Interp) -> float | None:
     """Return the circle mill's first reference plane as last commanded by this program.
 
@@ -200,7 +196,7 @@ def snapshot(interp: Interp) -> Context:
         incremental=interp.distance_mode == INCREMENTAL_MODE,
         plane=PLANE_CODES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
-        per_revolution=per_revolution(interp),
+        per_revolution=interp.feed_mode == PER_REVOLUTION,
         speed=spindle_speed(interp),
         feed=interp.feed_rate,
         compensated=interp.cutter_comp_side != 0,
@@ -241,28 +237,6 @@ def machine_frame(interp: Interp) -> MachineFrame:
         unit=1 / program_units_per_machine_unit(interp),
         millimetres=millimetres_per_machine_unit(),
     )
-
-
-def per_revolution(interp: Interp) -> bool:
-    return interp.feed_mode == PER_REVOLUTION
-
-
-def pocket_entry() -> PocketEntry:
-    settings = MACHINE.settings
-    return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
-
-
-def traverse_feed(interp: Interp) -> float:
-    """Return the feed per minute of Yasnac's fast moves in program units, 0 for rapids."""
-    return MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp)
-
-
-def hand_over(interp: Interp, **locals_: float) -> None:
-    """Set the named locals of the NGC sub that runs next, and note the modes to restore."""
-    params = interp.params
-    for name, value in locals_.items():
-        params[name] = value
-    note_modes(interp)
 
 
 def note_modes(interp: Interp) -> None:

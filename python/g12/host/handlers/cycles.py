@@ -8,11 +8,15 @@ from collections.abc import Callable
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
+from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
+from g12.cycles.plan import CyclePlan
 from g12.host import messages
+from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
-from g12.host.interp import Interp
+from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.machine import MACHINE
+from g12.host.modes import program_units_per_machine_unit
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, other_cutter
 from g12.request.words import Words
 
@@ -23,71 +27,69 @@ def check_at_start() -> None:
     MACHINE.read("settings", "travel")
 
 
-def prepare_haas(interp: Interp, arc: int) -> int:
-    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
-    other = other_cutter(words.code, words.value("D"), context, context.last_radius)
-    clearing, entry = MACHINE.settings.clearing, cycle_state.pocket_entry()
-    pocket = plan_pocket(words, context, clearing, entry)
-    cycle_state.stay_within_limits(interp, words, pocket.extent())
-    hand = 1 if arc == COUNTERCLOCKWISE else -1
-    cycle_state.hand_over(interp, **pocket.locals(), arc=arc, hand=hand)
-    cycle_state.report_other_cutter(interp, context, other)
-    if pocket.commanded_radius is not None:
-        cycle_state.remember_radius(interp, pocket.commanded_radius)
-    if pocket.message:
-        messages.message(pocket.message)
+def hand_over(
+    interp: Interp, words: Words, plan: CyclePlan, other: str | None = None, **more: float
+) -> int:
+    """Set the locals of a plan that stays in the travel; show the operator its messages.
+
+    ``other`` is that of a D that is not the loaded tool, once for each program and tool.
+    """
+    cycle_state.stay_within_limits(interp, words, plan.extent)
+    set_locals_at(interp, interp.call_level, {**plan.locals, **more})
+    cycle_state.note_modes(interp)
+    tool = words.context.spindle_tool
+    if other and tool:
+        messages.message_once(interp, tool.number, other)
+    if plan.commanded_radius is not None:
+        cycle_state.remember_radius(interp, plan.commanded_radius)
+    if plan.message:
+        messages.message(plan.message)
     return INTERP_OK
+
+
+def prepare_haas(interp: Interp, arc: int) -> int:
+    words, settings = cycle_state.words_of_block(interp), MACHINE.settings
+    other = other_cutter(words, words.context.last_radius)
+    entry = PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
+    plan = plan_pocket(words, settings.clearing, entry)
+    hand = 1 if arc == COUNTERCLOCKWISE else -1
+    return hand_over(interp, words, plan, other, arc=arc, hand=hand)
 
 
 def prepare_yasnac(interp: Interp, arc: int) -> int:
-    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
-    other = other_cutter(words.code, words.value("D"), context)
-    circle = yasnac.plan_circle(words, context)
-    cycle_state.stay_within_limits(interp, words, circle.extent(context.z))
-    cycle_state.report_other_cutter(interp, context, other)
-    cycle_state.hand_over(
+    words = cycle_state.words_of_block(interp)
+    other, plan = other_cutter(words), yasnac.plan_circle(words)
+    return hand_over(
         interp,
-        **circle._asdict(),
+        words,
+        plan,
+        other,
         arc=arc,
-        traverse=cycle_state.traverse_feed(interp),
+        traverse=MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp),
         feed=interp.feed_rate,
-        per_revolution=cycle_state.per_revolution(interp),
+        per_revolution=interp.feed_mode == PER_REVOLUTION,
     )
-    return INTERP_OK
 
 
 def prepare_mitsubishi(interp: Interp, arc: int) -> int:
-    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
-    other = other_cutter(words.code, words.value("D"), context)
-    circle = mitsubishi.plan_circle(words, context)
-    cycle_state.stay_within_limits(interp, words, circle.extent(context))
-    cycle_state.report_other_cutter(interp, context, other)
-    cycle_state.hand_over(interp, **circle._asdict(), arc=arc)
-    return INTERP_OK
-
-
-def planned_event(interp: Interp, pocket: bool) -> circle_mill.MillEvent:
-    """Return the event of a code block, or of the call if the code is in o<circle_mill>."""
-    words, context = cycle_state.words_of_block(interp), cycle_state.snapshot(interp)
-    plane = cycle_state.first_plane(interp)
-    entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))
-    if entries is None:
-        event = circle_mill.plan_code(words, context, plane, pocket)
-    else:
-        words.check_known("no words inside o<circle_mill>")
-        words = Words("circle_mill", circle_mill.entries_by_letter(entries))
-        event = circle_mill.plan_call(words, context, plane)
-    cycle_state.stay_within_limits(interp, words, event.extent())
-    return event
+    words = cycle_state.words_of_block(interp)
+    other, plan = other_cutter(words), mitsubishi.plan_circle(words)
+    return hand_over(interp, words, plan, other, arc=arc)
 
 
 def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
-    event = planned_event(interp, pocket)
-    cycle_state.hand_over(interp, **event.locals())
-    cycle_state.remember_first_plane(interp, event.position.first_plane)
-    if event.message:
-        messages.message(event.message)
-    return INTERP_OK
+    """Check the event of a code block, or of the call if the code is in o<circle_mill>."""
+    words, plane = cycle_state.words_of_block(interp), cycle_state.first_plane(interp)
+    entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))
+    if entries is None:
+        plan = circle_mill.plan_code(words, plane, pocket)
+    else:
+        words.check_known("no words inside o<circle_mill>")
+        words = Words("circle_mill", circle_mill.entries_by_letter(entries), words.context)
+        plan = circle_mill.plan_call(words, plane)
+    status = hand_over(interp, words, plan)
+    cycle_state.remember_first_plane(interp, plan.locals["first_plane"])
+    return status
 
 
 def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:

@@ -8,7 +8,7 @@ passes the values of its motion to the sub. G13.4 restores the modes before G12.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 from interpreter import INTERP_OK
 
@@ -26,23 +26,13 @@ from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE, PolarSettings
 from g12.polar.start import check_section_start, polar_setup
-from g12.request.context import Context
 from g12.section.codes import code_of_handler
 from g12.section.line import BlockLocation
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import holes, polygon, round_pocket, slot
-from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine
-
-
-class Plan(Protocol):
-    def locals(self) -> dict[str, float]:
-        """Return the named locals of the sub."""
-
-    def extent(self) -> Extent:
-        """Return the extent of the axes' motion."""
-
 
 AnyMachine = TypeVar("AnyMachine")
 
@@ -51,7 +41,7 @@ class Shape(NamedTuple, Generic[AnyMachine]):
     """A shape: the names of its entries, and its planner for a machine."""
 
     entries: tuple[str, ...]
-    plan: Callable[[ShapeEntries, Context, AnyMachine], Plan]
+    plan: Callable[[ShapeEntries, AnyMachine], ShapePlan]
 
 
 SHAPE_CALLS: dict[str, Shape[ShapeMachine]] = {
@@ -81,20 +71,23 @@ def polar_shape(self, **words):
     setup = polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
     if name in HOLE_CALLS:
         return prepare_holes(self, level, name, start, setup)
-    entries = ShapeEntries(name, SHAPE_CALLS[name].entries, locals_at(self, level))
+    entries = named_entries(self, name, SHAPE_CALLS[name].entries, level)
     machine = shape_machine(setup)
-    plan = SHAPE_CALLS[name].plan(entries, cycle_state.snapshot(self), machine)
-    check_nearest(entries, plan.extent(), machine)
-    stay_in_travel(entries, plan.extent(), setup)
-    numbers = plan.locals()
+    plan = SHAPE_CALLS[name].plan(entries, machine)
+    check_nearest(entries, plan.extent, machine)
+    stay_in_travel(entries, plan.extent, setup)
+    own: dict[str, float] = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     # on a wrapped axis a sign is the direction of the turn, and 360 is refused
     if self.c_axis_wrapped:
-        numbers["start_angle"] = numbers["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
-    x_words = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
-    set_locals_at(self, level, {**numbers, **x_words, **section_codes(entries)})
+        own["start_angle"] = plan.locals["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
+    set_locals_at(self, level, {**plan.locals, **own, **section_codes(entries)})
     cycle_state.note_modes(self)
     self.execute(STOP_HERE)
     return INTERP_OK
+
+
+def named_entries(interp: Interp, name: str, names: tuple[str, ...], level: int) -> ShapeEntries:
+    return ShapeEntries(name, names, locals_at(interp, level), cycle_state.snapshot(interp))
 
 
 def prepare_holes(
@@ -105,16 +98,14 @@ def prepare_holes(
     With blended rapids C would turn before the tool is out of its hole, or before the move that
     precedes the call has ended.
     """
-    entries = ShapeEntries(name, HOLE_CALLS[name].entries, locals_at(interp, level))
+    entries = named_entries(interp, name, HOLE_CALLS[name].entries, level)
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
     machine = hole_machine(interp, start, setup)
-    plan = HOLE_CALLS[name].plan(entries, cycle_state.snapshot(interp), machine)
-    stay_in_travel(entries, plan.extent(), setup)
-    numbers = plan.locals()
-    for x_word in ("at_x", "at_x_axis"):
-        numbers[x_word] *= 1 + start.diameter
+    plan = HOLE_CALLS[name].plan(entries, machine)
+    stay_in_travel(entries, plan.extent, setup)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
-    set_locals_at(interp, level, {**numbers, **own})
+    x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
+    set_locals_at(interp, level, {**plan.locals, **x_words, **own})
     cycle_state.note_modes(interp)
     state = cycle_state.state_of(interp)
     state.path, state.spindle = path_control(interp), interp.active_spindle

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The result of the planner of any cycle."""
+
+from typing import NamedTuple
+
+from g12.request.travel import CycleExtent
+
+
+class CyclePlan(NamedTuple):
+    """A checked cycle: ``locals`` are the named locals of its sub, which its .ngc file explains.
+
+    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal.
+    ``commanded_radius`` is that of the cutter that a Haas D names.
+    """
+
+    locals: dict[str, float]
+    extent: CycleExtent
+    message: str | None = None
+    commanded_radius: float | None = None

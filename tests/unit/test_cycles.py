@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The planners of the cycles without LinuxCNC: what each refuses, and the locals of its sub.
+
+test_circle_mill.py has the locals of the event.
+"""
+
+from functools import partial
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.cycles import mitsubishi, yasnac
+from g12.cycles.circle_mill import plan_call, plan_code
+from g12.cycles.entry import PocketEntry
+from g12.cycles.haas import plan_pocket
+from g12.errors import Refusal
+from g12.request.context import Tool
+from g12.request.travel import CycleExtent
+from g12.request.words import Words
+from support.planner_context import INCH, MM, reported, words_of
+
+TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
+HAAS = INCH._replace(z=0.1, spindle_tool=TABLE[1], tool_in_table=TABLE.get)
+STANDING = MM._replace(x=1.0, y=2.0, z=3.0)
+PLANNERS = {  # code, planner, state before the block, words that a row does not have
+    "haas": ("G12", plan_pocket, HAAS, ""),
+    "yasnac": ("G12", yasnac.plan_circle, MM, ""),
+    "mitsubishi": ("G13", mitsubishi.plan_circle, STANDING, ""),
+    "pocket": ("G13.2", partial(plan_code, plane=None, pocket=True), INCH, "Y2 Z-.5 R1.5 I.1 H2"),
+    "perimeter": ("G12.2", partial(plan_code, plane=None, pocket=False), INCH, "Z-.5 R1.5 I.1 H2"),
+    "call": ("circle_mill", partial(plan_call, plane=None), INCH, "Z-.5 R1.5 W.1 C2"),
+}
+
+
+def plan(name, words="", found=None, *arguments, **changed):
+    """Return the plan of a block; ``changed`` is what differs in the state before it."""
+    code, planner, usual, needed = PLANNERS[name]
+    event = "X1 Y2" if needed else ""
+    context = (found or usual)._replace(**changed)
+    return planner(Words(code, words_of(event, needed, words), context), *arguments)
+
+
+NO_PLANE = "is missing: the first reference plane, which no earlier event has commanded"
+NO_FINISH = "there is no finish pass with the tool centre on the circle"
+SIDE = "is missing: 0 tool centre on the circle, 1 left, 2 right of it"
+WITH_D, NO_D = "tool radius 10, D2", "no D"
+
+
+def beyond(word, at, tool, rule):
+    return f"{word} puts the tool centre at X{at} from the circle's centre ({tool}): {rule}"
+
+
+def too_near(apart, to):
+    return f"only {apart} from {to}; the smallest arc needs 0.00508"
+
+
+REFUSED = {
+    "haas": [
+        ("R.5 I1", "R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F"),
+        ("D1", "I is missing: the radius of the first circle"),
+        ("I.12505 D1", "I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0002"),
+        ("I0 D0", "I0 must be greater than 0"),
+        ("I.5 K.5 Q.1", "I0.5 must be less than K0.5"),
+        ("I.5 L0", "L0 must be at least 1"),
+        ("I.5 L200000", "L makes 200000 circles, the most is 100000"),
+        ("I.5 D77", "D77 is not in the tool table"),
+        ("I.5 K1 Q1e-320", "Q9.99989e-321 makes 1000000001 circles, the most is 100000"),
+    ],
+    "yasnac": [
+        ("I0", "I0 must not be 0"),
+        ("I-5 R-6 D2", "I-5 must exceed the tool radius 10 (D2) in size"),
+        ("I50 R50 D2", beyond("R50", 40, WITH_D,
+         "it must be from 0 to less than X40, where I50 puts it")),
+        ("I30 R29.99746", beyond("R29.99746", 29.99746, NO_D,
+         too_near(0.00254, "X30, where I30 puts it"))),
+        ("I50 R20 K20.004 Q1 D2", beyond("K20.004", 10.004, WITH_D,
+         too_near(0.004, "X10, where the cut begins"))),
+        ("I-50 R-20 K-49.999 Q1", beyond("K-49.999", -49.999, NO_D,
+         too_near(0.001, "X-50, where I-50 puts it"))),
+        ("I50 R20 J20", "R and J are the same word: give one of them"),
+        ("I50 K20", "K20 needs Q as well"),
+        ("I50 K50 Q1", beyond("K50", 50, NO_D,
+         "it must be between X0 and X50, where I50 puts it")),
+        ("I50 R30 K30 Q1 D2", beyond("K30", 20, WITH_D,
+         "it must be between X20 and X40, where I50 puts it")),
+        ("I50 D3", "D3 has the negative diameter -4 in the tool table"),
+        ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
+        ("I50 Z-1", "Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
+    ],
+    "mitsubishi": [
+        ("R.5 D2", "R0.5 is not a word of this cycle, which knows I D F"),
+        ("I50", "D is missing: the tool whose radius reduces the circle, D0 for none"),
+        ("I0 D0", "I0 must be greater than the tool radius 0 (D0) by at least 0.00508"),
+    ],
+    "pocket": [
+        ("X", "X is missing: the circle's centre"),
+        ("Y", "Y is missing: the circle's centre"),
+        ("Z", "Z is missing: the final depth"),
+        ("R", "R is missing: the circle's radius"),
+        ("I", f"I {NO_PLANE}"),
+        ("H", f"H {SIDE}"),
+        ("H3", "H3 must be at most 2"),
+        ("D4", "D4 must be at most 3: D is the direction of the cut,"
+         " the cutter is the tool in the spindle"),
+        ("D.5", "D0.5 must be a whole number"),
+        ("J.00005", "J0.00005 must be at least 0.0002"),
+        ("Q.00005", "Q0.00005 must be at least 0.0002"),
+        ("L1", "L needs Q as well: the finish dimension"),
+        ("Q.02 L2", "L2 must be at most 1"),
+        ("E.05", "E0.05 must not be below the first reference plane I0.1"),
+        ("Z.1", "Z0.1 must be below the first reference plane I0.1"),
+        ("Z.09 Q.02", "Z0.09 must be below the first reference plane I0.1 by more than Q0.02"),
+        ("R.27 Q.02", "R0.27 must be greater than the tool radius 0.25 (T1) + Q0.02"),
+        ("W1", "W1 is not a word of this cycle, which knows X Y Z I E R D H K J Q L P F"),
+        ("J.001 K.0001", "J and K make 7500000 circles, the most is 100000"),
+    ],
+    "perimeter": [
+        ("H1 J.3", "J0.3 is the roughing width of a pocket"),
+        ("H0 Q.02", f"Q0.02: {NO_FINISH} (H0)"),
+        ("R.2", "R0.2 must be greater than the tool radius 0.25 (T1)"),
+        ("H0 R.00005", "R0.00005 must be at least 0.0002"),
+    ],
+    "call": [
+        ("W", f"W {NO_PLANE}"),
+        ("C", f"C {SIDE}"),
+        ("G1", "G1 must be 0 (perimeter) or 7 (pocket)"),
+        ("O0", "O0 must not be below the first reference plane W0.1"),
+        ("L0", "L0 must not be 0; -9999 leaves it out"),
+        ("F0", "F0 must be greater than 0"),
+        ("V-1", "V-1 must be greater than 0 (a call has 15 entries, -9999 leaves one out)"),
+        ("C0 L-.02", f"L0.02: {NO_FINISH} (C0)"),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "rule"), [(name, *row) for name, rows in REFUSED.items() for row in rows]
+)
+def test_a_bad_block_is_refused_by_name(name, words, rule):
+    assert reported(plan, name, words) == f"{PLANNERS[name][0]}: {rule}"
+
+
+VALID = {"haas": "I.75 Z-1", "yasnac": "I50", "mitsubishi": "I50 D2", "pocket": ""}
+DIAMETER = "T8 in the spindle needs a diameter above 0 in the tool table, not"
+OFFSET = "the tool is still offset: after G40 move in X or Y first"
+BAD_MODES = [
+    *((name, *row) for name in VALID for row in [
+        (dict(inverse_time=True),
+         "needs feed per minute or revolution (G94, G95), but G93 is active"),
+        (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
+        (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
+        (dict(per_revolution=True),
+         "needs a spindle speed for feed per revolution (G95), but S is 0"),
+    ]),
+    *((name, dict(plane="G18"), "needs the XY plane G17, but G18 is active")
+      for name in ("haas", "yasnac", "pocket")),
+    ("mitsubishi", dict(plane="G17.1"), "needs plane G17, G18 or G19, but G17.1 is active"),
+    *((name, dict(offset_pending=True), OFFSET) for name in ("haas", "yasnac", "mitsubishi")),
+    ("haas", dict(spindle_tool=TABLE[3]),
+     "T3 in the spindle has the negative diameter -0.25 in the tool table"),
+    ("haas", dict(spindle_tool=None),
+     "D is missing, none was commanded before and no tool is loaded"),
+    ("haas", dict(last_radius=0.8),
+     "I0.75 must be greater than the tool radius 0.8 (the D last commanded)"),
+    ("pocket", dict(spindle_tool=None), "no tool is loaded: its diameter sets the path"),
+    ("pocket", dict(spindle_tool=Tool(8, 0.0)), f"{DIAMETER} 0"),
+    ("pocket", dict(spindle_tool=Tool(8, -0.25)), f"{DIAMETER} -0.5"),
+    ("pocket", dict(spindle_tool=Tool(8, 0.005)),
+     "J is missing: its default, the tool diameter 0.01 less 0.01, is too small"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "modes", "rule"), BAD_MODES)
+def test_a_mode_that_cannot_work_is_refused(name, modes, rule):
+    assert reported(plan, name, VALID[name], **modes) == f"{PLANNERS[name][0]}: {rule}"
+
+
+OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
+
+
+@pytest.mark.parametrize(
+    ("name", "words", "text"),
+    [
+        ("haas", "I.5 D1", "greater than the tool radius 6{} (D1)"),
+        ("haas", "I6.001 D1", "must exceed the tool radius 6{} (D1) by"),
+        ("haas", "I7 K30 Q13 D1", "Q13 is greater than the tool diameter 12{}: material is left"),
+        ("haas", "I19 K30 Q9 D1", "I19 is greater than 1.5 x the tool diameter 12{}: a core is"),
+        ("yasnac", "I.5 D1", "must exceed the tool radius 6{} (D1) in size"),
+        ("yasnac", "I9 R1 D1", "centre (tool radius 6{}, D1): it must be"),
+        ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1) by"),
+        ("pocket", "Z-1 I1 R.5", "greater than the tool radius 6{} (T1)"),
+        ("pocket", "R60 J13.5", "than the tool diameter 12{}: material is left"),
+    ],
+)
+def test_a_tools_size_has_its_unit_where_the_machines_is_another(name, words, text):
+    """The table's numbers are the machine's: 0.5 may look right to who does not see the G21."""
+    for found, unit in ((OTHER_UNITS, " mm"), (OTHER_UNITS._replace(unit=""), "")):
+        try:
+            message = plan(name, words, found).message
+        except Refusal as refusal:
+            message = refusal.message
+        assert text.format(unit) in message
+
+
+def test_how_far_each_goes():
+    deep = MM._replace(incremental=True)
+    assert plan("haas", "I20 K50 Q5 Z-4 L3 D2", deep).extent == CycleExtent(
+        "G17", (0, 0, 6), 40, (6, -2)
+    )
+    assert plan("yasnac", "I-50 R-40 D2").extent == CycleExtent("G17", (0, 0, 10), 40)
+    upright = plan("mitsubishi", "I-50 D2", plane="G18").extent
+    assert upright == CycleExtent("G18", (1, 2, 3), 40)
+    cutter = MM._replace(spindle_tool=Tool(1, 12.0))
+    for name, words, radius in (("pocket", "H2", 38.0), ("perimeter", "H1", 62.5)):
+        event = plan(name, f"X3 Y4 Z-9 I2 E5 R50 Q.5 {words}", cutter)
+        assert event.extent == CycleExtent("G17", (3, 4, -9), radius, (2, 5, -9))
+
+
+# ---------------------------------------------------------------- Haas
+
+
+def ring_radii(numbers):
+    """Walk the links as the NGC body does."""
+    radii, grow = [numbers["first_radius"]], numbers["step"]
+    for left in range(numbers["links"], 0, -1):
+        radii.append(radii[-1] + grow)
+        grow -= numbers["shorter"] * (left == 2)
+    return radii
+
+
+def test_a_spiral_ends_at_the_finished_radius():
+    found = ring_radii(plan("haas", "I.3 K.7 Q.2 D1 Z-1", None, "spiral").locals)
+    assert found == pytest.approx([0.175, 0.275, 0.375, 0.475, 0.575], abs=1e-12)
+
+
+def test_modes_that_can():
+    assert plan("haas", "I.75 Z-1 D1", per_revolution=True, speed=100.0)
+    assert plan("haas", "X1 I.75 Z-1 D1", offset_pending=True)  # X ends the offset
+
+
+@pytest.mark.parametrize(
+    ("words", "found", "radius", "commanded"),
+    [("I.75", dict(last_radius=0.2), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
+)
+def test_the_cutter_is_the_block_s_then_the_last_commanded(words, found, radius, commanded):
+    pocket = plan("haas", f"{words} Z-1", **found)
+    assert pocket.locals["first_radius"] == pytest.approx(radius)
+    assert pocket.commanded_radius == commanded
+
+
+@pytest.mark.parametrize(
+    ("words", "helix", "message"),
+    [
+        ("I.3 K1.5 Q.3 Z-1", False,
+         "Q0.3 is greater than the tool diameter 0.25: material is left between the rings"),
+        ("I.4 K1.5 Q.25 Z-1", False,
+         "I0.4 is greater than 1.5 x the tool diameter 0.25: a core is left in the centre"),
+        # a helix clears its own radius, 0.9 of the cutter's, more than a straight way down
+        ("I.4875 K1.5 Q.25 Z-1", True, None),
+        ("I.4876 K1.5 Q.25 Z-1", True,
+         "I0.4876 is greater than 1.95 x the tool diameter 0.25: a ring is left about the centre"),
+    ],
+)  # fmt: skip
+def test_material_left_is_a_message(words, helix, message):
+    made = plan("haas", f"{words} D1", None, "rings", PocketEntry(helix=helix))
+    assert made.message == (message and f"G12: {message}")
+
+
+def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
+    assert plan("haas", "I.3 K1.5 Q.3 Z-1 D0").message is None
+    assert "is up from the tool" in plan("haas", "I.3 Z.5 D1", incremental=True).message
+
+
+LOCALS = ["x", "y", "move_to_centre", "z", "z_step", "levels", "first_radius", "links", "step",
+          "shorter", "restart", "rings"]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("words", "incremental", "expected"),
+    [
+        ("X1 Y2 K1.5 Q.5 Z-.5", False, [1, 2, True, -0.5, 0, 1, 0.625, 2, 0.5, 0.25, False, True]),
+        ("Y5 Z-.5", True, [3, 9, True, -0.4, -0.5, 1, 0.625, 0, 0, 0, True, True]),
+    ],
+)
+def test_the_locals_of_a_pocket(words, incremental, expected):
+    found = plan("haas", f"I.75 D1 {words}", x=3.0, y=4.0, incremental=incremental).locals
+    assert [found[name] for name in LOCALS] == pytest.approx(expected)
+
+
+# ---------------------------------------------------------------- Mitsubishi
+
+
+@pytest.mark.parametrize(
+    ("plane", "words", "locals_"),
+    [
+        ("G17", "I50 D2", (17, 1, 40)),
+        ("G18", "I.00508 D0", (18, 3, 0.00508)),
+        ("G19", "I1 D3", (19, 2, 3)),  # a negative diameter enlarges the circle
+    ],
+)
+def test_the_circle_lies_along_the_plane_s_first_axis(plane, words, locals_):
+    assert tuple(plan("mitsubishi", words, plane=plane).locals.values()) == locals_
+
+
+# ---------------------------------------------------------------- Yasnac
+
+
+def spiral_radii(numbers):
+    """Walk the half turns as the NGC body does."""
+    positions, grow = [numbers["first"]], numbers["growth"]
+    for left in range(numbers["half_turns"], 0, -1):
+        positions.append(-positions[-1] - grow)
+        grow = (left == 3) * numbers["shrink"] * grow - grow
+    return positions
+
+
+def test_the_circle_on_the_side_of_i():
+    found = plan("yasnac", "I50 J40 D2", x=3.0, y=-4.0).locals
+    expected = dict(x=3, y=-4, approach=30, first=40, half_turns=0, radius=40, circles=1)
+    assert {name: found[name] for name in expected} == expected
+    assert plan("yasnac", "I.00508").locals["radius"] == 0.00508  # the smallest
+
+
+def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move():
+    table = {2: Tool(2, 10 - 1e-11)}
+    assert plan("yasnac", "I50 R10 D2", tool_in_table=table.get).locals["approach"] == 0
+
+
+def test_the_spiral_grows_from_the_smallest_arc_to_the_finished_circle():
+    found = spiral_radii(plan("yasnac", "I50 R20 K20.00508 Q60 D2").locals)
+    assert found == pytest.approx([10.00508, -25.00254, 40], abs=1e-12)
+
+
+LENGTHS = st.floats(0.01, 60.0)
+
+
+@given(
+    finished=LENGTHS,
+    traverse=st.none() | LENGTHS,
+    first=st.none() | LENGTHS,
+    pitch=st.floats(0.1, 20.0),
+    tool=st.sampled_from([None, 0, 1, 2]),
+    side=st.sampled_from([1, -1]),
+)
+def test_any_block_is_refused_or_keeps_the_rules(finished, traverse, first, pitch, tool, side):
+    offset = {None: 0.0, 0: 0.0, 1: 6.0, 2: 10.0}[tool]
+    words = {"I": side * finished}
+    words |= {} if traverse is None else {"R": side * traverse}
+    words |= {} if first is None else {"K": side * first, "Q": pitch}
+    words |= {} if tool is None else {"D": tool}
+    inner = 0.0 if traverse is None else traverse - offset
+    sound = 0 <= inner < finished - offset
+    sound = sound and (first is None or inner < first - offset < finished - offset)
+    try:
+        numbers = yasnac.plan_circle(Words("G12", words, MM)).locals
+    except Refusal:
+        near = [inner, finished - offset] + ([] if first is None else [first - offset])
+        close = min(abs(a - b) for a in near for b in [*near, 0.0] if a is not b)
+        assert not sound or close < 0.003
+        return
+    assert sound or abs(inner) < 1e-5
+    positions = spiral_radii(numbers)
+    assert abs(positions[-1]) == pytest.approx(finished - offset)
+    growth = [abs(b) - abs(a) for a, b in zip(positions, positions[1:])]
+    assert all(0 < step <= pitch / 2 + 1e-6 for step in growth)

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What all cycles share: words and their numbers, counts of steps, the tool of D, travel."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from g12.lengths import LARGEST, MM_PER_INCH
+from g12.request.common import other_cutter, steps_between
+from g12.request.context import Tool
+from g12.request.travel import CycleExtent, MachineFrame, check_travel
+from g12.request.words import Words
+from support.planner_context import MM, reported
+
+# ---------------------------------------------------------------- words
+
+
+def words(**values):
+    return Words("G12", values, MM)
+
+
+def test_whole_numbers_are_those_of_linuxcnc():
+    for value in (1.00009, 0.99991):
+        assert words(L=value).take_whole("L", least=1) == 1
+    for value in (1.001, 0.9989):
+        rule = f"G12: L{value} must be a whole number"
+        assert reported(words(L=value).take_whole, "L", least=0) == rule
+    assert reported(words(D=-1.0).take_whole, "D", least=0) == "G12: D-1 must be at least 0"
+    assert words(D=3.0).take_whole("D", least=3, most=3) == 3
+    assert words().take_whole("D", least=1, default=7) == 7
+
+
+@pytest.mark.parametrize("value", [1.001e6, float("nan")])
+def test_a_number_beyond_any_machine_is_refused_at_once(value):
+    assert reported(words, X=value).endswith("is beyond 1000000")
+    assert words(X=LARGEST, Y=-LARGEST).take("Y") == -LARGEST
+
+
+# ---------------------------------------------------------------- steps
+
+TOLERANCE = 1e-6
+
+
+@given(first=st.floats(0, 50), way=st.floats(0.01, 50), step=st.floats(0.001, 50))
+def test_the_steps_are_enough_and_one_less_would_not_be(first, way, step):
+    count = steps_between(first, first + way, step, TOLERANCE)
+    assert count * step >= way - 2 * TOLERANCE
+    assert (count - 1) * step < way
+
+
+def test_a_quotient_beyond_all_counting_is_still_a_count():
+    for step in (1e-300, 1e-310):
+        assert steps_between(0.0, 1e6, step, TOLERANCE) == 1_000_000_000
+
+
+# ---------------------------------------------------------------- the tool of D
+
+LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
+
+
+@pytest.mark.parametrize(
+    ("found", "d_word", "last", "message"),
+    [
+        (LOADED, None, 6.4, "the D last commanded, diameter 12.8; the loaded tool T1 has 12"),
+        (LOADED._replace(unit="in"), 2.0, 6.0, "D2, diameter 20 in; the loaded tool T1 has 12 in"),
+        (LOADED, None, 5.8, None),  # wear
+        (LOADED, None, None, None),
+        (LOADED, 0.0, 9.0, None),
+        (LOADED, 4.0, 9.0, None),  # no diameter, as D0
+        (LOADED, 77.0, 9.0, None),  # refused elsewhere
+        (MM, 2.0, None, None),  # nothing is loaded
+        (MM._replace(spindle_tool=Tool(4, 0.0)), 2.0, None, None),
+    ],
+)
+def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, message):
+    block = Words("G12", {} if d_word is None else {"D": d_word}, found)
+    assert other_cutter(block, last) == (message and f"G12: the cycle uses {message}")
+
+
+# ---------------------------------------------------------------- travel
+
+AXES = {"X": (-100.0, 300.0), "Y": (-200.0, 200.0), "Z": (-50.0, 60.0)}
+PLAIN = MachineFrame((0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0), 1.0, 1.0)
+SHIFTED = MachineFrame((10.0, 0.0, -1.0), 90.0, (100.0, 50.0, 20.0), 1.0, 1.0)
+INCHES = PLAIN._replace(unit=MM_PER_INCH)  # the program's, on a machine in mm
+METRIC = PLAIN._replace(unit=1 / MM_PER_INCH, millimetres=MM_PER_INCH)  # the other way round
+
+
+@pytest.mark.parametrize(
+    ("centre", "radius", "heights", "frame", "rule"),
+    [
+        ((200, 0, 0), 100.01, (), PLAIN, "X axis would go to 300.01 mm, beyond its limit 300 mm"),
+        ((100, 150, 0), 51, (), PLAIN, "Y axis would go to 201 mm, beyond its limit 200 mm"),
+        ((100, -150, 0), 51, (), PLAIN, "Y axis would go to -201 mm, beyond its limit -200 mm"),
+        ((0, 0, 0), 5, (2, -51, -3), PLAIN, "Z axis would go to -51 mm, beyond its limit -50 mm"),
+        ((0, 0, 0), 5, (2, 61, -3), PLAIN, "Z axis would go to 61 mm, beyond its limit 60 mm"),
+        ((30, 7, 2), 111, (), SHIFTED, "Y axis would go to 201 mm, beyond its limit 200 mm"),
+        ((14, 0, 0), 1, (), INCHES,
+         "X axis would go to 381 mm, beyond its limit 300 mm (G20 is active)"),
+        ((7645, 0, 0), 1, (), METRIC,
+         "X axis would go to 301.023622 in, beyond its limit 300 in (G21 is active)"),
+    ],
+)  # fmt: skip
+def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, frame, rule):
+    extent = CycleExtent("G17", centre, radius, heights)
+    assert reported(check_travel, words(), extent, frame, AXES) == f"G12: the {rule}"
+
+
+def test_one_that_just_fits_is_not():
+    check_travel(words(), CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)), PLAIN, AXES)
+
+
+def test_offsets_rotation_and_tool_are_those_of_the_machine():
+    assert SHIFTED.position((30.0, 7.0, 2.0)) == pytest.approx((100 - 7, 50 + 40, 21))
+
+
+@pytest.mark.parametrize(("plane", "along"), [("G17", (0, 1)), ("G18", (2, 0)), ("G19", (1, 2))])
+@pytest.mark.parametrize("rotation", [0, 30, 200])
+def test_the_widths_are_those_of_every_point_of_the_circle(plane, along, rotation):
+    frame = MachineFrame((1.0, 2.0, 3.0), rotation, (4.0, 5.0, 6.0), 1 / MM_PER_INCH, MM_PER_INCH)
+    extent = CycleExtent(plane, (7.0, 8.0, 9.0), 25.0)
+    points = []
+    for turn in range(3600):
+        point = list(extent.centre)
+        point[along[0]] += 25.0 * math.cos(math.radians(turn / 10))
+        point[along[1]] += 25.0 * math.sin(math.radians(turn / 10))
+        points.append(frame.position(point))
+    centre = frame.position(extent.centre)
+    for axis, width in enumerate(frame.half_widths(extent)):
+        reached = max(abs(point[axis] - centre[axis]) for point in points)
+        assert reached == pytest.approx(width, abs=1e-5)
