@@ -60,7 +60,6 @@ def program_from_events(text: str, units: str | None = None) -> str:
 
 
 def calls_of_events(text: str) -> Iterator[str]:
-    """Yield one block of G-code for each event."""
     modal: dict[str, WrittenEntry] = {}
     for line, row in enumerate(text.upper().splitlines(), start=1):
         for event in re.findall(r"[^$]*\$|[^$]+", re.sub(r"\s", "", row)):
@@ -97,7 +96,6 @@ def call_of_event(event: str, modal: dict[str, WrittenEntry], line: int) -> str:
 
 
 def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
-    """Return the entries by letter."""
     entries: dict[str, WrittenEntry] = {}
     position = 0
     while position < len(text):
@@ -114,7 +112,6 @@ def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
 
 
 def repeated(first: str, second: str) -> str:
-    """Return the rule for a repeated entry, by either of its letters."""
     if first == second:
         return f"{first} stands twice"
     return f"{first} and {second} are the same entry: give one of them"
@@ -177,7 +174,6 @@ def from_the_tool(letter: str, entry: WrittenEntry) -> bool:
 
 
 def argument(letter: str, entries: Mapping[str, WrittenEntry]) -> str:
-    """Return one entry as an argument of the call."""
     if letter not in entries:
         return f"{LEFT_OUT:.0f}"
     value = f"{value_in_call(letter, entries):f}"
@@ -185,5 +181,4 @@ def argument(letter: str, entries: Mapping[str, WrittenEntry]) -> str:
 
 
 def refusal(line: int, rule: str) -> Refusal:
-    """Return the refusal of a line (the caller raises it)."""
     return Refusal(f"line {line}: {rule}")

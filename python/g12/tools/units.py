@@ -30,7 +30,6 @@ class Unit(NamedTuple):
         return plain(value, max(self.decimals, 1 - first) if abs(value) > 1e-7 else 1)
 
     def area(self, square_mm: float) -> str:
-        """Return an area in mm² as text in this unit's square."""
         return f"{plain(square_mm / self.mm**2, self.decimals)} {self.name}²"
 
 
@@ -49,7 +48,6 @@ def name_of_unit(mm: float) -> str:
 
 
 def counted_as(count: int, what: str) -> str:
-    """Return a count with its noun: 1 move, 2 moves."""
     return f"{count} {what}" if count == 1 else f"{count} {what}s"
 
 
@@ -61,7 +59,6 @@ def plain(value: float, decimals: int) -> str:
 
 
 def clock(seconds: float) -> str:
-    """Return a time in words."""
     if round(seconds, 1) < 60:
         return f"{seconds:.1f} s"
     minutes, rest = divmod(round(seconds), 60)

@@ -59,17 +59,14 @@ def typed(text: str) -> str:
 
 
 def number_above(least: float) -> Callable[[str], float]:
-    """Return a reader of numbers above ``least`` for the command line."""
     return _reader(float, lambda value: least < value < math.inf, f"a number above {least:g}")
 
 
 def number_from(least: float) -> Callable[[str], float]:
-    """Return a reader of numbers from ``least`` for the command line."""
     return _reader(float, lambda value: least <= value < math.inf, f"a number from {least:g}")
 
 
 def count_from(least: int) -> Callable[[str], int]:
-    """Return a reader of whole numbers from ``least`` for the command line."""
     return _reader(int, lambda value: value >= least, f"a whole number from {least}")
 
 
@@ -112,19 +109,16 @@ def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
 
 
 def stock_of(options: argparse.Namespace) -> StockText | None:
-    """Return the stock of the command line."""
     return None if options.stock is None else StockText(options.stock, options.units)
 
 
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
-    """Add the feed override of a run."""
     text = f"feed override {whose} (default 100): real time is what a run takes"
     percent: dict[str, Any] = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
     parser.add_argument("--override", **percent, help=text)
 
 
 def check_run(options: argparse.Namespace) -> None:
-    """Refuse a feed override without a run."""
     if options.override != 100.0 and not options.run:
         raise UsageError("--override is the feed override of --run, which is not there")
 
@@ -147,7 +141,6 @@ def report_line_numbers(name: str, opened: OpenedProgram) -> None:
 
 
 def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
-    """Return the text during a run: its feed override and its time."""
     pace = "in real time" if override == 100.0 else f"at {override:g} % feed"
     if not trace or trace.error:
         return f"running {program.name} {pace}"

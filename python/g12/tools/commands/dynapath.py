@@ -26,7 +26,6 @@ exit code: 0 the program is printed, 1 a line is wrong, 2 wrong use
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(prog="g12 dynapath", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("file", type=Path, help="event text")
     parser.add_argument("--units", choices=("inch", "mm"), help="of the events: adds G20 or G21")
@@ -35,7 +34,6 @@ def command_parser() -> Parser:
 
 @one_line("dynapath")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     text = existing(options.file).read_text(encoding="latin-1")
     try:

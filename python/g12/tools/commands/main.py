@@ -35,7 +35,6 @@ COMMANDS = {  # each a module of this folder
 
 
 def usage() -> str:
-    """Return the list of commands."""
     lines = (f"  {name:10} {summary}" for name, summary in COMMANDS.items())
     return "\n".join([f"usage: {COMMAND} COMMAND [-h] …", "", *lines])
 
@@ -57,12 +56,10 @@ def main(arguments: list[str]) -> int:
 
 
 def module_of(name: str) -> ModuleType:
-    """Load a command's module."""
     return import_module(f"g12.tools.commands.{name}")
 
 
 def command(name: str, arguments: list[str]) -> int:
-    """Run a command; return its exit code."""
     if name in ("-h", "--help"):
         print(usage())
         return 0

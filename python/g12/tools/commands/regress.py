@@ -48,7 +48,6 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(prog="g12 regress", description=DESCRIPTION)
     actions = parser.add_subparsers(dest="action", required=True, metavar="record | check")
     _add_record(actions)
@@ -105,7 +104,6 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 
 @one_line("regress")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     with working("") as report, Recorders() as recorders:
         found, notes, good = options.run(options, _terms(options, report), recorders)

@@ -76,7 +76,6 @@ def preview_of(program: Path, ini: Path, tools: Tools, parameters: Parameters) -
 
 
 def default_timeout(preview: Trace | None, ini: Ini, override: float) -> float:
-    """Return the default timeout of a run in seconds."""
     if preview is None or preview.error:
         return USUAL_TIMEOUT
     return max(USUAL_TIMEOUT, 2 * program_seconds(preview, ini, override))
@@ -93,7 +92,6 @@ def line_of_preview(error: Error, preview: Trace | None) -> int:
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = program_parser("run", __doc__, EXAMPLES)
     add_override(parser, "of the run")
     usual = f"{USUAL_TIMEOUT:g}, or twice what the program needs"
@@ -104,7 +102,6 @@ def command_parser() -> Parser:
 
 @one_line("run")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:

@@ -52,7 +52,6 @@ def _moves(move: Move, axis: str) -> bool:
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = program_parser("trace", __doc__, EXAMPLES)
     digits: dict[str, Any] = {"type": count_from(0), "default": 6, "metavar": "N"}
     parser.add_argument("--digits", **digits, help="decimals (default 6)")
@@ -61,7 +60,6 @@ def command_parser() -> Parser:
 
 @one_line("trace")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:

@@ -20,7 +20,6 @@ exit code: 0 done or nothing to do, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(
         prog="g12 uninstall",
         description="Take out of a machine config what install put in, and nothing else.",
@@ -33,7 +32,6 @@ def command_parser() -> Parser:
 
 @one_line("uninstall")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     print_all(uninstall(read_config_text(options.ini), options.dry_run))
     return GOOD

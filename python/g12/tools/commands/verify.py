@@ -52,7 +52,6 @@ exit code: 0 good, 1 findings (with --strict notes too), 2 refused by LinuxCNC o
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = cut_parser("verify", __doc__, EXAMPLES, "measure the real motion of a headless run")
     parser.add_argument(
         "--tolerance", type=number_above(0), metavar="MM", help="in place of the usual ones"
@@ -65,7 +64,6 @@ def command_parser() -> Parser:
 
 @one_line("verify", refused=USAGE)
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     check_run(options)
     ini = checked_ini(options)
@@ -84,7 +82,6 @@ def main(arguments: list[str]) -> int:
 
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
-    """Return the proof of a program as LinuxCNC reads it."""
     trace = None
     if options.run:  # an error of the program is reported before the run
         trace = traced(program, options.ini, options.tools, options.var)

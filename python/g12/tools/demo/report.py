@@ -33,7 +33,6 @@ def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
 
 
 def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
-    """Return the report of a program: its table, LinuxCNC's messages, the picture's path."""
     slow = clock(scene.path.time[-1])
     faster = f" at {sample.override:g} % feed ({slow} at 100 %)" if sample.override != 100 else ""
     title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"
@@ -80,7 +79,6 @@ def section_row(cut: MeasuredCut, allowed: float, unit: Unit) -> tuple[str, ...]
 
 
 def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    """Return a table as lines, columns as wide as needed."""
     widths = [max(map(len, column)) for column in zip(heads, *rows)]
     return [
         "  " + "  ".join(f"{text:{width}}" for text, width in zip(row, widths)).rstrip()

@@ -23,7 +23,6 @@ LEAST_WINDOW = 1e-4  # mm
 
 
 def size_of(worst: Worst, unit: Unit) -> str:
-    """Return a text for the largest deviation."""
     least = "below " if worst.deviation < LEAST_WINDOW else ""
     return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
 

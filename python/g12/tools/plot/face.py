@@ -60,7 +60,6 @@ class History(NamedTuple):
 
 
 def draw_face(scene: Scene) -> Figure:
-    """Return the picture of a lathe program with C."""
     levels = milled_levels(scene)
     height = HEIGHT if scene.real is None else HEIGHT + DETAIL_HEIGHT
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
@@ -82,7 +81,6 @@ def draw_face(scene: Scene) -> Figure:
 
 
 def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
-    """Frame the cut and the spindle's centre in a square."""
     low, high = bounds_of(scene, levels)
     low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
     middle, half = (low + high) / 2, max(high - low) / 2
@@ -94,7 +92,6 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
 
 
 def draw_panels(figure: Figure, scene: Scene) -> None:
-    """Draw X, C, the speed of C and the feed along the part over time."""
     panels = [panel_axes(figure, row) for row in range(ROWS)]
     draw_history(panels, scene, milled_levels(scene), "part")
 
@@ -128,7 +125,6 @@ def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], 
 
 
 def panel_axes(figure: Figure, row: int) -> Axes:
-    """Return the axes of one panel over time, from the top."""
     height = figure.get_figheight()
     panel = PANEL + (height - HEIGHT) / ROWS
     bottom = height - TOP - panel - row * (panel + GAP)
@@ -156,7 +152,6 @@ def programmed_history(scene: Scene) -> History:
 
 
 def real_history(scene: Scene) -> History:
-    """Return the axes over time as they moved."""
     real = scene.real
     time = real.time - real.time[0]
     c_speed = np.abs(np.gradient(real.positions[:, C], time))
@@ -196,7 +191,6 @@ def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
 
 
 def draw_limit(axes: Axes, limit: float, text: str) -> None:
-    """Draw the upper limit of the values."""
     if np.isfinite(limit):
         axes.axhline(limit, color=style.LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
         anchor = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}
@@ -206,7 +200,6 @@ def draw_limit(axes: Axes, limit: float, text: str) -> None:
 
 
 def shade_rapids(axes: Axes, history: History) -> None:
-    """Shade the time spent in rapids."""
     edges = np.flatnonzero(np.diff(np.concatenate([[0], history.rapid.astype(int), [0]])))
     last = len(history.time) - 1
     for first, end in zip(edges[::2], edges[1::2]):

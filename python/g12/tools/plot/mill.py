@@ -73,14 +73,12 @@ class Layout:
         self.under = self.height - TOP - views
 
     def axes(self, figure: Figure) -> tuple[Axes, Axes]:
-        """Return the axes of the plan and of the side view."""
         low = self.height - TOP - self.plan[1]
         plan = style.add_axes(figure, LEFT, low, *self.plan)
         side = style.add_axes(figure, LEFT, low - BETWEEN - self.side, self.plan[0], self.side)
         return plan, side
 
     def draw_legend(self, figure: Figure, shown: Sequence) -> None:
-        """Place the legend beside or below the views."""
         beside = (LEFT + self.plan[0] + 0.2, self.height - TOP + 0.08, 1)
         at = (LEFT - 0.1, self.under, COLUMNS) if self.below else beside
         style.draw_legend(figure, shown, *at)
@@ -92,7 +90,6 @@ class Layout:
 
 
 def draw_mill(scene: Scene) -> Figure:
-    """Return the picture of a mill program."""
     levels = milled_levels(scene)
     low, high = bounds_of(scene, levels)
     shown = legend_entries(scene, levels)

@@ -13,7 +13,6 @@ from g12.tools.plot.unrolled import draw_unrolled
 
 
 def picture_of(scene: Scene) -> Figure:
-    """Return the picture of a scene."""
     if scene.seen.surface:
         return draw_unrolled(scene)
     if scene.path.part.turning:

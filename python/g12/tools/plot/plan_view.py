@@ -92,19 +92,16 @@ def lowest(move: Move) -> float:
 
 
 def removes(move: Move) -> bool:
-    """Return whether a move at feed goes sideways or down."""
     return is_sideways(move) or move.end[2] < move.start[2]
 
 
 def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
-    """Return the paths of the moves that go sideways."""
     return paths(part, [move for move in moves if is_sideways(move)], PICTURE_CHORD)
 
 
 def swept_by(
     part: Part, moves: Sequence[Move], diameters: Mapping[int, float]
 ) -> tuple[BaseGeometry, float]:
-    """Return the swept area of moves, and the radius of the largest cutter."""
     areas, radii = [], []
     for tool in {move.tool for move in moves}:
         lines = paths(part, [move for move in moves if move.tool == tool], PICTURE_CHORD)
@@ -162,7 +159,6 @@ def top_of(scene: Scene) -> float:
 
 
 def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
-    """Draw the view along the tool's axis."""
     unit = scene.unit.mm
     draw_stock(axes, scene, scene.seen.stock.shape if scene.seen.stock else None)
     for order, level in enumerate(levels):
@@ -175,7 +171,6 @@ def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
 
 
 def draw_warnings(axes: Axes, scene: Scene) -> None:
-    """Hatch uncut material in pockets, draw signs at the other findings."""
     unit = scene.unit.mm
     for each in scene.seen.uncut:
         style.hatch(axes, scaled(each.values["shape"], 1 / unit, 1 / unit, origin=(0, 0)))
@@ -189,7 +184,6 @@ def draw_signs(axes: Axes, scene: Scene, pair: list[int]) -> None:
 
 
 def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
-    """Draw the stock in a view."""
     if shape is not None:
         area = scaled(shape, 1 / scene.unit.mm, 1 / scene.unit.mm, origin=(0, 0))
         style.fill(axes, area, style.STOCK, order=0.7)
@@ -237,7 +231,6 @@ def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int
 
 
 def is_point(line: np.ndarray) -> bool:
-    """Return whether a polyline (mm) is seen end on."""
     return bool(np.ptp(line, axis=0).max() < PICTURE_CHORD)
 
 
@@ -294,7 +287,6 @@ def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
 
 
 def at_feed(scene: Scene) -> list[int]:
-    """Return the indices of the moves at feed."""
     return [index for index, move in enumerate(scene.moves) if move.kind != "rapid"]
 
 
@@ -350,7 +342,6 @@ def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = Non
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
-    """Return a text for a cutter."""
     diameter = scene.subject.trace.diameters.get(tool, 0.0)
     if tool <= 0 or not diameter:
         return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
@@ -376,13 +367,11 @@ def motion_entries(scene: Scene) -> list:
 
 
 def has_side_view(scene: Scene) -> bool:
-    """Return whether the picture has a view from the side, which only a mill's has."""
     part = scene.path.part
     return not part.turning and part.letters[2] == "Z"
 
 
 def warning_entries(scene: Scene) -> list:
-    """Return the legend's entries of the warnings."""
     listed = []
     end_on = [is_point(found.values["path"][:, :2]) for found in scene.seen.rapids]
     if any(end_on):
@@ -398,7 +387,6 @@ def warning_entries(scene: Scene) -> list:
 
 
 def level_entries(scene: Scene, levels: Sequence[Level], most: int) -> list:
-    """Return the legend's entries of the depths."""
     letter = scene.path.part.letters[2]
     return [
         style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
@@ -407,7 +395,6 @@ def level_entries(scene: Scene, levels: Sequence[Level], most: int) -> list:
 
 
 def feed_entries(scene: Scene) -> list:
-    """Return the legend's entries of the feeds."""
     unit = scene.unit
     return [
         style.stroke(colour, f"{plain(feed / unit.mm, 1)} {unit.name}/min")

@@ -46,17 +46,14 @@ class Scene:
 
     @property
     def moves(self) -> Sequence[Move]:
-        """Return the program's moves."""
         return self.subject.trace.moves
 
     @property
     def path(self) -> Track:
-        """Return the path of the moves."""
         return self.subject.path
 
     @property
     def real(self) -> Followed | None:
-        """Return the actual motion of the run, if there was one."""
         return self.subject.real
 
     @cached_property
@@ -91,7 +88,6 @@ class Scene:
 
     @property
     def title(self) -> str:
-        """Return the picture's heading."""
         return self.subject.program.stem
 
     @property
@@ -119,7 +115,6 @@ def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = Fa
 def scene_of_proof(
     proof: Proof, override: float = 100.0, units: str | None = None, feed_colours: bool = False
 ) -> Scene:
-    """Return the scene of a verified program, its actual motion included."""
     return replace(
         scene_of(proof.subject, units, feed_colours),
         override=override,

@@ -109,7 +109,6 @@ def add_axes(figure: Figure, left: float, bottom: float, width: float, height: f
 
 
 def caption(axes: Axes, text: str) -> None:
-    """Write the heading of one panel."""
     axes.set_title(text, loc="left", size=9, color=INK, pad=5)
 
 
@@ -165,7 +164,6 @@ def _closed(ring: np.ndarray) -> Outline:
 
 
 def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, **style) -> None:
-    """Draw polylines (n, 2)."""
     lines = [line for line in lines if len(line) > 1]
     style = {"capstyle": "round", "joinstyle": "round", **style}
     axes.add_collection(
@@ -175,7 +173,6 @@ def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, 
 
 
 def draw_rapids(axes: Axes, lines: Sequence[np.ndarray], colour=RAPID, order: float = 2.5) -> None:
-    """Draw polylines (n, 2) in the style of rapids."""
     draw(axes, lines, colour, 0.8, order, linestyle=(0, (4, 3)), capstyle="butt")
 
 
@@ -191,7 +188,6 @@ def draw_arrow(axes: Axes, line: np.ndarray, colour, order: float = 4.0) -> None
 
 
 def tint(colour, share: float = 0.72) -> tuple[float, float, float]:
-    """Return a colour mixed with a share of white."""
     return tuple(1 - (1 - value) * (1 - share) for value in colors.to_rgb(colour))
 
 
@@ -209,7 +205,6 @@ def shades(count: int) -> list[Shade]:
 
 
 def feed_colours(count: int) -> list[tuple]:
-    """Return colours from the slowest to the fastest of some feeds."""
     return (
         [FEED_COLOURS(share) for share in np.linspace(0, 1, count)]
         if count > 1
@@ -223,12 +218,10 @@ def grey(colour) -> tuple[float, float, float]:
 
 
 def hatch(axes: Axes, area: BaseGeometry) -> None:
-    """Draw an area as uncut material."""
     fill(axes, area, "none", CRASH, 2.4, hatch="////")
 
 
 def draw_sign(axes: Axes, at: Sequence[float]) -> None:
-    """Draw a warning sign."""
     axes.plot(*at, **SIGN, markersize=15, zorder=6)
     axes.plot(*at, marker="$!$", color="white", markersize=6.5, zorder=6.1)
 
@@ -239,38 +232,31 @@ def draw_hit(axes: Axes, at: Sequence[float]) -> None:
 
 
 def hit(text: str) -> Line2D:
-    """Return the legend's entry of such a rapid."""
     return Line2D([], [], ls="", **HIT, ms=8, label=text)
 
 
 def uncut_entry(text: str) -> Patch:
-    """Return the legend's entry of uncut material."""
     return Patch(facecolor="none", edgecolor=CRASH, linewidth=0.7, hatch="////", label=text)
 
 
 def sign(text: str) -> Line2D:
-    """Return the legend's entry of a warning sign."""
     return Line2D([], [], ls="", **SIGN, ms=9, label=text)
 
 
 def swatch(face, edge, text: str) -> Patch:
-    """Return the legend's entry of a depth: floor and outline."""
     return Patch(facecolor=face, edgecolor=edge, linewidth=1.1, label=text)
 
 
 def stroke(colour, text: str, width: float = 1.3, dashed: bool = False) -> Line2D:
-    """Return the legend's entry of a line."""
     style = (0, (4, 3)) if dashed else "-"
     return Line2D([], [], color=colour, linewidth=width, linestyle=style, label=text)
 
 
 def marker(colour, text: str, size: float = 4.0, hollow: bool = False) -> Line2D:
-    """Return the legend's entry of a marked point."""
     style = "none" if hollow else "full"
     return Line2D([], [], ls="", marker="o", color=colour, ms=size, fillstyle=style, label=text)
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write the picture; the suffix decides the format."""
     kind = path.suffix.lower().lstrip(".")
     figure.savefig(path, format=kind, dpi=DPI, metadata=SAVE[kind])

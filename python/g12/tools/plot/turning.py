@@ -35,7 +35,6 @@ PROFILE = [2, 0]  # Z to the right, X up
 
 
 def draw_turn(scene: Scene) -> Figure:
-    """Return the picture of a turning program."""
     low, high = (corner[PROFILE] for corner in bounds_of(scene, []))
     low[1] = min(low[1], 0.0)
     width = WIDTH - LEFT - RIGHT - LEGEND
@@ -71,6 +70,5 @@ def everything(scene: Scene) -> Level:
 
 
 def turn_entries(scene: Scene) -> list:
-    """Return the legend."""
     one = [style.stroke(style.shades(1)[0].line, "cut")]
     return [*(feed_entries(scene) if scene.feed_colours else one), *motion_entries(scene)]

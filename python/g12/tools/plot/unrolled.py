@@ -46,12 +46,10 @@ class Flat(Part):
 
     @property
     def letters(self) -> str:
-        """The axes that its points depend on."""
         return "CZX"
 
 
 def draw_unrolled(scene: Scene) -> Figure:
-    """Return the picture of a program that cuts on a cylinder."""
     rolled = replace(scene, subject=scene.subject.on_surface(scene.seen.surface))
     flat = unrolled(rolled)
     levels = milled_levels(flat)

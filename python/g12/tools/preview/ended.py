@@ -21,13 +21,11 @@ NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
 def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters = None) -> Trace:
-    """Return the trace of a program that runs to its end, or raise ProgramError."""
     found = trace(program, ini, tools=tools, parameters=parameters)
     return ended(program, explained(found, ini))
 
 
 def ended(program: Path | str, result: Trace) -> Trace:
-    """Return a trace that ran to its end, or raise ProgramError."""
     if result.error:
         raise ProgramError(ended_text(program, result.error))
     return result

@@ -66,7 +66,6 @@ class Text(NamedTuple):
 
     @property
     def hides_code(self) -> bool:
-        """Whether the number of a G code is an expression."""
         return any(letter == "G" and not is_number(text) for letter, text in self.words)
 
 
@@ -99,7 +98,6 @@ Selection = Callable[[Text], bool]
 
 
 def is_number(text: str) -> bool:
-    """Return whether a word's value is a plain number."""
     return bool(re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)", text))
 
 
@@ -167,14 +165,12 @@ def _bracket_end(code: str, at: int) -> int:
 
 
 def read_lines(program: Path) -> list[Text]:
-    """Return the lines of a program as text."""
     return [
         read_line(number, line) for number, line in enumerate(lines_as_written(program), start=1)
     ]
 
 
 def lines_as_written(path: Path) -> list[str]:
-    """Return the lines of a file as they are written."""
     return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
 

@@ -123,7 +123,6 @@ class Move(NamedTuple):
 
     @property
     def radius(self) -> float:
-        """Radius of an arc at its start, mm."""
         return math.hypot(*self._in_plane(self.start)[:2])
 
     @property

@@ -131,7 +131,6 @@ class Tracer:
             process.wait()  # it may still send an answer
 
     def close(self) -> None:
-        """End the interpreter."""
         self._stop()
         self._scratch.cleanup()
 
@@ -213,7 +212,6 @@ def write_tools(tools: Tools, ini: Ini, path: Path) -> Path:
 
 
 def write_parameters(parameters: Parameters, path: Path) -> Path:
-    """Write the var file to use to ``path``."""
     if isinstance(parameters, Mapping) or parameters is None:
         lines = (f"{number}\t{value!r}\n" for number, value in sorted((parameters or {}).items()))
         path.write_text("".join(lines), encoding="ascii")

@@ -220,15 +220,12 @@ class Canon:
     # Queries by the interpreter.
 
     def get_external_angular_units(self) -> float:
-        """Return the machine's angular units per degree."""
         return 1.0
 
     def get_external_length_units(self) -> float:
-        """Return the machine's units per mm."""
         return self.machine["units"]
 
     def get_axis_mask(self) -> int:
-        """Return one bit for each axis the machine has, X the lowest."""
         return self.machine["axis_mask"]
 
     def get_block_delete(self) -> bool:
@@ -248,7 +245,6 @@ class Canon:
     # State reported by the interpreter.
 
     def next_line(self, state) -> None:
-        """Note the line of the following calls."""
         self.line = state.sequence_number
         self._read_position_after_tool_change()
         self._convert_feed()
@@ -276,18 +272,15 @@ class Canon:
             self.events.clear()
 
     def message(self, text: str) -> None:
-        """Note a message to the operator."""
         if self.watch_offsets:
             self._note_offsets()
         self.messages.append((self.lines.now(), text))
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
-        """Note the work offset, inches."""
         self.work = in_mm(offset)
 
     def set_g92_offset(self, *offset: float) -> None:
-        """Note the G92 offset, inches."""
         self.g92 = in_mm(offset)
 
     def tool_offset(self, *offset: float) -> None:
@@ -298,7 +291,6 @@ class Canon:
         self.shift = tuple(a + b - c for a, b, c in zip(self.shift, before, self.length))
 
     def set_xy_rotation(self, degrees: float) -> None:
-        """Note the rotation of the work coordinate system."""
         self.rotation = degrees
         self.cos, self.sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
 
@@ -339,7 +331,6 @@ class Canon:
             self.moves[-1] = (*move, True, by_machine, share)
 
     def user_defined_function(self, number: int, first: float, second: float) -> None:
-        """Note a user's M code."""
         self._note(f"M{100 + number} P{first:.10g} Q{second:.10g}")
 
     def set_traverse_rate(self, _rate: float) -> None:
@@ -365,7 +356,6 @@ class Canon:
                 self._note(pitch)
 
     def _note_offsets(self) -> None:
-        """Note the work offsets that have changed since the previous message."""
         known, self.offsets = self.offsets, work_offsets()
         for name, values in self.offsets.items():
             if known and values != known[name]:
@@ -375,7 +365,6 @@ class Canon:
         self.events.append((len(self.moves), self.lines.now(), text))
 
     def _note_conditions(self, state) -> None:
-        """Note changes in the conditions of the following moves."""
         length = length_code(self.length_code, self.length)
         known, self.in_force = self.in_force, conditions(state, length)
         for word in self.in_force:
@@ -385,16 +374,13 @@ class Canon:
     # Moves.
 
     def straight_traverse(self, *target: float) -> None:
-        """Record a rapid."""
         self._move("rapid", in_mm(target), 0.0)
 
     def straight_feed(self, *target: float) -> None:
-        """Record a straight feed move."""
         self._note_pitch()
         self._move("feed", in_mm(target), self._rate(target))
 
     def straight_probe(self, *target: float) -> None:
-        """Record a probing move without contact."""
         self._move("probe", in_mm(target), self._rate(target))
 
     def rigid_tap(self, x: float, y: float, z: float) -> None:
@@ -478,7 +464,6 @@ class Canon:
 
 
 def work_offsets() -> dict[str, tuple]:
-    """Return all work offsets by the code that sets them."""
     params = interpreter_object().params
     return {
         name: tuple(params[number] for number in range(first, first + OFFSET_LENGTH))
@@ -513,13 +498,11 @@ def length_code(code: int, length: tuple) -> int:
 
 
 def goes_by_machine() -> bool:
-    """Return whether a move's block names a machine position: G53, G28, G30."""
     this = interpreter_object()
     return this.blocks[this.remap_level].g_modes[0] in BY_MACHINE
 
 
 def is_exact() -> bool:
-    """Return whether moves end in an exact path or stop (G61, G61.1)."""
     import emccanon
 
     return emccanon.GET_EXTERNAL_MOTION_CONTROL_MODE() != CONTINUOUS
@@ -550,7 +533,6 @@ def tool_sizes(count: int) -> dict[int, tuple[float, float]]:
 
 
 def interpreter_object():
-    """Return the running interpreter, the object that Python remaps get."""
     import interpreter
 
     return interpreter.this
@@ -564,7 +546,6 @@ def record_errors_of_handlers() -> None:
 
 
 def interpret(machine: dict, tools: ToolTable, request: dict) -> dict:
-    """Interpret one program and return everything it did."""
     canon = Canon(machine, tools, request)
     setup = [f"({FRESH})", "G49", *machine["setup"], *request["setup"], f"({START})"]
     started = time.perf_counter()
@@ -620,7 +601,6 @@ def state_after(request: dict, length: tuple) -> dict:
 
 
 def printed(path: str) -> str:
-    """Return the printed text so far, and clear it."""
     with open(path, "r+", encoding="utf-8", errors="replace") as file:
         text = file.read()
         file.truncate(0)
@@ -690,7 +670,6 @@ def start(machine: dict, tools: ToolTable) -> dict:
 
 
 def reply(connection: Connection, machine: dict, answer: dict) -> None:
-    """Send an answer with the text printed meanwhile."""
     connection.send({**answer, "printed": printed(machine["output"])})
 
 
