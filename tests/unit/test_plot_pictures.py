@@ -235,7 +235,7 @@ def uncut(centre):
 def drawn_in_red(shown):
     """Return how many polylines and marks a plan has in red."""
     axes = Figure().add_subplot()
-    plan_view.draw_paths(axes, shown, plan_view.milled_levels(shown), [0, 1])
+    plan_view.draw_paths(plan_view.View(axes, shown), plan_view.milled_levels(shown))
     lines = [one for one in axes.collections if one.get_edgecolor()[0] == pytest.approx(RED)]
     return len(lines[0].get_paths()), len([one for one in axes.lines if one.get_marker() == "X"])
 
@@ -387,7 +387,8 @@ def test_the_history_begins_where_the_first_rapid_ends():
     ],
 )
 def test_rapids_from_nobody_knows_where_are_not_shown(hand, left):
-    assert len(plan_view.shown_moves(scene(hand()))) == left
+    shown = scene(hand())
+    assert len(shown.moves) - plan_view.first_shown(shown) == left
 
 
 def test_holes_in_an_area_stay_holes():
@@ -464,7 +465,7 @@ def test_the_window_tells_the_override_and_the_contour():
 
 def test_a_cylinder_is_drawn_unrolled():
     shown = on_surface(scene(groove(), LATHE))
-    flat = unrolled(replace(shown, subject=shown.subject.on_surface(20.0)))
+    flat = unrolled(shown)
     (level,) = plan_view.milled_levels(flat)
     assert level.z == pytest.approx(18)
     assert level.area.bounds == pytest.approx((-3, -13, 20 * np.radians(270) + 3, 5), abs=0.02)
@@ -474,9 +475,9 @@ def test_a_cylinder_is_drawn_unrolled():
 
 def test_a_run_on_a_cylinder_is_drawn_along_its_path():
     shown = with_real_motion(groove(), LATHE, {"Z": 0.0123})
-    flat = unrolled(replace(on_surface(shown), subject=shown.subject.on_surface(20.0)))
+    flat = unrolled(on_surface(shown))
     assert worst_of(flat.real, flat.moves).deviation == pytest.approx(0.0123, abs=1e-4)
-    along_c, z = flat.real.positions[-1, :2]
+    along_c, z = flat.real.points[-1, :2]
     assert (along_c, z) == pytest.approx((20 * np.radians(270), -10), abs=1e-3)
 
 

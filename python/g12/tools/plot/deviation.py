@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The detail view of a run's largest deviation: programmed path, actual motion, the gap."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -5,8 +5,6 @@ The face is shown as one looks at it. Lengths are millimetres until they are dra
 layout are inches on the page.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -21,13 +19,14 @@ from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     Level,
+    View,
     bounds_of,
     draw_plan,
     few,
+    first_shown,
     legend_entries,
     mark_worst,
     milled_levels,
-    shown_moves,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
@@ -37,7 +36,8 @@ LETTERS_APART = 0.11  # of the panel of Z
 DETAIL_HEIGHT = 1.25  # with the detail view of the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
 FACE_SIZE = 5.0  # side of the face's view
-ROOM, ROOM_BESIDE_WINDOW = 14, 14  # entries of the legend: in two columns, in one
+ROOM = 13  # entries of the legend
+TIME_IN_RAPIDS = style.swatch(style.FAINT, None, "time spent in rapids")
 PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
 ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: number, height, gap
 
@@ -65,17 +65,13 @@ def draw_face(scene: Scene) -> Figure:
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
     face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
     frame_face(face, scene, levels)
-    draw_plan(face, scene, levels)
-    room = ROOM if scene.real is None else ROOM_BESIDE_WINDOW
-    entries = [
-        *legend_entries(scene, levels, room - 1),
-        style.swatch(style.FAINT, None, "time spent in rapids"),
-    ]
+    draw_plan(View(face, scene), levels)
+    entries = [*legend_entries(scene, levels, ROOM), TIME_IN_RAPIDS]
     columns = 2 if scene.real is None else 1
     style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
-    draw_panels(figure, scene)
+    draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, levels, "part")
     if scene.real is not None:
-        mark_worst(face, scene, [0, 1])
+        mark_worst(View(face, scene))
         draw_window(figure, (LEFT + FACE_SIZE - DETAIL_SIZE, 0.55), scene)
     return figure
 
@@ -89,11 +85,6 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
     axes.axhline(0, **style.CENTRE_LINE)
     axes.axvline(0, **style.CENTRE_LINE)
     style.caption(axes, "; ".join(filter(None, ["The part's face", scene.x0_text])))
-
-
-def draw_panels(figure: Figure, scene: Scene) -> None:
-    panels = [panel_axes(figure, row) for row in range(ROWS)]
-    draw_history(panels, scene, milled_levels(scene), "part")
 
 
 def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], along: str) -> None:
@@ -113,7 +104,7 @@ def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], 
     style.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
     limit = limits_of(scene.subject.ini).axes[C]
-    draw_limit(c_speed, limit, f"limit {plain(limit, 1)}")
+    draw_limit(c_speed, limit)
     style.caption(c_speed, "Speed of C, degrees/s")
     draw_feed(feed, history, scene, drawn)
     style.caption(feed, f"Feed along the {along}, {name}/min")
@@ -138,24 +129,27 @@ def programmed_history(scene: Scene) -> History:
     on_face = path.positions[:, X] + 1j * path.positions[:, Y]
     c = spindle_angles(on_face, path.positions[:, C], path.part.beside)
     c_speed = np.abs(np.diff(c)) / seconds
-    feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds
-    rapid = np.array([move.kind == "rapid" for move in scene.moves])[path.move]
-    step = np.insert(feed, 0, feed[0]) * 60
-    programmed = np.where(rapid, np.nan, step)
-    c_step = np.insert(c_speed, 0, c_speed[0])
+    feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds * 60
+    c_speed, feed = (np.insert(values, 0, values[0]) for values in (c_speed, feed))
     slide = slide_positions(on_face, path.part.beside)
     x = np.where(slide.imag, np.abs(slide), slide.real)
-    z = path.positions[:, Z]
-    first = path.vertices(len(scene.moves) - len(shown_moves(scene))).start
-    columns = (path.time - path.time[first], x, z, c, c_step, step, programmed, rapid)
+    rapid = rapids_at(scene, path.move)
+    first = path.vertices(first_shown(scene)).start
+    time, z = path.time - path.time[first], path.positions[:, Z]
+    columns = (time, x, z, c, c_speed, feed, np.where(rapid, np.nan, feed), rapid)
     return History(*(column[first:] for column in columns))
+
+
+def rapids_at(scene: Scene, moves: np.ndarray) -> np.ndarray:
+    """Return whether moves, by their indices (n,), are rapids."""
+    return np.array([move.kind == "rapid" for move in scene.moves])[moves]
 
 
 def real_history(scene: Scene) -> History:
     real = scene.real
     time = real.time - real.time[0]
     c_speed = np.abs(np.gradient(real.positions[:, C], time))
-    rapid = np.array([move.kind == "rapid" for move in scene.moves])[real.move]
+    rapid = rapids_at(scene, real.move)
     feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
     programmed = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
     x, z, c = (real.positions[:, axis] for axis in (X, Z, C))
@@ -190,12 +184,12 @@ def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
     axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
 
 
-def draw_limit(axes: Axes, limit: float, text: str) -> None:
+def draw_limit(axes: Axes, limit: float) -> None:
     if np.isfinite(limit):
         axes.axhline(limit, color=style.LIMIT, linewidth=0.9, linestyle=(0, (4, 2)))
         anchor = {"xy": (1, limit), "xycoords": ("axes fraction", "data"), "ha": "right"}
         offset = {"xytext": (0, 2), "textcoords": "offset points", "va": "bottom"}
-        axes.annotate(text, color=style.LIMIT, size=7.5, **anchor, **offset)
+        axes.annotate(f"limit {plain(limit, 1)}", color=style.LIMIT, size=7.5, **anchor, **offset)
         axes.set_ylim(0, 1.25 * limit)
 
 

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Labels side by side without overlap."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

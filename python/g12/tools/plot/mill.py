@@ -4,14 +4,11 @@
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from shapely.affinity import scale as scaled
 from shapely.geometry import LineString, MultiPoint, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
@@ -22,6 +19,7 @@ from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     SAME_DEPTH,
     Level,
+    View,
     bounds_of,
     draw_paths,
     draw_plan,
@@ -45,7 +43,7 @@ MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
-PLAN, SIDE = [0, 1], [0, 2]  # axes
+SIDE = [0, 2]  # axes
 HEIGHTS = 0.8  # width: the labels of the floors' levels, with their lines
 LETTER_HEIGHT = 0.11
 LEADER = 0.2  # the lines to the texts
@@ -96,32 +94,34 @@ def draw_mill(scene: Scene) -> Figure:
     layout = Layout(high - low, len(shown), scene.real is not None)
     figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
     plan, side = layout.axes(figure)
-    style.frame(plan, low[PLAN], high[PLAN], scene.unit, "XY")
+    style.frame(plan, low[:2], high[:2], scene.unit, "XY")
     plan.set_aspect("equal", adjustable="datalim")
     plan.set_xlabel("")
     style.caption(plan, "Plan")
-    draw_plan(plan, scene, levels)
+    views = View(plan, scene), View(side, scene, SIDE)
+    draw_plan(views[0], levels)
     style.frame(side, low[SIDE], high[SIDE], scene.unit, "XZ")
-    draw_side(side, scene, levels, layout.stretch)
+    draw_side(views[1], levels, layout.stretch)
     layout.draw_legend(figure, shown)
     if scene.real is not None:
-        mark_worst(plan, scene, PLAN)
-        mark_worst(side, scene, SIDE)
+        for view in views:
+            mark_worst(view)
         draw_window(figure, layout.window_corner(), scene)
     return figure
 
 
-def draw_side(axes: Axes, scene: Scene, levels: Sequence[Level], stretch: float) -> None:
+def draw_side(view: View, levels: Sequence[Level], stretch: float) -> None:
     """Draw the view along Y: the material removed at each Z level, projected."""
-    unit, top = scene.unit.mm, top_of(scene)
-    draw_stock(axes, scene, block_from_the_side(scene))
+    axes, scene, _ = view
+    top = top_of(scene)
+    draw_stock(view, block_from_the_side(scene))
     for order, level in enumerate(reversed(levels)):
-        shape = scaled(removed_at(level, max(top, level.z)), 1 / unit, 1 / unit, origin=(0, 0))
-        style.fill(axes, shape, *floor(scene, level), 1 + order / 100)
+        removed = view.area(removed_at(level, max(top, level.z)))
+        style.fill(axes, removed, *floor(scene, level), 1 + order / 100)
     for each in scene.seen.uncut:
-        style.hatch(axes, scaled(cut_through(each, top), 1 / unit, 1 / unit, origin=(0, 0)))
+        style.hatch(axes, view.area(cut_through(each, top)))
     draw_heights(axes, scene, levels)
-    draw_paths(axes, scene, levels, SIDE)
+    draw_paths(view, levels)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
 

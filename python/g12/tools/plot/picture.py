@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The choice of the picture for a machine and its program."""
 
-from __future__ import annotations
-
 from matplotlib.figure import Figure
 
 from g12.tools.plot.face import draw_face

@@ -4,9 +4,7 @@
 Lengths are millimetres until they are drawn.
 """
 
-from __future__ import annotations
-
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import groupby, takewhile
 from typing import NamedTuple
 
@@ -17,8 +15,8 @@ from shapely.affinity import scale as scaled
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.tools.path.follow import Worst, worst_of
-from g12.tools.path.part import FLAT, C, Part, is_sideways, paths, swept
+from g12.tools.path.follow import worst_of
+from g12.tools.path.part import FLAT, C, paths, swept
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
@@ -31,7 +29,6 @@ LEAST_LEVELS = 2  # entries in a short legend
 MOST_SHOWN_LEVELS = 10  # more depths or feeds than this are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
-ARC_POINTS = 181  # points of an arc whose level changes
 NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
@@ -49,76 +46,104 @@ class Level(NamedTuple):
     radius: float = 0.0
 
 
+class View(NamedTuple):
+    """Axes that show a scene in two axes of its part, by their indices ``pair``."""
+
+    axes: Axes
+    scene: Scene
+    pair: Sequence[int] = (0, 1)
+
+    def shown(self, points: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Return points (…, 3) as points (…, 2) of the view, in the unit shown."""
+        return np.asarray(points)[..., list(self.pair)] / self.scene.unit.mm
+
+    def lines(self, lines: Iterable[np.ndarray]) -> list[np.ndarray]:
+        return [self.shown(line) for line in lines]
+
+    def area(self, area: BaseGeometry) -> BaseGeometry:
+        """Return an area of the view in the unit shown."""
+        return scaled(area, 1 / self.scene.unit.mm, 1 / self.scene.unit.mm, origin=(0, 0))
+
+
+# ------------------------------------------------------------ what is cut
+
+
 def milled_levels(scene: Scene) -> list[Level]:
     """Return the depths milled or drilled, from the top down; with many, in bands."""
-    cutting = [move for move in scene.sweeping if removes(move)]
+    rises = scene.ends[:, 1, 2] - scene.ends[:, 0, 2]
+    cutting = [index for index in scene.sweeping if scene.across[index] or rises[index] < 0]
     if not cutting:
         return []
-    depth = floors(cutting)
+    depth = floors(scene, cutting)
     found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
     if len(found) > MOST_SHOWN_LEVELS:
         found = list(np.linspace(depth.max(), depth.min(), BANDS))
     nearest = np.abs(np.subtract.outer(depth, found)).argmin(axis=1)
-    groups = [[cutting[i] for i in np.flatnonzero(nearest == level)] for level in range(len(found))]
-    part = scene.path.part
+    groups = [np.array(cutting)[nearest == level] for level in range(len(found))]
     return [
-        Level(z, shade, milled(part, group), *swept_by(part, group, scene.subject.trace.diameters))
+        Level(z, shade, across(scene, group), *swept_by(scene, group))
         for z, shade, group in zip(found, style.shades(len(found)), groups)
-        if group
+        if len(group)
     ]
 
 
-def floors(moves: Sequence[Move]) -> np.ndarray:
+def floors(scene: Scene, cutting: Sequence[int]) -> np.ndarray:
     """Return the depth of each move; turns of a helix count for the floor below them."""
     found: list[float] = []
-    for move in reversed(moves):
-        own = lowest(move)
-        leads_to = found[-1] if found and is_helical(move) else own
+    for index in reversed(cutting):
+        own = scene.path.points[scene.path.vertices(index), 2].min()  # an arc's may be inside
+        leads_to = found[-1] if found and is_helical(scene, index) else own
         found.append(min(own, leads_to))
     return np.array(found[::-1])
 
 
-def is_helical(move: Move) -> bool:
+def is_helical(scene: Scene, index: int) -> bool:
     """Return whether a move is helical about the tool's axis, or about the spindle's on a face."""
-    revolves = (move.kind == "arc" and move.plane == FLAT) or move.end[C] != move.start[C]
-    return revolves and move.end[2] < move.start[2] - SAME_DEPTH
+    move, (start, end) = scene.moves[index], scene.ends[index]
+    turns = move.end[C] != move.start[C] and not scene.seen.surface
+    return (turns or (move.kind == "arc" and move.plane == FLAT)) and end[2] < start[2] - SAME_DEPTH
 
 
-def lowest(move: Move) -> float:
-    """Return the lowest level of a move; an arc may go below its ends."""
-    bulge = move.kind == "arc" and move.plane != FLAT
-    shares = np.linspace(0, 1, ARC_POINTS) if bulge else (0.0, 1.0)
-    return min(move.point(share)[2] for share in shares)
+def across(scene: Scene, indices: Iterable[int]) -> list[np.ndarray]:
+    """Return the paths of those of some moves that go across the tool's axis."""
+    moves = [scene.moves[index] for index in indices if scene.across[index]]
+    return paths(scene.path.part, moves, PICTURE_CHORD)
 
 
-def removes(move: Move) -> bool:
-    return is_sideways(move) or move.end[2] < move.start[2]
-
-
-def milled(part: Part, moves: Sequence[Move]) -> list[np.ndarray]:
-    return paths(part, [move for move in moves if is_sideways(move)], PICTURE_CHORD)
-
-
-def swept_by(
-    part: Part, moves: Sequence[Move], diameters: Mapping[int, float]
-) -> tuple[BaseGeometry, float]:
-    areas, radii = [], []
+def swept_by(scene: Scene, indices: Iterable[int]) -> tuple[BaseGeometry, float]:
+    """Return the swept area of moves, and the radius of the largest cutter."""
+    moves, areas, radii = [scene.moves[index] for index in indices], [], []
     for tool in {move.tool for move in moves}:
-        lines = paths(part, [move for move in moves if move.tool == tool], PICTURE_CHORD)
-        radii.append(max(diameters.get(tool, 0.0) / 2, PICTURE_CHORD))
-        areas.append(swept(lines, radii[-1]))
+        own = [move for move in moves if move.tool == tool]
+        radii.append(max(diameter_of(scene, tool) / 2, PICTURE_CHORD))
+        areas.append(swept(paths(scene.path.part, own, PICTURE_CHORD), radii[-1]))
     return unary_union(areas), max(radii)
+
+
+def diameter_of(scene: Scene, tool: int) -> float:
+    return scene.subject.trace.diameters.get(tool, 0.0)
+
+
+def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
+    """Return the points of plunges straight down at feed, each with the tool's number."""
+    found = set()
+    for index in scene.sweeping:
+        start, end = scene.ends[index]
+        if end[2] < start[2] and not scene.across[index]:
+            found.add((tuple(np.round(end[:2], 6).tolist()), scene.moves[index].tool))
+    return sorted(found)
+
+
+# ------------------------------------------------------------ the size of the view
 
 
 def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.ndarray]:
     """Return least and greatest X, Y, Z of the cut, with a margin; far rapids do not count."""
-    shown = at_feed(scene) or range(len(scene.moves))
+    shown = scene.fed or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
-    for shape in (
-        *(level.area for level in levels),
-        *(each.values["shape"] for each in scene.seen.uncut),
-    ):
+    uncut = (each.values["shape"] for each in scene.seen.uncut)
+    for shape in (*(level.area for level in levels), *uncut):
         bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
@@ -140,8 +165,7 @@ def with_near_rapids(
     scene: Scene, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return a view's corners, extended to the ends of near rapids."""
-    ends = np.array([point for move in shown_moves(scene) for point in (move.start, move.end)])
-    points = scene.path.part.points(ends)[:, :2]
+    points = scene.ends[first_shown(scene) :, :, :2].reshape(-1, 2)
     away = NEAR_RAPIDS * max(high - low)
     near = points[np.all((points > low - away) & (points < high + away), axis=1)]
     return np.vstack([near, low]).min(axis=0), np.vstack([near, high]).max(axis=0)
@@ -149,45 +173,49 @@ def with_near_rapids(
 
 def top_of(scene: Scene) -> float:
     """Return the top of the part: Z0 if the tool passes it downward, else where the feed begins."""
-    z0 = scene.seen.z0
-    cutting = [move for move in scene.moves if move.kind != "rapid"] or scene.moves
-    lowest = min(min(move.start[2], move.end[2]) for move in cutting)
-    highest = max(max(move.start[2], move.end[2]) for move in scene.moves)
-    if lowest < z0 < highest:
-        return z0
-    return max(max(move.start[2], move.end[2]) for move in cutting)
+    z0, levels = scene.seen.z0, scene.ends[:, :, 2]
+    cutting = levels[scene.fed] if scene.fed else levels
+    return z0 if cutting.min() < z0 < levels.max() else float(cutting.max())
 
 
-def draw_plan(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
-    unit = scene.unit.mm
-    draw_stock(axes, scene, scene.seen.stock.shape if scene.seen.stock else None)
+def first_shown(scene: Scene) -> int:
+    """Return the number of the first rapids, whose start no trace knows.
+
+    These are the first one, and those up to the first command of Z.
+    """
+    rapids = len(list(takewhile(lambda move: move.kind == "rapid", scene.moves)))
+    if scene.real is not None or rapids in (0, len(scene.moves)):
+        return 0
+    levels = scene.ends[:rapids, :, 2]
+    return int(np.argmax(levels[:, 0] != levels[:, 1])) + 1
+
+
+# ------------------------------------------------------------ drawing
+
+
+def draw_plan(view: View, levels: Sequence[Level]) -> None:
+    seen = view.scene.seen
+    draw_stock(view, seen.stock.shape if seen.stock else None)
     for order, level in enumerate(levels):
-        area = scaled(level.area, 1 / unit, 1 / unit, origin=(0, 0))
-        style.fill(axes, area, *floor(scene, level), 1 + order / 100)
-    draw_paths(axes, scene, levels, [0, 1])
-    draw_plunges(axes, scene)
-    draw_arrows(axes, scene)
-    draw_warnings(axes, scene)
+        style.fill(view.axes, view.area(level.area), *floor(view.scene, level), 1 + order / 100)
+    draw_paths(view, levels)
+    draw_plunges(view)
+    draw_arrows(view)
+    for each in seen.uncut:
+        style.hatch(view.axes, view.area(each.values["shape"]))
+    draw_signs(view)
 
 
-def draw_warnings(axes: Axes, scene: Scene) -> None:
-    unit = scene.unit.mm
-    for each in scene.seen.uncut:
-        style.hatch(axes, scaled(each.values["shape"], 1 / unit, 1 / unit, origin=(0, 0)))
-    draw_signs(axes, scene, [0, 1])
-
-
-def draw_signs(axes: Axes, scene: Scene, pair: list[int]) -> None:
+def draw_signs(view: View) -> None:
     """Draw signs at the findings that are neither a rapid nor uncut material."""
-    for finding in scene.seen.signs:
-        style.draw_sign(axes, np.array(finding.place)[pair] / scene.unit.mm)
+    for finding in view.scene.seen.signs:
+        style.draw_sign(view.axes, view.shown(finding.place))
 
 
-def draw_stock(axes: Axes, scene: Scene, shape: BaseGeometry | None) -> None:
+def draw_stock(view: View, shape: BaseGeometry | None) -> None:
     if shape is not None:
-        area = scaled(shape, 1 / scene.unit.mm, 1 / scene.unit.mm, origin=(0, 0))
-        style.fill(axes, area, style.STOCK, order=0.7)
-        style.fill(axes, area, "none", style.STOCK_EDGE, 2.2)
+        style.fill(view.axes, view.area(shape), style.STOCK, order=0.7)
+        style.fill(view.axes, view.area(shape), "none", style.STOCK_EDGE, 2.2)
 
 
 def floor(scene: Scene, level: Level) -> tuple[object, object]:
@@ -197,55 +225,40 @@ def floor(scene: Scene, level: Level) -> tuple[object, object]:
     return level.shade.floor, style.tint(level.shade.line, 0.35)
 
 
-def shown_moves(scene: Scene) -> Sequence[Move]:
-    """Return the moves without the first rapids, whose start no trace knows.
-
-    These are the first one, and those up to the first command of Z.
-    """
-    moves = scene.moves
-    rapids = list(takewhile(lambda move: move.kind == "rapid", moves))
-    if scene.real is not None or not rapids or len(rapids) == len(moves):
-        return moves
-    down = (index for index, move in enumerate(rapids) if move.start[2] != move.end[2])
-    return moves[next(down, 0) + 1 :]
-
-
-def draw_paths(axes: Axes, scene: Scene, levels: Sequence[Level], pair: list[int]) -> None:
-    """Draw rapids, programmed path and actual motion in two of the part's axes."""
-    unit = scene.unit.mm
-    rapids = (move for move in shown_moves(scene) if move.kind == "rapid")
+def draw_paths(view: View, levels: Sequence[Level]) -> None:
+    """Draw rapids, programmed path and actual motion."""
+    scene, is_run = view.scene, view.scene.real is not None
+    rapids = (move for move in scene.moves[first_shown(scene) :] if move.kind == "rapid")
     lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
-    style.draw_rapids(axes, once([line[:, pair] / unit for line in lines]))
-    wide = scene.real is not None
+    style.draw_rapids(view.axes, once(view.lines(lines)))
+    width = 1.1 if len(scene.moves) < MANY else 0.5
     for path, colour in coloured_paths(scene, levels):
-        shade = style.tint(colour, 0.4) if wide else colour
-        width = 2.6 if wide else width_for(scene)
-        style.draw(axes, [line[:, pair] / unit for line in path], shade, width)
-    if scene.real is not None:
-        draw_real(axes, scene, pair)
-    hit = [found.values["path"][:, pair] for found in scene.seen.rapids]
-    style.draw(axes, [line / unit for line in hit], style.CRASH, 3.0, 3.8)
-    for line in hit:
-        if is_point(line):
-            style.draw_hit(axes, line[0] / unit)
+        shade = style.tint(colour, 0.4) if is_run else colour
+        style.draw(view.axes, view.lines(path), shade, 2.6 if is_run else width)
+    if is_run:
+        draw_real(view)
+    hit = view.lines(found.values["path"] for found in scene.seen.rapids)
+    style.draw(view.axes, hit, style.CRASH, 3.0, 3.8)
+    for found, line in zip(scene.seen.rapids, hit):
+        if is_point(found.values["path"][:, view.pair]):
+            style.draw_hit(view.axes, line[0])
 
 
 def is_point(line: np.ndarray) -> bool:
+    """Return whether a polyline (mm) is seen end on."""
     return bool(np.ptp(line, axis=0).max() < PICTURE_CHORD)
 
 
-def draw_real(axes: Axes, scene: Scene, pair: list[int]) -> None:
-    """Draw the actual motion in two of the part's axes, rapids dashed."""
-    real = scene.real
-    cuts: list[np.ndarray] = []
-    rapids: list[np.ndarray] = []
-    edges = np.flatnonzero(np.diff(real.move)) + 1
-    for stretch in np.split(np.arange(len(real.move)), edges):
-        shown = real.points[max(0, stretch[0] - 1) : stretch[-1] + 1, pair] / scene.unit.mm
-        is_rapid = scene.moves[real.move[stretch[0]]].kind == "rapid"
-        (rapids if is_rapid else cuts).append(shown)
-    style.draw(axes, cuts, style.REAL, 0.7, 3.5)
-    style.draw_rapids(axes, once(rapids), style.REAL, 3.4)
+def draw_real(view: View) -> None:
+    """Draw the actual motion, rapids dashed."""
+    real = view.scene.real
+    lines: dict[bool, list[np.ndarray]] = {True: [], False: []}
+    for stretch in np.split(np.arange(len(real.move)), np.flatnonzero(np.diff(real.move)) + 1):
+        points = real.points[max(0, stretch[0] - 1) : stretch[-1] + 1]
+        is_rapid = view.scene.moves[real.move[stretch[0]]].kind == "rapid"
+        lines[is_rapid].append(view.shown(points))
+    style.draw(view.axes, lines[False], style.REAL, 0.7, 3.5)
+    style.draw_rapids(view.axes, once(lines[True]), style.REAL, 3.4)
 
 
 def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
@@ -257,26 +270,20 @@ def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
     return list(found.values())
 
 
-def width_for(scene: Scene) -> float:
-    """Return the width of paths in points: finer where there are very many."""
-    return 1.1 if len(scene.moves) < MANY else 0.5
-
-
 def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
     """Return the moves at feed as polylines with their colour: by depth, or by feed."""
     part = scene.path.part
     if scene.feed_colours:
         bands = feed_bands(scene)
         return [(paths(part, moves, PICTURE_CHORD), colour) for _, colour, moves in bands]
-    others = [move for move in scene.sweeping if not is_sideways(move)]
-    others += [scene.moves[index] for index in scene.radial]
-    below = [(paths(part, others, PICTURE_CHORD), style.MUTED)]
-    return below + [(level.lines, level.shade.line) for level in levels]
+    below = [index for index in scene.sweeping if not scene.across[index]] + scene.radial
+    muted = paths(part, [scene.moves[index] for index in below], PICTURE_CHORD)
+    return [(muted, style.MUTED), *((level.lines, level.shade.line) for level in levels)]
 
 
 def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
     """Return feeds along the part (mm/min), each with its colour and moves; many in bands."""
-    feeds = {index: scene.path.part_feed(index) for index in at_feed(scene)}
+    feeds = {index: scene.path.part_feed(index) for index in scene.fed}
     found = sorted({float(f"{feed:.3g}") for feed in feeds.values()})
     if len(found) > MOST_SHOWN_LEVELS:
         found = list(np.linspace(found[0], found[-1], MOST_SHOWN_LEVELS))
@@ -286,63 +293,69 @@ def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
     return list(zip(found, style.feed_colours(len(found)), groups))
 
 
-def at_feed(scene: Scene) -> list[int]:
-    return [index for index, move in enumerate(scene.moves) if move.kind != "rapid"]
-
-
-def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
-    """Return the points of plunges straight down at feed, each with the tool's number."""
-    down = [m for m in scene.sweeping if not is_sideways(m) and m.end[2] < m.start[2]]
-    points = scene.path.part.points(np.array([m.end for m in down]).reshape(-1, 9))
-    return sorted({(tuple(np.round(p[:2], 6)), m.tool) for p, m in zip(points, down)})
-
-
-def draw_plunges(axes: Axes, scene: Scene) -> None:
+def draw_plunges(view: View) -> None:
     """Mark where the tool plunges, with the cutter drawn to scale about each point."""
-    for (x, y), tool in plunges_of(scene):
-        at = (x / scene.unit.mm, y / scene.unit.mm)
-        radius = scene.subject.trace.diameters.get(tool, 0.0) / 2 / scene.unit.mm
-        axes.plot(*at, "o", color=style.INK, markersize=PLUNGE, zorder=5)
+    unit = view.scene.unit.mm
+    for (x, y), tool in plunges_of(view.scene):
+        at, radius = (x / unit, y / unit), diameter_of(view.scene, tool) / 2 / unit
+        view.axes.plot(*at, "o", color=style.INK, markersize=PLUNGE, zorder=5)
         circle = Circle(at, radius, fill=False, edgecolor=style.INK, linewidth=0.8, zorder=4.5)
-        axes.add_patch(circle)
+        view.axes.add_patch(circle)
 
 
-def draw_arrows(axes: Axes, scene: Scene, pair: Sequence[int] = (0, 1)) -> None:
+def draw_arrows(view: View) -> None:
     """Show the direction of the longer moves, once where levels repeat them."""
-    least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0]) * scene.unit.mm
-    lines = [line[:, list(pair)] for line in elements(scene)]
+    axes = view.axes
+    least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0])
+    lines = view.lines(elements(view.scene))
     long = [line for line in lines if np.linalg.norm(np.diff(line, axis=0), axis=1).sum() > least]
-    by_middle = {tuple(np.round(line[len(line) // 2], 2)): line for line in long}
+    middle = (line[len(line) // 2] * view.scene.unit.mm for line in long)
+    by_middle = {tuple(np.round(at, 2)): line for at, line in zip(middle, long)}
     if len(by_middle) <= MOST_ARROWS:
         for line in by_middle.values():
-            style.draw_arrow(axes, line / scene.unit.mm, style.INK)
+            style.draw_arrow(axes, line, style.INK)
 
 
 def elements(scene: Scene) -> list[np.ndarray]:
     """Return the path of each cutting block (n, 3); segments of one line of the program are one."""
     part, blocks = scene.path.part, []
-    cutting = (scene.moves[index] for index in at_feed(scene))
     whole = (lambda move: (move.block, move.line)) if part.turning else id
-    for _, moves in groupby(cutting, whole):
+    for _, moves in groupby((scene.moves[index] for index in scene.fed), whole):
         blocks += paths(part, moves, PICTURE_CHORD)
     return blocks
+
+
+def mark_worst(view: View) -> None:
+    """Circle the largest deviation of the run."""
+    worst = worst_of(view.scene.real, view.scene.moves)
+    if worst is not None:
+        at = view.shown(worst.point)
+        view.axes.plot(*at, "o", color=style.WORST, markersize=8, fillstyle="none", zorder=6)
+
+
+# ------------------------------------------------------------ the legend
 
 
 def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = None) -> list:
     """Return the legend, with fewer depths where ``room`` limits its entries."""
     feeds = feed_entries(scene) if scene.feed_colours else []
     listed = []
-    for tool in sorted({scene.moves[index].tool for index in at_feed(scene)}):
+    for tool in sorted({scene.moves[index].tool for index in scene.fed}):
         listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
     listed += motion_entries(scene)
     room = MOST_SHOWN_LEVELS if room is None else max(room - len(feeds) - len(listed), LEAST_LEVELS)
-    return [*feeds, *level_entries(scene, levels, min(room, MOST_SHOWN_LEVELS)), *listed]
+    letter = scene.path.part.letters[2]
+    depths = [
+        style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
+        for level in few(levels, min(room, MOST_SHOWN_LEVELS))
+    ]
+    return [*feeds, *depths, *listed]
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
-    diameter = scene.subject.trace.diameters.get(tool, 0.0)
+    diameter = diameter_of(scene, tool)
     if tool <= 0 or not diameter:
         return f"{f'T{tool} has no diameter' if tool > 0 else 'no tool'}: tool centre only"
     return f"cutter T{tool}, ⌀ {scene.unit.text(diameter)} {scene.unit.name}"
@@ -357,7 +370,7 @@ def motion_entries(scene: Scene) -> list:
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if scene.radial:
         listed.append(style.stroke(style.MUTED, "toolpath in the side"))
-    if any(move.kind == "rapid" for move in scene.moves):
+    if len(scene.fed) < len(scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:
         listed.append(style.stroke(style.PATH, "programmed path", 2.6))
@@ -366,17 +379,13 @@ def motion_entries(scene: Scene) -> list:
     return listed + warning_entries(scene)
 
 
-def has_side_view(scene: Scene) -> bool:
-    part = scene.path.part
-    return not part.turning and part.letters[2] == "Z"
-
-
 def warning_entries(scene: Scene) -> list:
-    listed = []
+    listed, part = [], scene.path.part
     end_on = [is_point(found.values["path"][:, :2]) for found in scene.seen.rapids]
+    has_side_view = not part.turning and part.letters[2] == "Z"
     if any(end_on):
         listed.append(style.hit("rapid straight down into material"))
-    if scene.seen.rapids and (has_side_view(scene) or not all(end_on)):
+    if scene.seen.rapids and (has_side_view or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.uncut:
         listed.append(style.uncut_entry("uncut material"))
@@ -384,14 +393,6 @@ def warning_entries(scene: Scene) -> list:
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed
-
-
-def level_entries(scene: Scene, levels: Sequence[Level], most: int) -> list:
-    letter = scene.path.part.letters[2]
-    return [
-        style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
-        for level in few(levels, most)
-    ]
 
 
 def feed_entries(scene: Scene) -> list:
@@ -407,12 +408,3 @@ def few(items: Sequence, most: int = MOST_SHOWN_LEVELS) -> list:
     if len(items) <= most:
         return list(items)
     return [items[i] for i in np.linspace(0, len(items) - 1, most).round().astype(int)]
-
-
-def mark_worst(axes: Axes, scene: Scene, pair: list[int]) -> Worst | None:
-    """Circle the largest deviation of the run in a view of two of the part's axes."""
-    worst = worst_of(scene.real, scene.moves)
-    if worst is not None:
-        at = worst.point[pair] / scene.unit.mm
-        axes.plot(*at, "o", color=style.WORST, markersize=8, fillstyle="none", zorder=6)
-    return worst

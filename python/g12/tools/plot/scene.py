@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The content of a picture: a program, the machine, the moves, and the actual motion if run."""
 
-from __future__ import annotations
-
 import re
 import textwrap
 from collections.abc import Sequence
@@ -11,8 +9,10 @@ from functools import cached_property
 from itertools import takewhile
 from pathlib import Path
 
+import numpy as np
+
 from g12.tools.path.follow import Followed
-from g12.tools.path.part import x0_text
+from g12.tools.path.part import C, x0_text
 from g12.tools.path.track import Track
 from g12.tools.plot.seen import Seen, seen_of_proof
 from g12.tools.preview.executed_blocks import COMMENTS
@@ -25,6 +25,7 @@ HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*
 AXIS_LETTER = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
 MOST_HEAD_LINES = 20
 LONGEST_HEADING = 72
+SAME_POINT = 1e-6  # mm
 NOTHING_SEEN = Seen()
 
 
@@ -32,9 +33,9 @@ NOTHING_SEEN = Seen()
 class Scene:
     """A traced program on its machine.
 
-    ``unit`` is that of the labels. ``override`` is the feed
-    override of the run in per cent. ``seen`` has the findings and the stock, ``contour`` the
-    largest deviation (mm) from the programmed contours of polar sections, where these are known.
+    ``unit`` is that of the labels. ``override`` is the feed override of the run in per cent.
+    ``contour`` is the largest deviation (mm) from the programmed contours of sections, where
+    these are known.
     """
 
     subject: Subject
@@ -69,22 +70,28 @@ class Scene:
         sideways = self.subject.sideways
         return [index for index in self.fed if sideways[index] == {True}]
 
-    @property
-    def sweeping(self) -> list[Move]:
+    @cached_property
+    def sweeping(self) -> list[int]:
         """The moves at feed whose tool points along the view."""
-        radial = set(self.radial)
-        return [self.moves[index] for index in self.fed if index not in radial]
+        return sorted({*self.fed} - {*self.radial})
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """The points (n, 2, 3) of the part at which each move starts and ends."""
+        ends = np.array([(move.start, move.end) for move in self.moves])
+        return self.path.part.points(ends.reshape(-1, 9)).reshape(-1, 2, 3)
+
+    @cached_property
+    def across(self) -> np.ndarray:
+        """Whether each move has a component across the tool's axis; a turn of C may close."""
+        curved = [move.kind == "arc" or move.start[C] != move.end[C] for move in self.moves]
+        steps = np.abs(self.ends[:, 1, :2] - self.ends[:, 0, :2]).max(axis=1)
+        return np.array(curved) | (steps > SAME_POINT)
 
     @property
     def x0_text(self) -> str:
-        """Return a text with the position of a lathe program's X0, "" where it is the machine's."""
+        """The position of a lathe program's X0, "" where it is the machine's."""
         return x0_text(self.path.part, self.unit)
-
-    @property
-    def refusal(self) -> str:
-        """Return LinuxCNC's error for a refused program, "" for any other."""
-        error = self.subject.trace.error
-        return f"refused in line {error.line}: {error.rule}" if error else ""
 
     @property
     def title(self) -> str:
@@ -92,18 +99,17 @@ class Scene:
 
     @property
     def subtitle(self) -> str:
-        """Return the comment that heads the program, the machine and the time."""
-        cutting = (i for i, move in enumerate(self.moves) if move.kind != "rapid")
-        length = sum(self.path.part_length(index) for index in cutting)
+        """LinuxCNC's error if any, the comment that heads the program, the machine, the time."""
+        error = self.subject.trace.error
+        length = sum(map(self.path.part_length, self.fed))
         facts = [
-            self.refusal,
+            f"refused in line {error.line}: {error.rule}" if error else "",
             heading(self.subject.program),
             self.subject.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
+            f"run at {self.override:g} %" if self.real and self.override != 100 else "",
         ]
-        if self.real is not None and self.override != 100:
-            facts.append(f"run at {self.override:g} %")
         return " · ".join(filter(None, facts))
 
 

@@ -4,8 +4,6 @@
 Lengths given to the drawing functions are in the units shown; sizes of figures in inches.
 """
 
-from __future__ import annotations
-
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -154,13 +152,8 @@ def outline_of(area: BaseGeometry) -> Outline | None:
         for polygon in map(orient, (part for part in polygons if not part.is_empty))
         for ring in (polygon.exterior, *polygon.interiors)
     ]
-    return Outline.make_compound_path(*map(_closed, rings)) if rings else None
-
-
-def _closed(ring: np.ndarray) -> Outline:
-    codes = np.full(len(ring), Outline.LINETO, dtype=Outline.code_type)
-    codes[0], codes[-1] = Outline.MOVETO, Outline.CLOSEPOLY
-    return Outline(ring[:, :2], codes)
+    closed = (Outline(ring[:, :2], closed=True) for ring in rings)
+    return Outline.make_compound_path(*closed) if rings else None
 
 
 def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, **style) -> None:
@@ -205,11 +198,7 @@ def shades(count: int) -> list[Shade]:
 
 
 def feed_colours(count: int) -> list[tuple]:
-    return (
-        [FEED_COLOURS(share) for share in np.linspace(0, 1, count)]
-        if count > 1
-        else [FEED_COLOURS(0.0)]
-    )
+    return [FEED_COLOURS(share) for share in np.linspace(0, 1, count)]
 
 
 def grey(colour) -> tuple[float, float, float]:

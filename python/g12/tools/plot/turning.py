@@ -4,10 +4,7 @@
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
 
-from __future__ import annotations
-
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from shapely.geometry import GeometryCollection
 
@@ -17,7 +14,7 @@ from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.plan_view import (
     PICTURE_CHORD,
     Level,
-    at_feed,
+    View,
     bounds_of,
     draw_arrows,
     draw_paths,
@@ -44,27 +41,28 @@ def draw_turn(scene: Scene) -> Figure:
     page = TOP + max(height, beside) + BOTTOM
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - height, width, height)
-    draw_profile(axes, scene, low, high)
+    view = View(axes, scene, PROFILE)
+    draw_profile(view, low, high)
     style.draw_legend(figure, turn_entries(scene), LEFT + width + 0.2, page - TOP + 0.08)
     if scene.real is not None:
-        mark_worst(axes, scene, PROFILE)
+        mark_worst(view)
         draw_window(figure, (LEFT + width + 0.35, BOTTOM), scene)
     return figure
 
 
-def draw_profile(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray) -> None:
+def draw_profile(view: View, low: np.ndarray, high: np.ndarray) -> None:
     """Draw the path between two corners of the view, and the spindle's centre line."""
-    style.frame(axes, low, high, scene.unit, ("Z", "X (radius)"))
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.axhline(0, **style.CENTRE_LINE)
-    draw_paths(axes, scene, [everything(scene)], PROFILE)
-    draw_arrows(axes, scene, PROFILE)
-    draw_signs(axes, scene, PROFILE)
+    style.frame(view.axes, low, high, view.scene.unit, ("Z", "X (radius)"))
+    view.axes.set_aspect("equal", adjustable="datalim")
+    view.axes.axhline(0, **style.CENTRE_LINE)
+    draw_paths(view, [everything(view.scene)])
+    draw_arrows(view)
+    draw_signs(view)
 
 
 def everything(scene: Scene) -> Level:
     """Return all cuts as one level, without an area."""
-    cutting = [scene.moves[index] for index in at_feed(scene)]
+    cutting = [scene.moves[index] for index in scene.fed]
     lines = paths(scene.path.part, cutting, PICTURE_CHORD)
     return Level(0.0, style.shades(1)[0], lines, GeometryCollection())
 

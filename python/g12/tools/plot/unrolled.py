@@ -1,25 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of sections on a cylinder: its unrolled surface, and the axes over time.
+"""The picture of cuts on a cylinder: its unrolled surface, and the axes over time.
 
-The surface is seen from outside, C to the right and Z upwards: in this view a lathe is a mill that
-cuts down along X. Lengths are millimetres until they are drawn; those of the layout are inches.
+The surface is seen from outside, C to the right and Z upwards, cut down along X. Lengths are
+millimetres until they are drawn; those of the layout are inches.
 """
 
-from __future__ import annotations
-
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from g12.tools.path.part import Part
-from g12.tools.path.track import Track, Vertices
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
-from g12.tools.plot.face import draw_history
+from g12.tools.plot.face import TIME_IN_RAPIDS, draw_history
 from g12.tools.plot.plan_view import (
+    View,
     bounds_of,
     draw_plan,
     legend_entries,
@@ -27,7 +24,6 @@ from g12.tools.plot.plan_view import (
     milled_levels,
 )
 from g12.tools.plot.scene import Scene
-from g12.tools.preview.moves import Move
 from g12.tools.verify.result.finding import Finding
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
@@ -40,18 +36,8 @@ NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
 DETAIL_ROW = 1.2  # with the detail view of the largest deviation
 
 
-@dataclass(frozen=True)
-class Flat(Part):
-    """The surface as a mill's part, of moves that are unrolled."""
-
-    @property
-    def letters(self) -> str:
-        return "CZX"
-
-
 def draw_unrolled(scene: Scene) -> Figure:
-    rolled = replace(scene, subject=scene.subject.on_surface(scene.seen.surface))
-    flat = unrolled(rolled)
+    flat = unrolled(scene)
     levels = milled_levels(flat)
     low, high = (corner[:2] for corner in bounds_of(flat, levels))
     size = high - low
@@ -60,22 +46,19 @@ def draw_unrolled(scene: Scene) -> Figure:
     more = DETAIL_ROW if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
-    axes = style.add_axes(figure, LEFT, page - TOP - up, across, up)
-    frame_surface(axes, flat, low, high, scene.x0_text)
-    draw_plan(axes, flat, levels)
+    view = View(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
+    frame_surface(view.axes, flat, low, high, scene.x0_text)
+    draw_plan(view, levels)
     panels = panels_of(figure, page - TOP - up - UNDER)
-    draw_history(panels, rolled, [], "surface")
+    draw_history(panels, flat, [], "surface")
     panels[ROWS - 1].tick_params(labelbottom=True)
     panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
     column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2
-    entries = [
-        *legend_entries(flat, levels),
-        style.swatch(style.FAINT, None, "time spent in rapids"),
-    ]
+    entries = [*legend_entries(flat, levels), TIME_IN_RAPIDS]
     top = page - TOP - up - UNDER - 2 * (PANEL + GAP) - GAP
     style.draw_legend(figure, entries, column - 0.1, top, 1 if more else 2)
     if scene.real is not None:
-        mark_worst(axes, flat, [0, 1])
+        mark_worst(view)
         draw_window(figure, (WIDTH - RIGHT - DETAIL_SIZE, 0.55), flat)
     return figure
 
@@ -83,17 +66,10 @@ def draw_unrolled(scene: Scene) -> Figure:
 def panels_of(figure: Figure, top: float) -> list[Axes]:
     """Return the axes over time: X, Z and C in one column, the speeds in another."""
     width = (WIDTH - LEFT - RIGHT - BETWEEN) / 2
-    cells = [(0, row) for row in range(ROWS)] + [(1, row) for row in range(ROWS - 1)]
-    return [
-        style.add_axes(
-            figure,
-            LEFT + column * (width + BETWEEN),
-            top - PANEL - row * (PANEL + GAP),
-            width,
-            PANEL,
-        )
-        for column, row in cells
-    ]
+    columns, rows = (LEFT, LEFT + width + BETWEEN), range(ROWS)
+    cells = [(columns[0], row) for row in rows] + [(columns[1], row) for row in rows[:-1]]
+    lows = [(left, top - PANEL - row * (PANEL + GAP)) for left, row in cells]
+    return [style.add_axes(figure, left, low, width, PANEL) for left, low in lows]
 
 
 def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:
@@ -109,18 +85,11 @@ def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x
 
 
 def unrolled(scene: Scene) -> Scene:
-    """Return a scene on a cylinder's surface as that of a mill."""
-    subject, path = scene.subject, scene.path
-    moves = [unrolled_move(move, path.part) for move in scene.moves]
-    positions = as_positions(path.points)
-    vertices = Vertices(positions, np.zeros_like(positions), path.move, path.time)
-    flat = Track(Flat(turning=False), moves, lambda: vertices, path.seconds)
-    real = scene.real and replace(scene.real, positions=as_positions(scene.real.points))
-    trace = replace(subject.trace, moves=moves)
+    """Return a scene on the surface of its cylinder; a bar is round on the face alone."""
     radius = scene.seen.surface
-    own = (on_radius(each, radius) for each in scene.seen.findings)
-    shown = scene.seen._replace(findings=tuple(own), stock=None)  # a bar is round on the face alone
-    return replace(scene, subject=replace(subject, trace=trace, drawn=(flat, real)), seen=shown)
+    findings = tuple(on_radius(each, radius) for each in scene.seen.findings)
+    seen = scene.seen._replace(findings=findings, stock=None)
+    return replace(scene, subject=scene.subject.on_surface(radius), seen=seen)
 
 
 def on_radius(finding: Finding, radius: float) -> Finding:
@@ -130,14 +99,3 @@ def on_radius(finding: Finding, radius: float) -> Finding:
         return finding
     path = finding.values["path"] * (radius / surface, 1.0, 1.0)
     return replace(finding, values={**finding.values, "path": path})
-
-
-def unrolled_move(move: Move, part: Part) -> Move:
-    """Return a straight move on the surface as one of a mill."""
-    start, end = map(tuple, as_positions(part.points(np.array([move.start, move.end]))).tolist())
-    return move._replace(kind="feed" if move.kind == "arc" else move.kind, start=start, end=end)
-
-
-def as_positions(points: np.ndarray) -> np.ndarray:
-    """Return points (n, 3) as machine positions (n, 9) of a mill."""
-    return np.pad(points, ((0, 0), (0, 6)))
