@@ -55,6 +55,11 @@ CASES = [
     ("lathe", f"{FLAT}|G0 C0|{FLAT}", ""),
     ("lathe", f"{FLAT}|G0 C180|{FLAT}", ""),
     ("lathe", f"{FLAT}|G0 C-39.805571|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G91 G0 C180|G90|{FLAT}", "zero-line-turned 15"),
+    ("lathe", f"{FLAT}|G91 G0 C39.805571|C180|G90|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G0 C0|{ON_FACE.replace('[3] [30] [20]', '[1] [30] [0]')}|G0 X60|{FLAT}", ""),
+    ("lathe", f"G0 C30|{FLAT}|G0 Z10 C0|{ON_FACE.replace('[3]', '[1]', 1).replace('[20]', '[30]')}"
+     f"|G0 X60 Z2|{FLAT}", ""),
     ("lathe", f"{FLAT}|G92 C0|{FLAT}", ""),
     ("lathe", f"{FLAT}|G10 L20 P1 C0|{FLAT}", ""),
     ("lathe", f"o<turn> sub|G0 C0|o<turn> endsub|{FLAT}|o<turn> call|{FLAT}", ""),

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
-from g12.tools.preview.executed_blocks import Text, read_lines
+from g12.tools.preview.executed_blocks import Text, is_number, read_lines
 from g12.tools.preview.moves import Move
 from g12.tools.verify.expected.contour import SectionContour, ZeroLine
 from g12.tools.verify.expected.words import SubCall
@@ -39,22 +39,35 @@ class CutBefore(NamedTuple):
 
 
 class CLines:
-    """The lines of a program and of its subs that command C outside of sections."""
+    """The C words of a program and of its subs outside of sections, by their lines."""
 
     def __init__(self, program: Path, codes: Codes, ini: Ini) -> None:
         texts = read_lines(program)
         flagged = codes.with_switches(texts)
         self._program = _with_c(text for text, switch, inside in flagged if not (inside or switch))
-        subs = map(read_lines, called_files(texts, ini))
-        self._subs = self._program | _with_c(chain.from_iterable(subs))
+        subs = _with_c(chain.from_iterable(map(read_lines, called_files(texts, ini))))
+        self._subs = {**subs, **self._program}
 
-    def turn(self, move: Move) -> bool:
-        """Tell whether a move's line commands C; that of a sub may be in a file of its own."""
-        return move.line in (self._program if move.line == move.block else self._subs)
+    def set_angle(self, move: Move, offset: float) -> bool:
+        """Tell whether a move's line commands the angle of C that it goes to.
+
+        An increment (G91) keeps the angle that the cut before left. ``offset`` is the program's
+        C0. The move of a sub may be in a file of its own.
+        """
+        words = self._program if move.line == move.block else self._subs
+        word = words.get(move.line)
+        if word is None:
+            return move.end[C] != move.start[C]
+        return not is_number(word) or _apart(move.end[C] - offset, float(word)) < SAME_ANGLE
 
 
-def _with_c(texts: Iterator[Text]) -> set[int]:
-    return {text.number for text in texts if "C" in dict(text.words)}
+def _with_c(texts: Iterator[Text]) -> dict[int, str]:
+    return {text.number: dict(text.words)["C"] for text in texts if "C" in dict(text.words)}
+
+
+def _apart(one: float, other: float) -> float:
+    """Return by how much two angles of C differ in any turn, degrees."""
+    return abs(math.remainder(one - other, 360.0))
 
 
 def with_zero_lines(
@@ -93,17 +106,20 @@ def zero_line(
 ) -> ZeroLine:
     """Return what has become of C since the cut before, or since the program's beginning.
 
-    It is turned against the last cut on the face, without one against the program's C0.
+    It is turned against the cuts on the face where it agrees with none of them, without one against
+    the program's C0.
     """
     before = [cut for cut in cuts if cut.own.stop <= section.at]
     between = moves[before[-1].own.stop if before else 0 : section.at]
-    commanded = any(move.end[C] != move.start[C] or lines.turn(move) for move in between)
+    angle = moves[section.at].start[C]
+    offset = angle - section.c
+    commanded = any(lines.set_angle(move, offset) for move in between)
     if not before:
         return ZeroLine(commanded)
-    angle, last = moves[section.at].start[C], before[-1]
-    offset = angle - section.c
+    last, faces = before[-1], [cut for cut in before if cut.on_face]
     commanded = commanded or abs(offset - last.offset) > SAME_ANGLE
-    face = next((cut for cut in reversed(before) if cut.on_face), None)
-    turned = (angle - (face.zero if face else offset) + 180.0) % 360.0 - 180.0
-    turned = turned if abs(turned) > SAME_ANGLE else 0.0
-    return ZeroLine(commanded, turned, last.last, face.line if face else 0)
+    zeros = [cut.zero for cut in faces] or [offset]
+    turned = math.remainder(angle - zeros[-1], 360.0)
+    if any(_apart(angle, zero) < SAME_ANGLE for zero in zeros):
+        turned = 0.0
+    return ZeroLine(commanded, turned, last.last, faces[-1].line if faces else 0)
