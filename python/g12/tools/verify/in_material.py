@@ -23,7 +23,7 @@ from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.mistakes.neighbours import judge_circles
 from g12.tools.verify.mistakes.tool import length_set_by, missing_length, uses_lengths
-from g12.tools.verify.result.finding import Finding, also_in, lines_in_words
+from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import SIZE
 from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.subject import Subject
@@ -54,14 +54,16 @@ def _once_a_line(found: Iterable[Finding]) -> Iterator[Finding]:
 
 def judge_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the rapids that go through material, and the lines of those not judged, by cause."""
-    found = list(_rapids(workpiece))
-    yield from _once_a_line(each for each in found if each.is_finding)
+    found = [*_rapids(workpiece), *_rapids_beside_holes(workpiece)]
+    through = list(_once_a_line(each for each in found if each.is_finding))
+    yield from through
+    judged = {each.line for each in through}
     causes: dict[str, list[Finding]] = {}
-    for each in (each for each in found if each.is_not_judged):
+    for each in (each for each in found if each.line not in judged):
         causes.setdefault(each.code, []).append(each)
     for same in causes.values():
         lines = [each.line for each in same]
-        yield replace(same[0], line=min(lines), values={"lines": lines_in_words(lines)})
+        yield replace(same[0], line=min(lines), values={"lines": lines})
 
 
 def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
@@ -110,6 +112,24 @@ def _in_view(
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))
+
+
+def _rapids_beside_holes(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield the rapids of a tool below the surface of its holes in the side, where no stock is.
+
+    Those in the holes are part of the call.
+    """
+    subject = workpiece.subject
+    calls = [call for call in subject.commanded.holes if call.is_side]
+    drilled = {index for call in calls for index in call.moves}
+    surface = max((call.zero[0] + call.surface for call in calls), default=-math.inf)
+    views = [view for view in workpiece.views if view.surface]
+    known = np.append(False, subject.ends_known)
+    for index, move in enumerate(() if views else subject.moves):
+        is_low = min(move.start[X], move.end[X]) < surface - SAME_LEVEL
+        is_own = move.kind == "rapid" and subject.sideways[index] == {True}
+        if is_low and is_own and index not in drilled and known[index : index + 2].all():
+            yield Finding("rapid-beside", subject.line(index))
 
 
 def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
@@ -183,7 +203,7 @@ def _is_cut_before(section: SectionContour, workpiece: Workpiece) -> bool:
 def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield one note of the holes that are assumed."""
     for line, place, *_ in workpiece.holes[:1]:
-        more = also_in({hole.line for hole in workpiece.holes} - {line})
+        more = {hole.line for hole in workpiece.holes} - {line}
         why = " or ".join(dict.fromkeys(hole.why for hole in workpiece.holes))
         values = {"at": tuple(zip("XYZ", place)), "why": why, "more": more}
         yield Finding("bored-assumed", line, values, place)

@@ -27,7 +27,7 @@ from g12.tools.verify.expected.toolpath import TOUCHING, Point
 from g12.tools.verify.reading.circles import Cutter, Target, Wall
 from g12.tools.verify.reading.codes import EVENT
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.finding import Finding, minus_hint
 from g12.tools.verify.result.tolerances import AREA, RUN, SIZE, WEAR
 
 SAME_AXIS = 1e-9
@@ -224,7 +224,9 @@ def _is_wrong_tool(cutter: Cutter) -> bool:
 
 def _judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
     if target.dialect != EVENT and target.deepest > tolerance:
-        values = {"depth": target.wall.height(target.deepest), "start": target.wall.height(0.0)}
+        wall, depth = target.wall, target.wall.height(target.deepest)
+        hint = minus_hint(depth, wall.face)
+        values = {"depth": depth, "start": wall.height(0.0), "hint": hint}
         yield Finding("cuts-air", target.line, values)
 
 

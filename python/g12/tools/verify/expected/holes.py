@@ -115,7 +115,7 @@ def holes_of(call: SubCall) -> Holes:
     step = given.get("step_angle", 360.0 / count)
     turn = _shorter(step, step) if count > 1 else 0.0
     if side:
-        x, z = call.length("surface_diameter") / 2, call.length("z")
+        x, z = call.surface, call.length("z")
         return Holes(call, side, count, x, z, given.get("first_angle", 0.0), turn, kind)
     if call.name == "face_holes":
         radius, angle = call.length("circle_diameter") / 2, given.get("first_angle", 0.0)

@@ -166,6 +166,11 @@ class SubCall:
         """Whether the tool points at the axis."""
         return self.name == "side_holes"
 
+    @property
+    def surface(self) -> float:
+        """The radius of the surface in which holes in the side are drilled."""
+        return self.length("surface_diameter") / 2
+
     def length(self, name: str, default: float = 0.0) -> float:
         """Return a length, or its default in mm."""
         return self.given[name] * self.unit if name in self.given else default

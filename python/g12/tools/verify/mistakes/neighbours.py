@@ -13,7 +13,7 @@ from g12.tools.material.material import ALLOWED, LEAST_AREA, Material
 from g12.tools.path.part import disc
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.verify.reading.circles import Target
-from g12.tools.verify.result.finding import Finding, also_in
+from g12.tools.verify.result.finding import Finding
 
 Circles = Sequence[tuple[Block, Target]]
 
@@ -35,7 +35,7 @@ def _cores(circles: Circles, material: Material) -> Iterator[Finding]:
     found = [(target, area) for target, area in areas if area > LEAST_AREA]
     for target, area in found[:1]:
         line = target.line
-        values = {"area": area, "more": also_in({each.line for each, _ in found} - {line})}
+        values = {"area": area, "more": {each.line for each, _ in found} - {line}}
         place = target.wall.machine((0j, target.deepest))
         yield Finding("core-stands", line, values, place, target.file)
 
@@ -52,7 +52,7 @@ def _cut_before(circles: Circles, material: Material) -> Iterator[Finding]:
     """Yield one note of the circles of which all was cut before their blocks."""
     lines = [target.line for block, target in circles if _was_cut(block, target, material)]
     if lines:
-        yield Finding("cut-before", lines[0], {"more": also_in(set(lines) - {lines[0]})})
+        yield Finding("cut-before", lines[0], {"more": set(lines) - {lines[0]}})
 
 
 def _was_cut(block: Block, target: Target, material: Material) -> bool:

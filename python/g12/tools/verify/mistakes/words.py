@@ -9,7 +9,7 @@ from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.preview.executed_blocks import Text
 from g12.tools.verify.expected.contour import Element, SectionContour
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.result.finding import Finding, also_in, lines_in_words
+from g12.tools.verify.result.finding import Finding
 
 STORED = {28.0: "G28", 30.0: "G30"}
 SETTING = {28.1: "G28", 30.1: "G30"}
@@ -45,7 +45,7 @@ def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
     }
     for code, lines in found.items():
         if lines:
-            yield Finding(code, lines[0], {"lines": lines_in_words(lines)})
+            yield Finding(code, lines[0], {"lines": lines})
 
 
 def _sets_tools(text: Text) -> bool:
@@ -75,7 +75,7 @@ def judge_unrun(texts: Sequence[Text], codes: Codes, run: Collection[int]) -> It
         if (name := codes.commanded(text, switch)) and text.number not in run
     }
     for line, name in list(unrun.items())[:1]:
-        yield Finding("never-run", line, {"code": name, "more": also_in(set(unrun) - {line})})
+        yield Finding("never-run", line, {"code": name, "more": set(unrun) - {line}})
 
 
 def judge_reversals(sections: Sequence[SectionContour]) -> Iterator[Finding]:

@@ -49,16 +49,16 @@ class Finding:
         return in_words(SENTENCES[self.code], self.values, unit)
 
 
-def also_in(lines: Collection[int]) -> str:
-    """Return further lines in brackets."""
-    return f" (also in line {', '.join(map(str, sorted(lines)))})" if lines else ""
+def minus_hint(level: float, zero: float) -> str:
+    """Return a hint for a depth above the tool: one below Z0 has its sign."""
+    return " (a lost minus sign?)" if level > zero else ""
 
 
-def lines_in_words(lines: Collection[int]) -> str:
+def _lines_in_words(lines: Collection[int]) -> str:
     """Return lines in words, of many the first ones."""
-    first = sorted(set(lines))
-    more = f" and {len(first) - MOST_LINES} more" if len(first) > MOST_LINES else ""
-    return ", ".join(map(str, first[:MOST_LINES])) + more
+    own = sorted(set(lines))
+    more = f" and {len(own) - MOST_LINES} more" if len(own) > MOST_LINES else ""
+    return f"line{'s' * (len(own) > 1)} {', '.join(map(str, own[:MOST_LINES]))}{more}"
 
 
 def in_words(sentence: str, values: Mapping[str, Any], unit: Unit) -> str:
@@ -84,7 +84,8 @@ class _Writer(string.Formatter):
     a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
     one with its letters, ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
     that was measured, ``turns`` angles, ``words`` entries by name, ``twice`` a radius as
-    a diameter; lengths with their unit but ``mm``, ``twice``, ``list``. A number is of decimals.
+    a diameter, ``lines`` and ``also`` line numbers; lengths with their unit but ``mm``, ``twice``,
+    ``list``. A number is of decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
@@ -106,6 +107,8 @@ class _Writer(string.Formatter):
             "words": lambda words: ", ".join(
                 f"{name} {plain(at, 4)}" for name, at in words.items()
             ),
+            "lines": _lines_in_words,
+            "also": lambda lines: f" (also in {_lines_in_words(lines)})" if lines else "",
             "list": lambda value: ", ".join(map(unit.text, value)),
             "span": lambda ends: f"{unit.text(ends[0])} to {unit.text(ends[1])} {unit.name}",
             "pace": lambda value: f"{plain(value / unit.mm, 1)} {unit.name}/min",

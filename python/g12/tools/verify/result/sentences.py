@@ -26,8 +26,7 @@ FINDINGS = {
         "the wall comes out at radius {cut:mm}, not {wall:mm}"
     ),
     "cuts-air": (
-        "its depth Z{depth:mm} lies above Z{start:mm}, where the tool comes from: "
-        "it cuts air (a lost minus sign?)"
+        "its depth Z{depth:mm} lies above Z{start:mm}, where the tool comes from: it cuts air{hint}"
     ),
     "travel": "the {axis} axis would go to {position:mm}, its limit is {limit:length}",
     # the tool
@@ -63,7 +62,7 @@ FINDINGS = {
     ),
     "above-start": (
         "its contour at {letter}{level:mm} lies above {letter}{start:mm}, where the tool comes "
-        "from: it cuts air (a lost minus sign?)"
+        "from: it cuts air{hint}"
     ),
     "c-speed": "C turns at {made:2} degrees/s, its limit is {limit:2}",
     "c-turned-too-far": (
@@ -82,18 +81,18 @@ FINDINGS = {
 }
 NOTES = {
     "bored-assumed": (
-        "verify assumes a bored hole down to {at:place}, because {why}{more}; "
+        "verify assumes a bored hole down to {at:place}, because {why}{more:also}; "
         "give the real stock with --stock"
     ),
     "core-stands": (
-        "{area:mm2} stand in its middle when it is cut{more}: right only where that is bored "
+        "{area:mm2} stand in its middle when it is cut{more:also}: right only where that is bored "
         "before, or is to stay: --stock gives what there is"
     ),
     "cuts-wall": "it and line {line} cut into each other's walls",
-    "cut-before": "all of it was cut before{more}: a spring pass, or the wrong place?",
+    "cut-before": "all of it was cut before{more:also}: a spring pass, or the wrong place?",
     "never-run": (
-        "{code} is never run{more}: the program ends before it, jumps over it, or block delete "
-        "skips it"
+        "{code} is never run{more:also}: the program ends before it, jumps over it, or block "
+        "delete skips it"
     ),
     "above-surface": (
         "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
@@ -184,18 +183,18 @@ NOT_JUDGED = {
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
     "rapid-from-unknown": (
-        "what rapids go through whose start is not known, to a point within the part: line {lines}"
+        "what rapids go through whose start is not known, to a point within the part: {lines:lines}"
     ),
     "rapid-beside": (
-        "rapids below the part's top or Z0, beside what is cut: line {lines}; "
+        "rapids below the part's top or Z0, beside what is cut: {lines:lines}; "
         "--stock gives what stands there"
     ),
     "rapid-after-cuts": (
-        "rapids from the side to where other cuts may have removed the bar before: line {lines}"
+        "rapids from the side to where other cuts may have removed the bar before: {lines:lines}"
     ),
-    "rapid-turned": ("rapids of a tool between its cuts on the face and in the side: line {lines}"),
+    "rapid-turned": "rapids of a tool between cuts on the face and in the side: {lines:lines}",
     "rapid-by-machine": (
-        "what rapids by G53, G28 or G30 go through that start within the part: line {lines}"
+        "what rapids by G53, G28 or G30 go through that start within the part: {lines:lines}"
     ),
     "travel-unplaced": (
         "whether it is within the travel: no work offset is set; --var gives the machine's"
@@ -205,14 +204,14 @@ NOT_JUDGED = {
         "look for the code that starts it on your machine"
     ),
     "block-delete": (
-        "the program with block delete off: a preview skips what begins with /: line {lines}"
+        "the program with block delete off: a preview skips what begins with /: {lines:lines}"
     ),
     "tool-table-set": (
-        "cuts with the sizes before G10 L1, L10 or L11: line {lines}; verify takes the tool "
+        "cuts with the sizes before G10 L1, L10 or L11: {lines:lines}; verify takes the tool "
         "table as the program leaves it"
     ),
     "tool-unread": (
-        "the tool of M61, which LinuxCNC's preview does not read: line {lines}; use T and M6"
+        "the tool of M61, which LinuxCNC's preview does not read: {lines:lines}; use T and M6"
     ),
     "plain-moves": (
         "feed moves outside of cycles and sections: {count} of the program's lines, "

@@ -24,7 +24,7 @@ from g12.tools.verify.compare.state import judge_section_state
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.toolpath import NO_LENGTH, Expected
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.finding import Finding, minus_hint
 from g12.tools.verify.result.tolerances import LEVEL, SIZE
 from g12.tools.verify.sections.outline import judge_side, neighbour_cuts
 from g12.tools.verify.sections.section_motion import c_speed, judge_c, judge_motion, rubbing
@@ -138,7 +138,8 @@ def judge_words(view: SectionView) -> Iterator[Finding]:
     depths = [each.depth for each in section.elements if each.side and not each.ramp]
     if depths and min(depths) > section.height + LEVEL:
         levels = {"level": factor * min(depths), "start": factor * section.height}
-        yield Finding("above-start", section.line, {"letter": letter, **levels})
+        words = {"letter": letter, "hint": minus_hint(min(depths), section.surface)}
+        yield Finding("above-start", section.line, {**words, **levels})
     if section.surface and view.lowest >= view.first.start[third] - SIZE:
         yield Finding("not-below-start", section.line, {"letter": letter, "code": section.code})
     if not view.tool and any(section.sides):
