@@ -241,7 +241,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
         (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
         (HAAS, "G0 X1. ?", "? does not start with a word"),
-        (HAAS, "#1=BIN[#2]", "BIN[#2] stands where a value"),
+        (HAAS, "#1=BIN[#2]", "BIN[#2] is no number, variable or function"),
         (HAAS, "#1=[[[[[[[[[1]]]]]]]]]", "more than 8 brackets"),
         (HAAS, "#1=[1", "] is missing before the end"),
         (LATHE, "T30303", "T30303 has 5 digits"),

@@ -94,7 +94,7 @@ def missing_lines(
         tables[""].append(f'axes = "{control.axes}{axes}"')
     for table, line in settings:
         tables.setdefault(table, []).append(line)
-    for code in sorted({w.code for w in words if w.letter in "GM"}, key=_number):
+    for code in sorted({w.code for w in words} - {""}, key=_number):
         meaning = control.meanings.get(code, "")
         if not meaning or (meaning == "machine" and code not in (machine_codes or {code})):
             name = f'"{code}"' if "." in code else code

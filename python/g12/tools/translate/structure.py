@@ -224,7 +224,7 @@ def _called_and_ended(
     called: set[int] = set()
     ended: set[int] = set()
     for head, block in zip(_carried_on({at: at for at in heads}, len(blocks), -1), blocks):
-        own = {word.code for word in block.words if word.letter in "GM" and word.kind == "number"}
+        own = {word.code for word in block.words}
         if own & ENDS:
             ended.add(head)
         if own & codes:

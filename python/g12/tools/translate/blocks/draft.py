@@ -65,16 +65,14 @@ class Draft:
         self.comments: list[str] = list(self.block.comments)
 
     def change(self, **modes: Any) -> None:
-        """Set modes for the blocks after this one."""
         self.state = self.state._replace(**modes)
 
     def codes(self) -> list[str]:
         """Return the G codes of the block, as LinuxCNC's."""
-        return [w.code for w in self.words if w.letter == "G" and w.kind == "number"]
+        return [w.code for w in self.words if w.code[:1] == "G"]
 
     def m_codes(self) -> list[str]:
-        """Return the M codes of the block, as LinuxCNC's."""
-        return [w.code for w in self.words if w.letter == "M" and w.kind == "number"]
+        return [w.code for w in self.words if w.code[:1] == "M"]
 
     @property
     def ends(self) -> bool:
@@ -84,11 +82,9 @@ class Draft:
         return not ENDS.isdisjoint(self.m_codes())
 
     def letters(self) -> set[str]:
-        """Return the letters of the remaining words."""
         return {word.letter for word in self.words if word.kind != "text"}
 
     def axis_words(self) -> list[ForeignWord]:
-        """Return the words that name an axis."""
         return [word for word in self.words if word.letter in AXIS_NUMBERS]
 
     def word(self, letter: str) -> ForeignWord | None:
@@ -101,7 +97,6 @@ class Draft:
         return next(codes, self.state.motion)
 
     def drop(self, words: Container[ForeignWord]) -> None:
-        """Take words out that need not be written."""
         self.words = [word for word in self.words if word not in words]
 
     def write(self, lines: Iterable[str]) -> None:
@@ -120,15 +115,12 @@ class Draft:
         return found[0] if found else None
 
     def take_codes(self, codes: Container[str]) -> list[str]:
-        """Take G codes out; return those that were there."""
-        taken = [
-            w for w in self.words if w.letter == "G" and w.kind == "number" and w.code in codes
-        ]
-        self.words = [word for word in self.words if word not in taken]
-        return [word.code for word in taken]
+        """Take codes out; return those that were there."""
+        taken = [word.code for word in self.words if word.code in codes]
+        self.words = [word for word in self.words if word.code not in codes]
+        return taken
 
     def replace(self, old: ForeignWord, *new: ForeignWord) -> None:
-        """Put words in place of one."""
         at = next(index for index, word in enumerate(self.words) if word is old)
         self.words[at : at + 1] = new
 
@@ -150,11 +142,9 @@ class Draft:
         return value
 
     def written(self) -> str:
-        """Return the remaining words as one line."""
         return " ".join(word.text for word in self.words)
 
     def begins_program(self) -> bool:
-        """Whether the block begins with the number of a program."""
         return bool(self.words) and self.words[0].letter == "O"
 
     def is_empty(self) -> bool:
@@ -168,7 +158,6 @@ def position(axis: str) -> str:
 
 
 def word_of(text: str) -> ForeignWord:
-    """Return the word of a text such as ``G90``."""
     return ForeignWord(text[0], text[1:])
 
 

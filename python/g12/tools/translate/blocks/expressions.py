@@ -14,8 +14,10 @@ from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 
+OWN = "\0"  # before the number of a parameter of LinuxCNC's own: no program's text has it
 UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 OPERATOR = re.compile(r"EQ|NE|GT|GE|LT|LE|AND|XOR|OR|MOD|[-+*/]")
+VARIABLE = re.compile(f"#({OWN}?[0-9]+)")
 FUNCTION = re.compile(r"(SIN|COS|TAN|ASIN|ACOS|ATAN|SQRT|SQR|ABS|ROUND|FIX|FUP|LN|EXP)(?=\[)")
 LONGER_NAMES = {"SQR": "SQRT"}
 COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
@@ -24,15 +26,15 @@ DEEPEST_BRACKETS = 8  # brackets within brackets
 LOCAL_VARIABLES = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
 SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
 EMPTY = "-9999999"  # passed to a macro for an empty variable that it compares with #0
-EMPTY_VARIABLE = re.compile(r"#0+(?![0-9.])")
+EMPTY_QUESTION = re.compile(r"(EQ|NE)#0+(?![0-9.])")
 MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
-OWN = "\0"  # before the number of a parameter of LinuxCNC's own: no program's text has it
 CLOCK = 0  # the number that a variable of the control's clock has
 OTHER_MEANING = (
     "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
 )
 POSITION_VARIABLES = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
+NONE: frozenset[int] = frozenset()
 
 
 class Expression(NamedTuple):
@@ -42,9 +44,9 @@ class Expression(NamedTuple):
     read: frozenset[int]  # variables in it
     is_condition: bool
     end: int  # index after it in the text
-    compared: frozenset[int] = frozenset()  # local variables that it compares with #0
-    set_if_true: frozenset[int] = frozenset()  # those of them that then have a value
-    set_if_false: frozenset[int] = frozenset()
+    compared: frozenset[int] = NONE  # local variables that it compares with #0
+    set_if_true: frozenset[int] = NONE  # those of them that then have a value
+    set_if_false: frozenset[int] = NONE
 
 
 def value_from(text: str, start: int) -> Expression:
@@ -59,42 +61,55 @@ def bracketed_from(text: str, start: int) -> Expression:
     return _brackets(text, start, 0)
 
 
-def whole_expression(text: str) -> Expression:
+def whole_expression(text: str, start: int) -> Expression:
     """Return what is on the right of ``=``, which needs no brackets there."""
-    found = expression_from(text, 0)
+    found = expression_from(text, start)
     if found.end < len(text):
         raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
     return found
 
 
-def expression_from(text: str, start: int) -> Expression:
+def expression_from(text: str, start: int, depth: int = 0) -> Expression:
     """Return values with operators between them, as far as they go."""
-    return _chain(text, start, 0)
+    first = _operand(text, start, depth)
+    question = EMPTY_QUESTION.match(text, first.end)
+    if question and first.text in {f"#{n}" for n in first.read.intersection(LOCAL_VARIABLES)}:
+        return _empty_question(first, question)
+    parts, operators, at = [first], [], first.end
+    while operator := OPERATOR.match(text, at):
+        parts.append(_operand(text, operator.end(), depth))
+        operators.append(operator[0])
+        at = parts[-1].end
+    _check_operators(parts, operators)
+    return _joined(parts, operators) if operators else first
 
 
 def _operand(text: str, start: int, depth: int) -> Expression:
     at = start
     while at < len(text) and text[at] in "+-":
         at += 1
-    sign = "-" * (text[start:at].count("-") % 2)
     found = _unsigned(text, at, depth)
-    if not sign:
-        return found
-    return Expression(sign + found.text, found.read, False, found.end, found.compared)
+    is_negative = text[start:at].count("-") % 2
+    return _value(found, f"-{found.text}") if is_negative else found
+
+
+def _value(of: Expression, text: str) -> Expression:
+    """Return an expression that is worked out from another's value: no condition."""
+    return Expression(text, of.read, False, of.end, of.compared)
 
 
 def _unsigned(text: str, at: int, depth: int) -> Expression:
-    number = UNSIGNED.match(text, at)
-    if number:
-        return Expression(number[0], frozenset(), False, number.end())
+    if number := UNSIGNED.match(text, at):
+        return Expression(number[0], NONE, False, number.end())
     if text.startswith("#", at):
         return _variable(text, at, depth)
     if text.startswith("[", at):
         return _brackets(text, at, depth)
-    function = FUNCTION.match(text, at)
-    if function:
+    if function := FUNCTION.match(text, at):
         return _function(function[1], text, function.end(), depth)
-    raise NotTranslated(f"{excerpt(text[at:]) or 'the end'} stands where a value is wanted")
+    if at >= len(text):
+        raise NotTranslated("a value is missing at the end")
+    raise NotTranslated(f"{excerpt(text[at:])} is no number, variable or function")
 
 
 def _variable(text: str, at: int, depth: int) -> Expression:
@@ -104,12 +119,12 @@ def _variable(text: str, at: int, depth: int) -> Expression:
             if float(number) > MOST_PLACES and not _is_kept(float(number)):
                 rule = f"{number} {OTHER_MEANING}; write the value in its place"
                 raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
-        return Expression(f"#{index.text}", index.read, False, index.end, index.compared)
-    digits = re.compile(f"{OWN}?[0-9]+").match(text, at + 1)
+        return _value(index, f"#{index.text}")
+    digits = VARIABLE.match(text, at)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
-    number = variable_number(digits[0])
-    return Expression(f"#{number}", frozenset((number,)), False, digits.end())
+    variable = variable_number(digits[1])
+    return Expression(f"#{variable}", frozenset((variable,)), False, digits.end())
 
 
 def variable_number(digits: str) -> int:
@@ -117,16 +132,14 @@ def variable_number(digits: str) -> int:
     if digits.startswith(OWN):
         return int(digits[1:])
     number = int(digits[:9])
-    if _is_kept(number):
-        return number
-    if number in POSITION_VARIABLES:
-        return POSITION_VARIABLES[number]
     if number == 0:
         raise NotTranslated(
             "#0, the empty variable, is translated in #… EQ #0 and #… NE #0 only, for #1 to #33"
         )
-    say = f'say under [variables] what it is, {digits[:9]} = "…"'
-    raise NotTranslated(f"#{digits[:9]} {OTHER_MEANING}; {say}")
+    if not _is_kept(number) and number not in POSITION_VARIABLES:
+        say = f'say under [variables] what it is, {digits[:9]} = "…"'
+        raise NotTranslated(f"#{digits[:9]} {OTHER_MEANING}; {say}")
+    return POSITION_VARIABLES.get(number, number)
 
 
 def _is_kept(number: float) -> bool:
@@ -137,88 +150,57 @@ def _is_kept(number: float) -> bool:
 def _brackets(text: str, start: int, depth: int) -> Expression:
     if depth >= DEEPEST_BRACKETS:
         raise NotTranslated(f"more than {DEEPEST_BRACKETS} brackets within brackets")
-    inner = _chain(text, start + 1, depth + 1)
+    inner = expression_from(text, start + 1, depth + 1)
     if text[inner.end : inner.end + 1] != "]":
         raise NotTranslated(f"] is missing before {excerpt(text[inner.end :]) or 'the end'}")
     return inner._replace(text=f"[{inner.text}]", end=inner.end + 1)
 
 
 def _function(name: str, text: str, at: int, depth: int) -> Expression:
-    inner = _brackets(text, at, depth)
-    argument = Expression(inner.text, inner.read, False, inner.end, inner.compared)
-    if name == "ATAN":
-        return _arc_tangent(argument, text, depth)
+    argument = _brackets(text, at, depth)
     if name in ("FIX", "FUP"):
         e = argument.text
-        return argument._replace(text=f"[{name}[ABS{e}] * [1 - 2 * [{e} LT 0]]]")
-    return argument._replace(text=f"{LONGER_NAMES.get(name, name)}{argument.text}")
-
-
-def _arc_tangent(argument: Expression, text: str, depth: int) -> Expression:
+        return _value(argument, f"[{name}[ABS{e}] * [1 - 2 * [{e} LT 0]]]")
+    if name != "ATAN":
+        return _value(argument, f"{LONGER_NAMES.get(name, name)}{argument.text}")
     if not text.startswith("/[", argument.end):
-        return argument._replace(text=f"ATAN{argument.text}/[1]")
+        return _value(argument, f"ATAN{argument.text}/[1]")
     below = _brackets(text, argument.end + 1, depth)
     read, compared = argument.read | below.read, argument.compared | below.compared
     return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end, compared)
 
 
-def _chain(text: str, start: int, depth: int) -> Expression:
-    """Return values with operators between them."""
-    first = _operand(text, start, depth)
-    question = _empty_question(first, text)
-    if question:
-        return question
-    parts, operators, at = [first], [], first.end
-    while operator := OPERATOR.match(text, at):
-        part = _operand(text, operator.end(), depth)
-        parts.append(part)
-        operators.append(operator[0])
-        at = part.end
-    _check_operators(parts, operators)
-    return _joined(parts, operators) if operators else first
-
-
-def _empty_question(first: Expression, text: str) -> Expression | None:
-    """Return the question whether a local variable is empty, None if it is no such question."""
-    operator = re.compile("EQ|NE").match(text, first.end)
-    empty = operator and EMPTY_VARIABLE.match(text, operator.end())
-    if not empty or first.text not in {f"#{n}" for n in first.read.intersection(LOCAL_VARIABLES)}:
-        return None
-    variable, is_equal = first.read, operator[0] == "EQ"
+def _empty_question(variable: Expression, question: re.Match[str]) -> Expression:
+    """Return the question whether a local variable is empty."""
+    own, is_equal = variable.read, question[1] == "EQ"
     return Expression(
-        f"{first.text} {operator[0]} {EMPTY}",
-        frozenset(),
+        f"{variable.text} {question[1]} {EMPTY}",
+        NONE,
         True,
-        empty.end(),
-        variable,
-        frozenset() if is_equal else variable,
-        variable if is_equal else frozenset(),
+        question.end(),
+        own,
+        set_if_true=NONE if is_equal else own,
+        set_if_false=own if is_equal else NONE,
     )
 
 
 def _joined(parts: list[Expression], operators: list[str]) -> Expression:
-    """Return an expression of several parts."""
-    written = [parts[0].text]
-    for operator, part in zip(operators, parts[1:]):
-        written += (operator, part.text)
+    text = " ".join([parts[0].text, *(f"{o} {p.text}" for o, p in zip(operators, parts[1:]))])
     if operators == ["MOD"]:
         a, b = (part.text for part in parts)
-        written = [f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"]
-    is_all, is_any = "AND" in operators, "OR" in operators
-    none: frozenset[int] = frozenset()
+        text = f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"
     return Expression(
-        " ".join(written),
-        none.union(*(part.read for part in parts)),
-        any(o in COMPARING or o in JOINING for o in operators),
+        text,
+        NONE.union(*(part.read for part in parts)),
+        not (COMPARING | JOINING).isdisjoint(operators),
         parts[-1].end,
-        none.union(*(part.compared for part in parts)),
-        none.union(*(part.set_if_true for part in parts)) if is_all else none,
-        none.union(*(part.set_if_false for part in parts)) if is_any else none,
+        NONE.union(*(part.compared for part in parts)),
+        NONE.union(*(part.set_if_true for part in parts if "AND" in operators)),
+        NONE.union(*(part.set_if_false for part in parts if "OR" in operators)),
     )
 
 
 def _check_operators(parts: list[Expression], operators: list[str]) -> None:
-    """Refuse a chain that LinuxCNC would work out in another order or another way."""
     joining = JOINING.intersection(operators)
     if joining and (
         len(set(operators)) > 1

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -35,6 +35,7 @@ CORNERS = (",A", ",C", ",R")  # words of direct drawing
 LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
+NUMBER = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
 NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, in a call
@@ -47,8 +48,8 @@ OBEYED_COMMENT = re.compile(
     r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I
 )
 BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
-MINUS = "\N{MINUS SIGN}"
-EMPTY_CHARACTERS = "\ufeff\u200b\0"
+BRACKET = re.compile("[(){}]")
+OTHER_CHARACTERS = str.maketrans("\N{MINUS SIGN}", "-", "\ufeff\u200b\0")
 DIGITS_AND_LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
 ALL_PLANES = frozenset(("G17", "G18", "G19"))
@@ -82,28 +83,25 @@ class ForeignWord(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The word as it is written in a block."""
         return self.letter + self.value
 
     @property
     def number(self) -> float:
-        """The value of a number, in whatever unit its letter has."""
         return float(self.value)
 
     @property
     def is_zero(self) -> bool:
-        """Whether it is the number 0."""
         return self.kind == "number" and float(self.value) == 0
 
     @property
     def lacks_point(self) -> bool:
-        """Whether it is a number without a decimal point."""
         return self.kind == "number" and "." not in self.value
 
     @property
     def code(self) -> str:
-        """A G or M word by one name, whatever zeros it has: ``G1``, ``G12.1``."""
-        return code_of(self.letter, self.value)
+        """A G or M word by one name, whatever zeros it has: ``G1``, ``G12.1``; "" of another."""
+        is_code = self.letter in ("G", "M") and self.kind == "number"
+        return code_of(self.letter, self.value) if is_code else ""
 
 
 class ForeignBlock(NamedTuple):
@@ -121,7 +119,6 @@ class ForeignBlock(NamedTuple):
     expression: Expression | None = None  # the condition, or the value of ``assign``
     variable: int = 0  # that ``assign`` sets
     label: str = ""  # the number of DO, END and GOTO
-    ruled: tuple[ForeignBlock, ...] = ()  # after a condition, until `blocks_of` puts them after it
     problem: str | None = None  # why it could not be read
 
     @property
@@ -132,18 +129,15 @@ class ForeignBlock(NamedTuple):
 
     @property
     def compared(self) -> frozenset[int]:
-        """The variables that it compares with #0."""
         return self.expression.compared if self.expression else frozenset()
 
     @property
     def read(self) -> frozenset[int]:
-        """The variables whose values it takes."""
         own = self.expression.read if self.expression else frozenset()
         return own.union(*(word.read for word in self.words))
 
     def has_code(self, codes: frozenset[str]) -> bool:
-        """Whether one of some codes is in it."""
-        return any(w.letter in "GM" and w.kind == "number" and w.code in codes for w in self.words)
+        return any(word.code in codes for word in self.words)
 
     def numbers(self, letter: str) -> set[int]:
         """Return the whole numbers after a letter."""
@@ -180,39 +174,24 @@ def blocks_of(
     for number, part in enumerate(parts):
         if variables and "#" in part:
             part = VARIABLE.sub(lambda found: variables.get(int(found[1]), found[0]), part)
-        block = _block(line, part, comments if number == 0 else ())
-        if number and block.problem:
-            block = block._replace(problem=f"{block.problem}; {REMARKS}")
-        yield from _opened(block) if block.kind == "if" else (block,)
-
-
-def _opened(block: ForeignBlock) -> Iterator[ForeignBlock]:
-    """Yield a condition, the blocks that it rules and its end; a stop needs the comments."""
-    inside = [ruled._replace(skipped=block.skipped) for ruled in block.ruled]
-    stops = [at for at, ruled in enumerate(inside) if ruled.kind == "stop"]
-    if stops:
-        inside[stops[0]] = inside[stops[0]]._replace(comments=block.comments)
-        block = block._replace(comments=())
-    yield block._replace(ruled=())
-    yield from inside
-    yield ForeignBlock(block.line, "endif", skipped=block.skipped)
+        try:
+            blocks = _parsed(line, part)
+        except NotTranslated as problem:
+            sentence = str(problem).replace(OWN, "")
+            blocks = [ForeignBlock(line, problem=f"{sentence}; {REMARKS}" if number else sentence)]
+        if number == 0:  # a stop has them as its message
+            at = next((at for at, block in enumerate(blocks) if block.kind == "stop"), 0)
+            blocks[at] = blocks[at]._replace(comments=blocks[at].comments + comments)
+        yield from blocks
 
 
 def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
-    if any(bracket in text for bracket in "(){}"):
-        code, comments = _split_comments(text)
-    else:
-        code, comments = text, []
+    code, comments = _split_comments(text) if BRACKET.search(text) else (text, [])
     code, *rest = code.split(";")
     blocks = [] if remarks else [part for part in rest if MAYBE_WORDS.match(part)]
     comments += [part.strip() for part in rest if part.strip() and part not in blocks]
-    code = ";".join([code, *blocks])
-    code = (
-        "".join(code.upper().split())
-        .replace(MINUS, "-")
-        .translate(dict.fromkeys(map(ord, EMPTY_CHARACTERS)))
-    )
+    code = "".join(";".join([code, *blocks]).upper().split()).translate(OTHER_CHARACTERS)
     parts = [part for part in code.split(";") if part] or [""]
     return parts, tuple(printable(comment) for comment in comments)
 
@@ -246,17 +225,10 @@ def printable(comment: str) -> str:
     return f"- {comment.strip()}" if OBEYED_COMMENT.match(comment) else comment
 
 
-def _block(line: int, text: str, comments: tuple[str, ...]) -> ForeignBlock:
-    try:
-        block = _parsed(line, text)
-        return block._replace(comments=block.comments + comments)
-    except NotTranslated as problem:
-        return ForeignBlock(line, comments=comments, problem=str(problem).replace(OWN, ""))
-
-
-def _parsed(line: int, text: str) -> ForeignBlock:
+def _parsed(line: int, text: str) -> list[ForeignBlock]:
+    """Return the block of a text, and with a condition those that it rules and its end."""
     if text.startswith("%"):
-        return ForeignBlock(line, "tape", label=printable(text[1:]))
+        return [ForeignBlock(line, "tape", label=printable(text[1:]))]
     if text.startswith(":"):
         text = f"O{text[1:]}"
     _refuse_other_texts(text)
@@ -264,11 +236,15 @@ def _parsed(line: int, text: str) -> ForeignBlock:
     if skip:
         if skip[1] not in ("", "1"):
             raise NotTranslated(f"{skip[0]}: LinuxCNC has one switch to skip blocks, / alone")
-        return _parsed(line, text[skip.end() :])._replace(skipped=True)
+        return _skipped(line, text[skip.end() :])
     if PLAIN_WORDS.fullmatch(text):
-        words = tuple(map(_plain_word, PLAIN_WORD.findall(text)))
-        return ForeignBlock(line, words=words)
+        words = tuple(_plain_word(*pair) for pair in PLAIN_WORD.findall(text))
+        return [ForeignBlock(line, words=words)]
     return _statement(line, text)
+
+
+def _skipped(line: int, text: str) -> list[ForeignBlock]:
+    return [block._replace(skipped=True) for block in _parsed(line, text)]
 
 
 def _refuse_other_texts(text: str) -> None:
@@ -284,98 +260,96 @@ def _refuse_other_texts(text: str) -> None:
         )
 
 
-def _statement(line: int, text: str) -> ForeignBlock:
-    """Return a block with more in it than plain words."""
-    number = re.compile(r"N[0-9]+").match(text)
-    start = number.end() if number else 0
-    words = (ForeignWord("N", text[1:start]),) if number else ()
-    rest = text[start:]
+def _statement(line: int, text: str) -> list[ForeignBlock]:
+    number = NUMBER.match(text)
+    words = (ForeignWord("N", number[0][1:]),) if number else ()
+    rest = text[number.end() :] if number else text
     if number and rest.startswith("/"):
-        return _parsed(line, rest[1:])._replace(skipped=True)
+        return _skipped(line, rest[1:])
     statement = STATEMENT.match(rest)
     if statement:
-        block = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
+        block, *ruled = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
     elif NAMED_PROGRAM.match(rest):
         word = ForeignWord("O", program_number(rest[1:]))
-        block = ForeignBlock(line, words=(word,), comments=(rest,))
-    elif ASSIGNMENT.match(rest):
-        block = _assignment(line, rest)
+        block, ruled = ForeignBlock(line, words=(word,), comments=(rest,)), []
+    elif match := ASSIGNMENT.match(rest):
+        block, ruled = _assignment(line, match, whole_expression), []
     else:
-        block = ForeignBlock(line, words=_words(rest))
-    return block._replace(words=words + block.words)
+        block, ruled = ForeignBlock(line, words=_words(rest)), []
+    return [block._replace(words=words + block.words), *ruled]
 
 
-def _assignment(line: int, text: str) -> ForeignBlock:
-    match = ASSIGNMENT.match(text)
+def _assignment(
+    line: int, match: re.Match[str], read_value: Callable[[str, int], Expression]
+) -> ForeignBlock:
     if match[1] in STOP_MACROS:
         return ForeignBlock(line, "stop", label=match[1])
     variable = variable_number(match[1])
-    return ForeignBlock(
-        line, "assign", variable=variable, expression=whole_expression(text[match.end() :])
-    )
+    value = read_value(match.string, match.end())
+    return ForeignBlock(line, "assign", variable=variable, expression=value)
 
 
-def _if(line: int, text: str) -> ForeignBlock:
+def _if(line: int, text: str) -> list[ForeignBlock]:
     """Return a condition with the rest of its block, which a Haas obeys with THEN or without."""
     condition = bracketed_from(text, 0)
     rest = text[condition.end :].removeprefix("THEN")
     if rest.startswith("GOTO"):
-        return _goto(line, rest[4:])._replace(expression=condition)
-    return ForeignBlock(line, "if", expression=condition, ruled=tuple(_ruled(line, rest)))
+        return [block._replace(expression=condition) for block in _goto(line, rest[4:])]
+    head = ForeignBlock(line, "if", expression=condition)
+    return [head, *_ruled(line, rest), ForeignBlock(line, "endif")]
 
 
 def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     """Yield the blocks after a condition: an assignment, words, or both."""
     match = ASSIGNMENT.match(text)
     if match and match[1] not in STOP_MACROS:
-        value = expression_from(text, match.end())
-        variable = variable_number(match[1])
-        yield ForeignBlock(line, "assign", variable=variable, expression=value)
-        text = text[value.end :]
+        assignment = _assignment(line, match, expression_from)
+        yield assignment
+        text = text[assignment.expression.end :]
     if text:
-        block = _parsed(line, text)
+        block, *_ = _parsed(line, text)
         if block.kind not in ("words", "stop") or block.skipped:
             raise NotTranslated("after IF […] only GOTO, #… = … and words are translated")
         yield block
 
 
-def _while(line: int, text: str) -> ForeignBlock:
+def _while(line: int, text: str) -> list[ForeignBlock]:
     condition = bracketed_from(text, 0)
     rest = re.fullmatch(r"DO([0-9]+)", text[condition.end :])
     if not rest:
         raise NotTranslated("WHILE […] needs DO and a number after it")
-    return ForeignBlock(line, "while", expression=condition, label=rest[1])
+    return [ForeignBlock(line, "while", expression=condition, label=rest[1])]
 
 
-def _do(line: int, text: str) -> ForeignBlock:
+def _do(line: int, text: str) -> list[ForeignBlock]:
     raise NotTranslated("DO without WHILE never ends: LinuxCNC needs WHILE […] DO")
 
 
-def _end(line: int, text: str) -> ForeignBlock:
+def _end(line: int, text: str) -> list[ForeignBlock]:
     if not text.isdigit():
         raise NotTranslated(f"END{excerpt(text)} needs a number alone")
-    return ForeignBlock(line, "end", label=text)
+    return [ForeignBlock(line, "end", label=text)]
 
 
-def _goto(line: int, text: str) -> ForeignBlock:
+def _goto(line: int, text: str) -> list[ForeignBlock]:
     if not re.fullmatch("[0-9]{1,9}", text):
         raise NotTranslated(f"GOTO {excerpt(text)}: only a number of a block is translated")
-    return ForeignBlock(line, "goto", label=text)
+    return [ForeignBlock(line, "goto", label=text)]
 
 
-def _call(line: int, text: str) -> ForeignBlock:
-    """Return CALL of an Okuma control, with Q how often, as the M98 that it is."""
+def _call(line: int, text: str) -> list[ForeignBlock]:
+    """Read CALL of an Okuma control, with Q how often, as M98."""
     match = CALLED_PROGRAM.fullmatch(text)
     if not match:
         raise NotTranslated(f"CALL{excerpt(text)}: only a program and Q, how often, are translated")
     words = [ForeignWord("M", "98"), ForeignWord("P", program_number(match[1]))]
     words += [ForeignWord("L", match[2])] if match[2] else []
-    return ForeignBlock(line, words=tuple(words))
+    return [ForeignBlock(line, words=tuple(words))]
 
 
-def _return(line: int, text: str) -> ForeignBlock:
-    """Return RTS of an Okuma control as the M99 that it is."""
-    return ForeignBlock(line, words=(ForeignWord("M", "99"),))
+def _return(line: int, text: str) -> list[ForeignBlock]:
+    """Read RTS of an Okuma control as M99."""
+    return [ForeignBlock(line, words=(ForeignWord("M", "99"),))]
 
 
 def program_number(name: str) -> str:
@@ -409,15 +383,17 @@ def _words(text: str) -> tuple[ForeignWord, ...]:
     while at < len(text):
         word, at = _word(text, at)
         words.append(word)
-    if any(word.kind == "bare" for word in words):
-        _check_bare(words)
+    named = "XYZUVWCH" if any(word.code in ALL_PLANES for word in words) else ""  # a plane's axes
+    for word in words:
+        if word.kind == "bare" and word.letter not in named:
+            raise NotTranslated(f"{word.letter} has no value")
     return tuple(words)
 
 
 def _word(text: str, at: int) -> tuple[ForeignWord, int]:
     plain = PLAIN_WORD.match(text, at)
     if plain:
-        return _plain_word((plain[1], plain[2])), plain.end()
+        return _plain_word(*plain.groups()), plain.end()
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
     if text[at : at + 2] in CORNERS:
@@ -441,16 +417,7 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
     return ForeignWord(letter, value.text, kind, value.read), value.end
 
 
-def _plain_word(pair: tuple[str, str]) -> ForeignWord:
-    """Return the word of a letter and a number."""
-    if len(pair[1]) > MOST_DIGITS:
-        raise NotTranslated(f"{excerpt(''.join(pair))} has {len(pair[1])} digits")
-    return ForeignWord(*pair)
-
-
-def _check_bare(words: list[ForeignWord]) -> None:
-    """Refuse a letter without a value, but for the axes of a plane."""
-    plane = any(w.letter == "G" and w.kind == "number" and w.code in ALL_PLANES for w in words)
-    for word in words:
-        if word.kind == "bare" and not (plane and word.letter in "XYZUVWCH"):
-            raise NotTranslated(f"{word.letter} has no value")
+def _plain_word(letter: str, value: str) -> ForeignWord:
+    if len(value) > MOST_DIGITS:
+        raise NotTranslated(f"{excerpt(letter + value)} has {len(value)} digits")
+    return ForeignWord(letter, value)

@@ -16,7 +16,7 @@ SPINDLES = {"$live": "$1", "$all": "$-1"}  # where the machine is not known
 
 def keep_as_comments(draft: Draft) -> None:
     """Make comments of the codes that need nothing done, and of the words that are theirs."""
-    for word in [w for w in draft.words if w.letter in "GM" and w.kind == "number"]:
+    for word in [word for word in draft.words if word.code]:
         meaning, *letters = draft.control.meanings.get(word.code, "").split(" ")
         if meaning != "comment" or word.code in (draft.machine_codes or ()):
             continue
@@ -57,7 +57,7 @@ def _own_words(meaning: str) -> list[ForeignWord]:
 
 def _part_builders_codes(draft: Draft) -> None:
     """Write all builder's codes but the last on lines before: LinuxCNC takes one in a block."""
-    found = [w for w in draft.words if w.letter == "M" and w.kind == "number" and is_own(draft, w)]
+    found = [w for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
     for word in found[:-1]:
         draft.before += [one.text for one in mapped(draft, word)]
         draft.words = [other for other in draft.words if other is not word]

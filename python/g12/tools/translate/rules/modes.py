@@ -37,7 +37,7 @@ def follow_modes(draft: Draft) -> None:
     """Take note of the modes that the block's codes set; the motion mode is another rule's."""
     modes: dict[str, str] = {}
     for word in draft.words:
-        if word.letter == "G" and word.code in GROUP_OF:
+        if word.code in GROUP_OF:
             group = GROUP_OF[word.code]
             if group in modes:
                 raise NotTranslated(

@@ -99,13 +99,10 @@ def orientation(draft: Draft, code: ForeignWord) -> None:
 
 def stop_behind_a_cut(draft: Draft) -> None:
     """Write M5 and M9 of a cutting block on a line after it: LinuxCNC stops before the move."""
-    stops = [
-        w for w in draft.words if w.letter == "M" and w.kind == "number" and w.code in STOP_CODES
-    ]
-    if not stops or not cuts(draft):
-        return
-    draft.drop(stops)
-    draft.after.insert(0, " ".join(word.text for word in stops))
+    stops = [word for word in draft.words if word.code in STOP_CODES]
+    if stops and cuts(draft):
+        draft.drop(stops)
+        draft.after.insert(0, " ".join(word.text for word in stops))
 
 
 def cuts(draft: Draft) -> bool:

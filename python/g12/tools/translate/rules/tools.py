@@ -133,7 +133,7 @@ def _compensated_again(draft: Draft) -> None:
 
     Where it is on in one way to the block only, as in a loop, the program tests LinuxCNC's mode.
     """
-    on = [w for w in draft.words if w.letter == "G" and w.code[:3] in COMPENSATION_ON]
+    on = [word for word in draft.words if word.code[:3] in COMPENSATION_ON]
     if not on or draft.start.polar != "off" or draft.control.onto:
         return
     if draft.start.compensation not in (on[0].code[:3], UNSURE):
@@ -166,9 +166,7 @@ def compensation(draft: Draft, word: ForeignWord | None) -> None:
         raise NotTranslated("G41 or G42 without D, and no D before it")
     if re.fullmatch("0+", value):
         draft.words = [
-            w._replace(value=f"{w.code[1:]}.1")
-            if w.letter == "G" and w.code in COMPENSATION_ON
-            else w
+            w._replace(value=f"{w.code[1:]}.1") if w.code in COMPENSATION_ON else w
             for w in draft.words
         ]
     if not word:

@@ -195,7 +195,7 @@ def _holes_in_block(draft: Draft) -> int:
 def _clamp_of(draft: Draft) -> list[str]:
     """Take the code of C's clamp; return the lines that close and open it."""
     codes = str(draft.control.value("holes", "clamp")).split()
-    for word in [w for w in draft.words if w.letter == "M" and w.kind == "number"]:
+    for word in [w for w in draft.words if w.code[:1] == "M"]:
         if word.code in codes[:1]:
             draft.words = [other for other in draft.words if other is not word]
             pair = (mapped(draft, ForeignWord("M", code[1:])) for code in codes)
