@@ -10,12 +10,13 @@ the mode. The usual case are the holes that two drilling cycles share: X and Y w
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from typing import Any
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
-from g12.tools.translate.blocks.errors import NotSaid, NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, UNSURE, ModalState, merged
 from g12.tools.translate.jumps import OPENING
@@ -32,15 +33,16 @@ class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
     ``falls_off`` are the blocks after which a program is over without an end of its own,
-    ``has_end``: an end is reached, ``kinds`` how each program is called.
+    ``has_end``: an end is reached, ``kinds`` how each program is called, ``callers`` by which
+    blocks.
     """
 
     def __init__(
         self,
         structure: Structure,
         control: Control,
-        machine_codes: frozenset[str] | None = None,
-        progress: Progress = lambda index: None,
+        machine_codes: frozenset[str] | None,
+        progress: Progress,
     ) -> None:
         self.structure, self.control = structure, control
         self._machine_codes, self._progress = machine_codes, progress
@@ -49,43 +51,15 @@ class FollowedProgram:
         self.falls_off: set[int] = set()
         self.has_end = False
         self.kinds: dict[int, str] = {}
-        self.calls: dict[int, list[Draft]] = {}
+        self.callers: dict[int, set[int]] = defaultdict(set)
         self._states: list[ModalState | None] = [None] * count
-        self._inside = structure.programs
-        self._blocks_of: dict[int, list[tuple[int, ForeignBlock]]] = {}
-        for at, number in enumerate(self._inside):
-            self._blocks_of.setdefault(number, []).append((at, structure.blocks[at]))
-        self._calls: dict[int, set[int]] = {}
+        self._blocks_of: dict[int, list[tuple[int, ForeignBlock]]] = defaultdict(list)
+        for at, (number, block) in enumerate(zip(structure.programs, structure.blocks)):
+            self._blocks_of[number].append((at, block))
         self._exits: dict[int, ModalState] = {}
-        self._pending: list[tuple[int, ModalState]] = []
-
-    def run(self) -> FollowedProgram:
-        """Follow the main program from its first block until nothing new is found."""
-        if self.drafts:
-            self._pending.append((self.structure.main, _start_state(self.control)))
+        self._pending = [(structure.main, _start_state(control))] if self.drafts else []
         while self._pending:
             self._reach(*self._pending.pop())
-        return self
-
-    @property
-    def callers(self) -> dict[int, set[int]]:
-        """The numbers of the programs that call each program."""
-        return {n: {self._inside[index] for index in calls} for n, calls in self._calls.items()}
-
-    def calls_of(self, numbers: Collection[int]) -> Iterator[tuple[int, int]]:
-        """Yield each block between some programs that calls one of them, and the called number."""
-        for number in numbers:
-            for index in self.callers_of(number):
-                if self._inside[index] in numbers:
-                    yield index, number
-
-    def callers_of(self, number: int) -> list[int]:
-        """Return the blocks that call a program, in order."""
-        return sorted(self._calls.get(number, ()))
-
-    def program_of(self, index: int) -> int:
-        """Return the number of the program that a block is in."""
-        return self._inside[index]
 
     def _reach(self, index: int, state: ModalState) -> None:
         known = self._states[index]
@@ -95,75 +69,66 @@ class FollowedProgram:
                 return
         self._states[index] = state
         self._progress(index)
-        draft = self._translate(index, state)
-        self.drafts[index] = draft
+        draft = self.drafts[index] = self._translate(index, state)
         if self.structure.blocks[index].skipped:
             self._arrive(index, index + 1, state)
         self._leave(index, draft)
 
     def _translate(self, index: int, state: ModalState) -> Draft:
-        block = self.structure.blocks[index]
+        structure = self.structure
+        block = structure.blocks[index]
         draft = Draft(
             block,
             state,
             self.control,
             self._machine_codes,
             index=index,
-            programs=self.structure.entries,
-            program=self._blocks_of[self._inside[index]],
-            called_as=self.structure.called_as.get(index, 0),
-            compared=self.structure.compared,
-            jumps=index in self.structure.jumps.targets,
+            programs=structure.entries,
+            program=self._blocks_of[structure.programs[index]],
+            called_as=structure.called_as.get(index, 0),
+            compared=structure.compared,
+            jumps=index in structure.jumps.targets,
         )
         try:
-            problem = block.problem or self.structure.problems.get(index)
+            problem = block.problem or structure.problems.get(index)
             if problem:
                 raise NotTranslated(problem)
-            statement = STATEMENTS.get(block.kind)
-            if statement:
+            if statement := STATEMENTS.get(block.kind):
                 if block.kind in OPENING:
                     before_loop(draft)
-                statement(draft, self.structure)
-            elif index in self.structure.starts or draft.begins_program():
-                self._head(draft, index)
+                statement(draft, structure)
             else:
-                self._end(draft, index)
-                _apply_rules(draft)
-            if not statement:
-                draft.after += self.structure.jumps.at.get(index, ())
+                self._translate_words(draft)
+                draft.after += structure.jumps.at.get(index, ())
         except NotTranslated as refusal:
-            draft.refusal = str(refusal)
-            draft.unsure = refusal.modes if isinstance(refusal, NotSure) else ()
-            draft.setting = refusal.setting if isinstance(refusal, NotSaid) else None
+            draft.refusal = refusal
         return draft
 
-    def _head(self, draft: Draft, index: int) -> None:
-        """Write the first block of a program."""
-        number = self.structure.starts.get(index, MAIN)
-        word = draft.take("O")
-        if number == MAIN and not word.value.isdigit():
-            raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
-        name = f"O{number}" if self.kinds.get(number) != "macro" else f"o<macro_{number}> sub"
-        self._end(draft, index)
-        _apply_rules(draft)
-        if number == MAIN:
-            draft.comments.insert(0, word.text)
-        else:
-            draft.head = name
-
-    def _end(self, draft: Draft, index: int) -> None:
-        """Set the text of a return at a block."""
-        number = self._inside[index]
-        if self.kinds.get(number) == "macro":
+    def _translate_words(self, draft: Draft) -> None:
+        """Apply the rules; write the head of a program, and the text of a return."""
+        index, number = draft.index, self.structure.programs[draft.index]
+        is_macro = self.kinds.get(number) == "macro"
+        if is_macro:
             last = self.structure.last_returns.get(number) == index and not self._parted(index)
             draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
+        begins = index in self.structure.starts or draft.begins_program()
+        begun = self.structure.starts.get(index, MAIN)
+        word = draft.take("O") if begins else None
+        if begins and begun == MAIN and not word.value.isdigit():
+            raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
+        if draft.words and not is_plain(draft):
+            for rule in WORD_RULES:
+                rule(draft)
+        if begins and begun == MAIN:
+            draft.comments.insert(0, word.text)
+        elif begins:
+            draft.head = f"o<macro_{number}> sub" if is_macro else f"O{number}"
 
     def _parted(self, index: int) -> bool:
         """Whether a block is in what jumps part or a condition rules: no program ends so."""
-        ruled = [at for at in self.structure.partners.items() if at[0] < index < at[1]]
-        return bool(ruled) or any(
-            first <= index <= last for first, last in self.structure.jumps.spans
-        )
+        partners, spans = self.structure.partners.items(), self.structure.jumps.spans
+        ruled = any(start < index < end for start, end in partners)
+        return ruled or any(first <= index <= last for first, last in spans)
 
     def ends_of_macros(self) -> dict[int, str]:
         """Return the end that a macro needs after its last block, if that is no return."""
@@ -176,11 +141,10 @@ class FollowedProgram:
         return ends
 
     def _leave(self, index: int, draft: Draft) -> None:
-        """Go on to the blocks that can follow."""
         if draft.call:
             self._call(index, draft, draft.call)
         elif draft.returns:
-            self._return(self._inside[index], draft.state)
+            self._return(self.structure.programs[index], draft.state)
         elif draft.ends:
             self.has_end = True
         elif draft.follows is not None:
@@ -195,7 +159,7 @@ class FollowedProgram:
     def _arrive(self, index: int, following: int, state: ModalState) -> None:
         if following == index + 1 and self.structure.is_over(following):
             self.falls_off.add(index)
-            self.has_end = self.has_end or self._inside[index] == MAIN
+            self.has_end = self.has_end or self.structure.programs[index] == MAIN
         else:
             self._pending.append((following, state))
 
@@ -203,12 +167,11 @@ class FollowedProgram:
         entry = self.structure.entries.get(call.number)
         problem = self._wrong_call(index, call, entry)
         if problem:
-            draft.refusal = draft.refusal or problem
+            draft.refusal = draft.refusal or NotTranslated(problem)
             self._go_on(index, draft.state)
             return
-        if self.kinds.setdefault(call.number, call.kind) == call.kind:
-            self.calls.setdefault(call.number, []).append(draft)
-        self._calls.setdefault(call.number, set()).add(index)
+        self.kinds.setdefault(call.number, call.kind)
+        self.callers[call.number].add(index)
         self._pending.append((entry, draft.state))
         if call.number in self._exits:
             self._go_on(index, self._exits[call.number])
@@ -238,14 +201,8 @@ class FollowedProgram:
         state = merged(known, state) if known else state
         if state != known:
             self._exits[number] = state
-            for index in self._calls.get(number, ()):
+            for index in self.callers[number]:
                 self._go_on(index, state)
-
-
-def _apply_rules(draft: Draft) -> None:
-    if draft.words and not is_plain(draft):
-        for rule in WORD_RULES:
-            rule(draft)
 
 
 def _start_state(control: Control) -> ModalState:
@@ -265,17 +222,12 @@ def followed_program(
     progress: Progress,
 ) -> FollowedProgram:
     """Return the drafts of a program, with as many copies of subprograms as it needs."""
-
-    def follow() -> FollowedProgram:
-        return FollowedProgram(structure, control, machine_codes, progress).run()
-
-    followed = follow()
     for _ in range(DEEPEST_CALLS):
+        followed = FollowedProgram(structure, control, machine_codes, progress)
         if not _add_copies(followed):
-            break
+            return followed
         find_ends(structure, control)
-        followed = follow()
-    return followed
+    return FollowedProgram(structure, control, machine_codes, progress)
 
 
 def _add_copies(followed: FollowedProgram) -> bool:
@@ -293,10 +245,11 @@ def _add_copies(followed: FollowedProgram) -> bool:
 
 def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
     """Yield programs with an unsure block, and their calls grouped by those modes."""
+    programs = followed.structure.programs
     pending = [
-        (followed.program_of(draft.index), draft.unsure)
+        (programs[draft.index], draft.refusal.modes)
         for draft in followed.drafts
-        if draft and draft.unsure
+        if draft and draft.refusal and draft.refusal.modes
     ]
     visited = {(MAIN, modes) for _, modes in pending}
     while pending:
@@ -305,10 +258,10 @@ def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list
             continue
         visited.add((number, modes))
         groups: dict[tuple, list[int]] = {}
-        for index in followed.callers_of(number):
+        for index in sorted(followed.callers[number]):
             values = tuple(getattr(followed.drafts[index].state, mode) for mode in modes)
             groups.setdefault(values, []).append(index)
             if UNSURE in values:
-                pending.append((followed.program_of(index), modes))
+                pending.append((programs[index], modes))
         if len(groups) > 1:
             yield number, list(groups.values())

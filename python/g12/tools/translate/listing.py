@@ -3,6 +3,8 @@
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
+from textwrap import wrap
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS
@@ -18,7 +20,7 @@ WIDTH = 96
 
 
 def listing_of(control: Control) -> str:
-    """Return the list of a control's codes, settings, sources and readings."""
+    """Return a control's codes, settings, sources and readings as text."""
     return "\n".join([*_head(control), *_codes(control.meanings), *_tables(control), ""])
 
 
@@ -38,7 +40,8 @@ def _codes(meanings: Mapping[str, str]) -> Iterator[str]:
         if meaning.startswith(REFUSE_PREFIX):
             yield f"refused {codes}: {meaning.removeprefix(REFUSE_PREFIX)}"
         else:
-            yield from _wrapped(f"{_heading(meaning)}:", codes.split())
+            text = f"{_heading(meaning)}: {codes}"
+            yield from wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def _heading(meaning: str) -> str:
@@ -58,22 +61,10 @@ def _number(code: str) -> tuple[str, float, str]:
     return code[0], float(code[1:]) if is_number else 0.0, code
 
 
-def _wrapped(head: str, words: Iterable[str]) -> Iterator[str]:
-    line = head
-    for word in words:
-        if len(line) + len(word) >= WIDTH:
-            yield line
-            line = " "
-        line += f" {word}"
-    yield line
-
-
 def _tables(control: Control) -> Iterator[str]:
     for name, table in control.tables.items():
-        values = ", ".join(
-            f"{key} = {re.sub(r'[][]', '', str(value))}" for key, value in table.items()
-        )
-        yield f"[{name}] {values}"
+        values = (f"{key} = {re.sub(r'[][]', '', str(value))}" for key, value in table.items())
+        yield f"[{name}] {', '.join(values)}"
 
 
 CHOICES = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
@@ -99,9 +90,6 @@ def missing_lines(
         if not meaning or (meaning == "machine" and code not in (machine_codes or {code})):
             name = f'"{code}"' if "." in code else code
             tables.setdefault(f"{code[0].lower()}_codes", []).append(f"{name} = {CHOICES}")
-    return [line for table in tables for line in _lines_of(table, tables[table])]
-
-
-def _lines_of(table: str, lines: list[str]) -> list[str]:
-    head = [f"[{table}]"] if table and lines else []
-    return [*head, *dict.fromkeys(lines)]
+    top = tables.pop("")
+    named = [[f"[{table}]", *dict.fromkeys(lines)] for table, lines in tables.items()]
+    return [*dict.fromkeys(top), *chain(*named)]

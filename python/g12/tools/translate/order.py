@@ -5,8 +5,10 @@ LinuxCNC looks for a subprogram from the call on downwards; other controls do no
 main program is first and whose subprograms stand below their calls stays in its order.
 """
 
-from collections.abc import Collection, Iterator, Mapping
-from heapq import heapify, heappop, heappush
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from graphlib import CycleError, TopologicalSorter
+from heapq import heappop, heappush
 from itertools import groupby
 from typing import NamedTuple
 
@@ -42,16 +44,18 @@ def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
     """Return the order of the ``count`` lines of a file."""
     parts = [*_file_parts(followed.structure, count), *_copied_parts(followed.structure)]
     part_of = {number: at for at, part in enumerate(parts) for number in part.numbers}
+    above: dict[int, set[int]] = {at: set() for at in range(len(parts))}
     below: dict[int, set[int]] = {at: set() for at in range(len(parts))}
     for number, callers in followed.callers.items():
-        for caller in callers:
+        for caller in {followed.structure.programs[index] for index in callers}:
+            above[part_of[number]].add(part_of[caller])
             below[part_of[caller]].add(part_of[number])
-    done = _sorted_parts(below)
-    unsorted = below.keys() - set(done)
-    circular = frozenset(
-        number for at in _in_circles(unsorted, below) for number in parts[at].numbers
+    done = _sorted_parts(above)
+    circular = above.keys() - set(done) - set(_sorted_parts(below))
+    return WrittenOrder(
+        [row for at in done for row in parts[at].rows],
+        frozenset(number for at in circular for number in parts[at].numbers),
     )
-    return WrittenOrder([row for at in done for row in parts[at].rows], circular)
 
 
 def _file_parts(structure: Structure, count: int) -> list[FilePart]:
@@ -63,11 +67,13 @@ def _file_parts(structure: Structure, count: int) -> list[FilePart]:
     begun, numbers = 1, [] if MAIN in structure.starts.values() else [MAIN]
     for index in sorted(index for index in structure.starts if index < structure.own):
         line = structure.blocks[index].line
-        if line > begun and _begins_line(structure, index):
+        if line > begun and structure.blocks[index - 1].line != line:
             parts.append(FilePart(rows[begun - 1 : line - 1], numbers))
             begun, numbers = line, []
         numbers.append(structure.starts[index])
-    end = _end_of_programs(structure, begun, count)
+    last = structure.blocks[structure.own - 1] if structure.own else None
+    closed = last and last.kind == "tape" and last.line > begun
+    end = last.line if closed else count + 1
     return [*parts, FilePart(rows[begun - 1 : end - 1], numbers), FilePart(rows[end - 1 :], [])]
 
 
@@ -79,49 +85,18 @@ def _copied_parts(structure: Structure) -> Iterator[FilePart]:
         yield FilePart(rows, [structure.starts[start]])
 
 
-def _begins_line(structure: Structure, index: int) -> bool:
-    blocks = structure.blocks
-    return index == 0 or blocks[index - 1].line != blocks[index].line
+def _sorted_parts(before: Mapping[int, set[int]]) -> list[int]:
+    """Return parts so that each is behind those before it, and otherwise in their order.
 
-
-def _end_of_programs(structure: Structure, begun: int, count: int) -> int:
-    """Return the line of the closing ``%``, or the line after the last."""
-    last = structure.blocks[structure.own - 1] if structure.own else None
-    return last.line if last and last.kind == "tape" and last.line > begun else count + 1
-
-
-def _sorted_parts(below: Mapping[int, set[int]]) -> list[int]:
-    """Return parts so that each is below its callers, and otherwise in their order."""
-    above = dict.fromkeys(below, 0)
-    for called in below.values():
-        for at in called:
-            above[at] += 1
-    ready = [at for at, callers in above.items() if callers == 0]
-    heapify(ready)
-    done: list[int] = []
+    Those in a circle, and those behind one, are left out.
+    """
+    sorter = TopologicalSorter(before)
+    with suppress(CycleError):
+        sorter.prepare()
+    ready, done = sorted(sorter.get_ready()), []
     while ready:
         done.append(heappop(ready))
-        for at in below[done[-1]]:
-            above[at] -= 1
-            if above[at] == 0:
-                heappush(ready, at)
+        sorter.done(done[-1])
+        for at in sorter.get_ready():
+            heappush(ready, at)
     return done
-
-
-def _in_circles(unsorted: Collection[int], below: Mapping[int, set[int]]) -> Iterator[int]:
-    """Yield the unsorted parts that are in a circle, not only below one."""
-    inside = set(unsorted)
-    above = {at: below[at] & inside for at in inside}
-    callers: dict[int, list[int]] = {at: [] for at in inside}
-    for at, called in above.items():
-        for one in called:
-            callers[one].append(at)
-    bare = [at for at, called in above.items() if not called]
-    while bare:
-        at = bare.pop()
-        inside.discard(at)
-        for caller in callers[at]:
-            above[caller].discard(at)
-            if not above[caller]:
-                bare.append(caller)
-    yield from sorted(inside)

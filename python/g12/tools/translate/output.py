@@ -21,8 +21,7 @@ NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments 
 def lines_of(draft: Draft) -> list[str]:
     """Return the lines of one block, with its comments after the first."""
     own = draft.written()
-    lines = [draft.head] if draft.head else []
-    lines += [*draft.before, *([own] if own else []), *draft.after]
+    lines = [*filter(None, [draft.head]), *draft.before, *filter(None, [own]), *draft.after]
     if draft.around:
         lines = [draft.around[0], *lines, draft.around[1]]
     for text in lines:
@@ -48,7 +47,7 @@ def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
 
 
 def size(text: str) -> int:
-    """Return the length of a line as LinuxCNC has it, in bytes."""
+    """Return the length of a line in bytes, as LinuxCNC counts it."""
     return len(text.encode())
 
 
@@ -61,9 +60,8 @@ def _with_mark(text: str, line: int) -> str:
 
 
 def _as_comment(text: str) -> str:
-    return (
-        f"(not reached: {printable(text.strip())[: LONGEST_COMMENT // 2]})" if text.strip() else ""
-    )
+    kept = printable(text.strip())[: LONGEST_COMMENT // 2]
+    return f"(not reached: {kept})" if kept else ""
 
 
 def output_lines(

@@ -64,7 +64,8 @@ def translate_program(
     )
     refused = sorted(set(_refusals(followed)))
     if refused:
-        settings = [draft.setting for draft in followed.drafts if draft and draft.setting]
+        refusals = [draft.refusal for draft in followed.drafts if draft and draft.refusal]
+        settings = [refusal.setting for refusal in refusals if refusal.setting]
         return Translation("", refused, missing_lines(blocks, control, machine_codes, settings))
     order = written_order(followed, len(rows))
     if order.circular:
@@ -85,22 +86,24 @@ def _read_blocks(
 
 
 def _circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:
-    for index, number in followed.calls_of(circular):
-        name = followed.structure.name_of(number)
-        yield RefusedBlock(
-            followed.structure.blocks[index].line,
-            f"{name} cannot stand below this call: it calls itself, by way of others or not, or "
-            "there is something before its number on its line",
-        )
+    structure = followed.structure
+    for number in circular:
+        for index in followed.callers[number]:
+            if structure.programs[index] in circular:
+                sentence = (
+                    f"{structure.name_of(number)} cannot be written below this call: it calls "
+                    "itself, by way of others or not, or there is something before its number on "
+                    "its line"
+                )
+                yield RefusedBlock(structure.blocks[index].line, sentence)
 
 
 def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
     if not any(draft and (draft.words or draft.refusal) for draft in followed.drafts):
         yield RefusedBlock(1, "there is no block in the file")
     for draft in filter(None, followed.drafts):
-        sentence = draft.refusal or _unwritable(draft)
-        if sentence:
-            yield RefusedBlock(draft.block.line, sentence)
+        if refusal := draft.refusal or _unwritable(draft):
+            yield RefusedBlock(draft.block.line, str(refusal))
     for index in followed.falls_off:
         sentence = _missing_end(followed, index)
         if sentence and not followed.drafts[index].refusal:
@@ -112,18 +115,17 @@ def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
         yield RefusedBlock(line, sentence)
 
 
-def _unwritable(draft: Draft) -> str | None:
-    """Store the lines of a block; return the reason if they cannot be written."""
+def _unwritable(draft: Draft) -> NotTranslated | None:
+    """Store the lines of a block; return the refusal if they cannot be written."""
     try:
         draft.lines = lines_of(draft)
     except NotTranslated as refusal:
-        return str(refusal)
+        return refusal
     return None
 
 
 def _missing_end(followed: FollowedProgram, index: int) -> str | None:
-    """Return the sentence for a program that runs past its last block."""
-    number = followed.program_of(index)
+    number = followed.structure.programs[index]
     following = followed.structure.starts.get(index + 1, 0)
     if LOCAL_BLOCKS <= following < NAMED_PROGRAMS:
         return f"N{following - LOCAL_BLOCKS} is called by M97 and also reached from above it"

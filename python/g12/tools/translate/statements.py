@@ -4,22 +4,17 @@
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.expressions import UNSIGNED
-from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.structure import Structure
 
 
-def tape(draft: Draft, structure: Structure) -> None:
-    """Keep a ``%`` as a comment."""
+def _tape(draft: Draft, structure: Structure) -> None:
     draft.comments.insert(0, f"%{draft.block.label}")
 
 
 def _assign(draft: Draft, structure: Structure) -> None:
-    draft.words = [*draft.block.words, line_as_word(_assignment_text(draft.block))]
-
-
-def _assignment_text(block: ForeignBlock) -> str:
-    text = block.expression.text
-    return f"#{block.variable}={text if UNSIGNED.fullmatch(text) else f'[{text}]'}"
+    block, text = draft.block, draft.block.expression.text
+    value = text if UNSIGNED.fullmatch(text) else f"[{text}]"
+    draft.words = [*block.words, line_as_word(f"#{block.variable}={value}")]
 
 
 def _while_loop(draft: Draft, structure: Structure) -> None:
@@ -32,8 +27,7 @@ def _end_of_loop(draft: Draft, structure: Structure) -> None:
     _labelled(draft, f"o<while_{structure.partners[draft.index]}> endwhile")
 
 
-def condition(draft: Draft, structure: Structure) -> None:
-    """Write the head of what a condition rules."""
+def _condition(draft: Draft, structure: Structure) -> None:
     _labelled(draft, f"o<if_{draft.index}> if {draft.block.expression.text}")
 
 
@@ -50,7 +44,7 @@ def _goto(draft: Draft, structure: Structure) -> None:
     draft.after += lines[1:]
 
 
-def stop(draft: Draft, structure: Structure) -> None:
+def _stop(draft: Draft, structure: Structure) -> None:
     """Write #3000, an alarm, or #3006, a stop, with the comment as its text."""
     message = ", ".join(draft.comments) or "stopped by the program"
     draft.comments = []
@@ -71,12 +65,12 @@ def _refuse_skipped(draft: Draft) -> None:
 
 
 STATEMENTS = {
-    "tape": tape,
+    "tape": _tape,
     "assign": _assign,
     "while": _while_loop,
     "end": _end_of_loop,
-    "if": condition,
+    "if": _condition,
     "endif": _end_of_condition,
     "goto": _goto,
-    "stop": stop,
+    "stop": _stop,
 }

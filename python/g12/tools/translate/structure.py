@@ -12,6 +12,7 @@ from g12.tools.translate.jumps import OPENING, Jumps, find_jumps
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
+TEXT = ("words", "tape")  # kinds of blocks that do nothing if they have no words
 LOCAL_SUBPROGRAM = "local subprogram"
 CALLS = frozenset(("subprogram", "macro call"))
 COPIES = 10_000_000  # the first copy of O100 is O10000100
@@ -25,7 +26,7 @@ class Structure:
     """
 
     blocks: list[ForeignBlock]
-    tail: Sequence[ForeignBlock]  # the blocks after the closing ``%``
+    behind_tape: Collection[int]  # numbers of the programs after the closing ``%``
     main: int = 0  # the block that is reached first
     entries: dict[int, int] = field(default_factory=dict)  # first block of each other program
     starts: dict[int, int] = field(default_factory=dict)  # the numbers of programs, by block
@@ -41,10 +42,8 @@ class Structure:
 
     def __post_init__(self) -> None:
         self.own = len(self.blocks)
-        self.behind_tape = frozenset(_program_heads(self.tail).values())
 
     def add_entry(self, number: int, index: int) -> None:
-        """Note that a program begins at a block."""
         if number in self.entries:
             self.doubled.add(number)
         else:
@@ -83,10 +82,9 @@ class Structure:
 
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
-    """Return the structure of a file's blocks."""
     blocks = _without_leader(blocks)
     end = _end_of_tape(blocks)
-    structure = Structure(blocks[:end], blocks[end:])
+    structure = Structure(blocks[:end], _program_heads(blocks[end:]).values())
     heads = _program_heads(structure.blocks)
     main = _start_of_main(structure, heads, control)
     for index, number in heads.items():
@@ -107,25 +105,23 @@ def find_ends(structure: Structure, control: Control) -> None:
     for index, (number, block) in enumerate(zip(structure.programs, structure.blocks)):
         if block.has_code(returns):
             structure.last_returns[number] = index
+        if block.compared:
+            known = structure.compared.get(number, frozenset())
+            structure.compared[number] = known | block.compared
     numbers = dict(_jump_numbers(structure, control))
     structure.jumps = find_jumps(structure.blocks, structure.programs, structure.partners, numbers)
     structure.problems.update(structure.jumps.problems)
-    for number, block in zip(structure.programs, structure.blocks):
-        if compared := block.compared:
-            structure.compared[number] = structure.compared.get(number, frozenset()) | compared
 
 
 def _carried_on(starts: Mapping[int, int], count: int, value: int) -> list[int]:
-    """Return for each block the value of the last start, ``value`` before the first."""
+    """Return the value of the last start for each block, ``value`` before the first."""
     return [value := starts.get(index, value) for index in range(count)]
 
 
 def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int, int]]:
     """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
-    returns, calls = (
-        _codes_meaning(control, "return"),
-        _codes_meaning(control, *CALLS, LOCAL_SUBPROGRAM),
-    )
+    returns = _codes_meaning(control, "return")
+    calls = _codes_meaning(control, *CALLS, LOCAL_SUBPROGRAM)
     targets = _numbers_of_returns(structure, returns)
     for index, block in enumerate(structure.blocks):
         if block.kind == "goto":
@@ -189,7 +185,7 @@ def _program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:
         first = block.words[0] if block.words else None
         if first and first.letter == "O" and first.value.isdigit():
             heads[index] = int(first.value)
-        elif not heads and (first or block.kind not in ("words", "tape")):
+        elif not heads and (first or block.kind not in TEXT):
             heads[index] = MAIN
     return heads
 
@@ -256,7 +252,7 @@ def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
     for index, block in enumerate(blocks[start:], start):
         if block.kind == "tape" and started:
             return index + 1
-        started = started or bool(block.words) or block.kind not in ("words", "tape")
+        started = started or bool(block.words) or block.kind not in TEXT
     return len(blocks)
 
 
@@ -285,24 +281,20 @@ def _pair_loops(structure: Structure) -> None:
     for index, block in enumerate(structure.blocks):
         if index in structure.starts:
             _unclosed(structure, opened)
+            opened = []
         if block.kind in OPENING:
             opened.append(index)
         elif block.kind in ("end", "endif"):
-            _pair(structure, opened, index)
+            label = block.label
+            if opened and structure.blocks[opened[-1]].label == label:
+                start = opened.pop()
+                structure.partners[start], structure.partners[index] = index, start
+            else:
+                structure.problems[index] = f"END{label} without WHILE […] DO{label} before it"
     _unclosed(structure, opened)
 
 
-def _pair(structure: Structure, opened: list[int], index: int) -> None:
-    label = structure.blocks[index].label
-    if not opened or structure.blocks[opened[-1]].label != label:
-        structure.problems[index] = f"END{label} without WHILE […] DO{label} before it"
-        return
-    start = opened.pop()
-    structure.partners[start], structure.partners[index] = index, start
-
-
-def _unclosed(structure: Structure, opened: list[int]) -> None:
+def _unclosed(structure: Structure, opened: Sequence[int]) -> None:
     for index in opened:
         label = structure.blocks[index].label
         structure.problems[index] = f"WHILE […] DO{label} has no END{label}"
-    opened.clear()

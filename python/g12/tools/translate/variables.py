@@ -12,10 +12,9 @@ decides or moves, it is refused.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import partial
 
-from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.expressions import CLOCK, LOCAL_VARIABLES, SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
@@ -33,7 +32,7 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     for number in macros:
         given.update(_given_in(followed, number))
     for index, block in enumerate(followed.structure.blocks):
-        number = followed.program_of(index)
+        number = followed.structure.programs[index]
         if index in given:
             for variable in sorted(block.read.intersection(LOCAL_VARIABLES) - given[index]):
                 yield block.line, _unset_sentence(number, variable)
@@ -54,7 +53,7 @@ def _reads_never_set(
     called = [
         block
         for index, block in enumerate(followed.structure.blocks)
-        if followed.program_of(index) not in (MAIN, *macros)
+        if followed.structure.programs[index] not in (MAIN, *macros)
     ]
     set_by_calls = frozenset().union(*map(_set_by, called))
 
@@ -70,18 +69,18 @@ def _reads_never_set(
     for index, values in known.items():
         block = followed.structure.blocks[index]
         for word in block.words:
-            number = min(word.read, default=0)
-            if (
-                number in LOCAL_VARIABLES
-                and number not in values
-                and word.value.lstrip("-") == f"#{number}"
-            ):
-                yield block.line, f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
+            for number in word.read.intersection(LOCAL_VARIABLES) - values:
+                if word.value.lstrip("-") == f"#{number}":
+                    sentence = f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
+                    yield block.line, sentence
 
 
 def _given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
     """Return the variables that surely have a value before each block of a macro."""
-    start = {followed.structure.entries[number]: _given_by_all(followed.calls[number])}
+    calls = [followed.drafts[index].call for index in followed.callers[number]]
+    macro_calls = [dict(call.arguments) for call in calls if call.kind == "macro"]
+    given = frozenset(macro_calls[0]).intersection(*macro_calls)
+    start = {followed.structure.entries[number]: given}
     return _flow(start, partial(_onward_from, followed), frozenset.intersection)
 
 
@@ -108,24 +107,19 @@ def _onward_from(
     """Yield the blocks after one, and the variables that have a value there."""
     draft, block = followed.drafts[index], followed.structure.blocks[index]
     over = draft is None or draft.returns or draft.ends
-    ways = [] if over else [following for _, following in ways_from(followed.structure, index)]
-    condition = block.expression
-    for following in {*ways, *([index + 1] if block.skipped else [])}:
+    ways = set() if over else {following for _, following in ways_from(followed.structure, index)}
+    condition = block.expression if block.kind in ("goto", *OPENING) else None
+    for following in ways | ({index + 1} if block.skipped else set()):
         known = given | _set_by(block)
-        if condition and block.kind in ("goto", *OPENING):
+        if condition:
             onward = (following == index + 1) == (block.kind in OPENING)
             known |= condition.set_if_true if onward else condition.set_if_false
         if not followed.structure.is_over(following):
             yield following, known
 
 
-def _given_by_all(calls: list[Draft]) -> frozenset[int]:
-    found = [{variable for variable, _ in draft.call.arguments} for draft in calls]
-    return frozenset(set.intersection(*found))
-
-
 def _set_by(block: ForeignBlock) -> frozenset[int]:
-    """Return the variables that surely have a value after a block because of it."""
+    """Return the variables to which a block surely gives a value."""
     sets = block.kind == "assign" and not block.skipped
     return frozenset((block.variable,)) if sets else frozenset()
 
@@ -140,19 +134,14 @@ def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     """Yield the blocks that use #31 to #33, where several programs do: LinuxCNC has them once."""
     users: dict[int, set[int]] = defaultdict(set)
     for index, block in enumerate(followed.structure.blocks):
-        for variable in SHARED.intersection(_used_by(block)):
-            users[variable].add(followed.program_of(index))
+        for variable in SHARED & {*block.read, *block.compared, block.variable}:
+            users[variable].add(followed.structure.programs[index])
             if len(users[variable]) > 1:
                 yield block.line, f"#{variable} is used in two programs: LinuxCNC has it once"
 
 
-def _used_by(block: ForeignBlock) -> Iterable[int]:
-    """Return the local variables that a block reads, compares with #0 or sets."""
-    return {*block.read.intersection(LOCAL_VARIABLES), *block.compared, block.variable}
-
-
 def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
-    """Return the blocks with times as comments."""
+    """Return the blocks with the assignments of times as comments."""
     timed, known = {CLOCK}, 0
     while len(timed) > known:
         known = len(timed)

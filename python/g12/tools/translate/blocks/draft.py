@@ -55,9 +55,7 @@ class Draft:
     has_motion: bool = False  # its motion code is written
     has_feed: bool = False  # its feed is written
     lines: list[str] = field(default_factory=list)  # the result
-    refusal: str | None = None
-    unsure: tuple[str, ...] = ()  # modes that cause the refusal: they differ between ways here
-    setting: tuple[str, str] | None = None  # table and line that the control's file lacks
+    refusal: NotTranslated | None = None
 
     def __post_init__(self) -> None:
         self.start = self.state

@@ -7,6 +7,9 @@ LONGEST_EXCERPT = 24
 class NotTranslated(ValueError):
     """A word or a code that is not understood; the message is a sentence without the line."""
 
+    modes: tuple[str, ...] = ()  # that cause it: they differ between ways to the block
+    setting: tuple[str, str] | None = None  # table and line that the control's file lacks
+
 
 class NotSure(NotTranslated):
     """A block whose meaning depends on ``modes`` that are not the same on every way to it."""
