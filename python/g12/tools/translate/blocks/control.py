@@ -32,7 +32,7 @@ HOLE_MEANINGS = (  # cycles of a lathe
 )  # fmt: skip
 MEANINGS = {
     "G": (
-        "dwell", "polar on", "polar off", "cylinder", "speed limit or origin", "local offset",
+        "dwell", "polar on", "polar off", "cylinder", "speed limit or origin",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
         "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
@@ -49,22 +49,17 @@ PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `mac
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$(?:[0-9]+|live|all)|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
-CLASSES = (
-    "length_mm",
-    "length_inch",
-    "angle",
-    "feed_mm",
-    "feed_inch",
-    "feed_rev_mm",
-    "feed_rev_inch",
-)
 TOP = {
     "title": str, "based_on": str, "machine": ("mill", "lathe"), "axes": str, "start": str,
     "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
     "at_zero": str, "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
 TABLES: dict[str, dict[str, object]] = {
-    "increments": dict.fromkeys(CLASSES, float),
+    "increments": {
+        "angle": float,
+        **{f"{kind}_{unit}": float for kind in ("length", "feed", "feed_rev")
+           for unit in ("mm", "inch")},
+    },
     "dwell": {
         "seconds": str, "milliseconds": str, "with_point": ("seconds", "refuse"),
         "cycle": ("seconds", "milliseconds", "refuse"),
@@ -72,7 +67,7 @@ TABLES: dict[str, dict[str, object]] = {
     "tools": {
         "patterns": list, "size": ("diameter", "radius"), "pocket": ("last", "own"),
     },
-    "reference": {"G28": ("stored",), "G30": ("stored",), "cancels_length": bool},
+    "reference": {"cancels_length": bool},
     "polar": {
         "x": ("diameter", "radius", "inherit", "say"), "c": ("radius", "diameter"),
         "rapid": ("refuse", "keep", "feed"),
@@ -113,7 +108,8 @@ OPEN_TABLES = {  # keys and values of tables whose keys a control chooses, and t
     "spindles": ("P[0-9]+", "main|live", " must be a P word, and main or live"),
 }
 TYPE_NAMES = {
-    str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts"
+    str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts",
+    float: "a number above 0",
 }  # fmt: skip
 COMMENT = re.compile(r"comment( [A-Z])*")
 PATTERN = re.compile(r"R*T+O*")
@@ -131,14 +127,14 @@ class Control:
     title: str
     machine: str  # ``mill`` or ``lathe``
     axes: str  # of the machine
-    start: tuple[str, ...]  # codes that hold when a program begins
-    decimals: str  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
-    feed_of_c: str  # the path of F where C and a slide move together, ``say``: unknown
-    at_zero: str  # axes that the machine lacks and whose words may be 0
-    remarks: bool  # text after ``;`` is a remark
-    sources: tuple[str, ...]
-    readings: tuple[str, ...]
     meanings: Mapping[str, str]  # by code
+    start: tuple[str, ...] = ()  # codes that hold when a program begins
+    decimals: str = ""  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
+    feed_of_c: str = "say"  # the path of F where C and a slide move together, ``say``: unknown
+    at_zero: str = ""  # axes that the machine lacks and whose words may be 0
+    remarks: bool = False  # text after ``;`` is a remark
+    sources: tuple[str, ...] = ()
+    readings: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     live_spindle: str = "1"  # LinuxCNC's spindle that drives the tool, "" unknown
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")  # LinuxCNC's, on and off
@@ -168,14 +164,13 @@ class Control:
             for offset, number in enumerate(range(int(first), int(last or first) + 1)):
                 if value == "clock":
                     found[number] = f"#{OWN}{CLOCK}"
+                elif value.startswith("#"):
+                    found[number] = f"#{OWN}{int(value[1:]) + offset}"
                 elif value != "own":
-                    text = str(value)
-                    named = f"#{OWN}{int(text[1:]) + offset}" if text.startswith("#") else text
-                    found[number] = named
+                    found[number] = value
         return found
 
     def value(self, table: str, key: str, default: object = "") -> Any:
-        """Return a value of one of the tables."""
         return self.tables.get(table, {}).get(key, default)
 
 
@@ -191,18 +186,10 @@ def read_control(name: str) -> Control:
     missing = [key for key in ("machine", "axes", "g_codes", "m_codes") if key not in data]
     if missing:
         raise ControlError(f"{path}: {missing[0]} is missing: say it, or based_on another control")
+    given = {key: tuple(v) if isinstance(v, list) else v for key, v in data.items() if key in TOP}
     return Control(
         name=path.stem,
-        title=data.get("title", path.stem),
-        machine=data["machine"],
-        axes=data["axes"],
-        start=tuple(data.get("start", "").split()),
-        decimals=data.get("decimals", ""),
-        feed_of_c=data.get("feed_of_c", "say"),
-        at_zero=data.get("at_zero", ""),
-        remarks=data.get("remarks", False),
-        sources=tuple(data.get("sources", ())),
-        readings=tuple(data.get("readings", ())),
+        **{"title": path.stem, **given, "start": tuple(data.get("start", "").split())},
         meanings={**data["g_codes"], **data["m_codes"]},
         c_axis_on=frozenset(code for code, as_ in data["m_codes"].items() if as_ == "C axis on"),
         tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},
@@ -246,7 +233,7 @@ def _data(path: Path) -> dict:
 
 
 class _Checked:
-    """The checks of one file, which know where its keys stand."""
+    """The checks of one file, which know the lines of its keys."""
 
     def __init__(self, path: Path, text: str) -> None:
         self._path, self._rows = path, text.splitlines()
@@ -255,8 +242,6 @@ class _Checked:
         """Return the data with every list and range of codes written out."""
         for key, value in data.items():
             if key in TABLES:
-                if not isinstance(value, dict):
-                    self._refuse(key, f"{key} is a table: [{key}]")
                 self._table(key, value)
             elif key in TOP:
                 self._value(key, value, TOP[key])
@@ -271,10 +256,13 @@ class _Checked:
 
     def _table(self, name: str, table: dict) -> None:
         kinds = TABLES[name]
+        if not isinstance(table, dict):
+            self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if kinds is None:
-                if not isinstance(value, (str, list, dict)):
-                    self._refuse(key, f"{key} in [{name}] must be a text")
+            if kinds is None and not isinstance(value, (str, list, dict)):
+                self._refuse(key, f"{key} in [{name}] must be a text")
+            elif kinds is None:
+                continue
             elif key not in kinds:
                 self._refuse(key, f"{key} is no key of [{name}]: {', '.join(kinds)}")
             else:
@@ -293,13 +281,12 @@ class _Checked:
             if value not in kind:
                 self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
             return
-        number = kind is float and type(value) in (int, float) and 0 < value < inf
-        listed = kind is not list or (
-            isinstance(value, list) and all(isinstance(v, str) for v in value)
-        )
-        if kind is float and not number:
-            self._refuse(key, f"{key} must be a number above 0")
-        if kind is not float and (type(value) is not kind or not listed):
+        if kind is float:
+            is_good = type(value) in (int, float) and 0 < value < inf
+        else:
+            texts = value if kind is list and isinstance(value, list) else ()
+            is_good = type(value) is kind and all(isinstance(text, str) for text in texts)
+        if not is_good:
             self._refuse(key, f"{key} must be {TYPE_NAMES[kind]}")
 
     def _axes(self, data: dict) -> None:
