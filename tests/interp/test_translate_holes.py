@@ -187,7 +187,7 @@ def test_taps_follow_a_spindle(tracer, tmp_path):
         ("fanuc-lathe", "G84 X40. Z-5. F500.", "a tap needs its pitch as a number"),
         ("fanuc-lathe", "G87 Z-4. U-9. F500.", "U as the end of a hole: write X"),
         ("fanuc-lathe", "G83 X40. Z-5. M31", "M31 in the block of a drilling cycle"),
-        ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins where the tool stands"),
+        ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins at the tool's position"),
         ("fanuc-lathe", "G12.1\nG1 X39. F9.\nG83 X40. Z-5.", "a drilling cycle in a section"),
         ("fanuc-lathe", "G83 Z-5. F9.\nG28 H0\nC9.", "a drilling cycle may be on"),
         ("fanuc-lathe", "G81 X4. Z-5.", "G81: not a drilling cycle of this control: G83 is"),

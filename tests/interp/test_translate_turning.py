@@ -321,7 +321,7 @@ REFUSED = [
         "G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\nG2 X30. Z-9. R1.\nN20 X50.",
         "line 6: R1 is too small",
     ),
-    ("G28 U0\nG71 U2.\nG71 P10 Q20\nN10 G0 X20.\nN20 G1 X50.", "this begins where the tool stands"),
+    ("G28 U0\nG71 U2.\nG71 P10 Q20\nN10 G0 X20.\nN20 G1 X50.", "this begins at the tool's position"),
     (
         "G90\nX40. Z-5.",
         "G90 is a cycle here, the turning pass, with X and Z and no G0 or G1: where it is",
@@ -336,7 +336,7 @@ REFUSED = [
         "G1 Z-20. ,C5.\nG2 X30. Z-30. R20.",
         "line 3: a corner is broken between two lines of G1 only",
     ),
-    ("G75 X40. Z-9. P100", "the cycle has no step to the next place"),
+    ("G75 X40. Z-9. P100", "the cycle has no step to the next peck"),
     ("G12.1\nG71 P1 Q2", "a turning cycle in a section"),
     ("G94 X40. Z-5. C3.", "C3. is not understood in the block of a turning cycle"),
     ("G71 U2.\nG71 P1 Q2 I1.\nN1 G0 X9.\nN2 G1 Z-5.", "I1. is not understood in the block"),

@@ -111,7 +111,7 @@ def test_what_a_mill_has_and_a_lathe_has_not():
 REFUSED = [
     (f"{HEAD}G1 Z-1. F9.\nG0 X3. Z5.\n", 8, "G0 at Z-1, below 2"),
     ("G21 G90\nG0 X1. Y1.\nG1 X2. F9.\n", 3, "a cut begins here with the tool at Z not known"),
-    ("G21 G90\nG0 Z9.\nG1 X2. F9.\n", 3, "a cut begins here, and where X stands is not known"),
+    ("G21 G90\nG0 Z9.\nG1 X2. F9.\n", 3, "a cut begins here, and the position of X is not known"),
     (f"{HEAD}G1 A3. F9.\n", 7, "A3.: a program for mill-on-face has X, Y and Z"),
     (f"{HEAD}G18 G2 X1. Z1. R9. F9.\n", 7, "G18: arcs lie in X and Y here (G17)"),
     (f"{HEAD}G95 G1 X1. F.1\n", 7, "G95, a feed per revolution: write G94 and F per minute"),
@@ -121,7 +121,7 @@ REFUSED = [
     (f"{HEAD}G81 Z3. R5. F1.\n", 7, "G81 Z3.: the hole must end below Z0, the part's surface"),
     (f"{HEAD}G91 G81 Z-3. R-1. F1.\n", 7, "a drilling cycle under G91"),
     (f"{HEAD}G55 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),
-    ("G90\nG0 X1. Y1. Z9.\n", 2, "how high a rapid must be hangs on the units: say G20 or G21"),
+    ("G90\nG0 X1. Y1. Z9.\n", 2, "how high a rapid must be depends on the units: say G20 or G21"),
 ]
 
 

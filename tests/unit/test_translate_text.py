@@ -153,7 +153,7 @@ def test_least_increments_follow_the_units(tmp_path):
     own = read_control(str(path))
     assert lines_after(own, "G21 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G21 G0 X1.234"
     assert lines_after(own, "G20 G0 X1234\nM30\n", "(HEAD)\n")[0] == "G20 G0 X0.1234"
-    assert "before G20 or G21" in sentence(own, "G0 X1234\n").sentence
+    assert "neither G20 nor G21" in sentence(own, "G0 X1234\n").sentence
     path.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
     whole = read_control(str(path))
     assert lines_after(whole, "G0 X1234\nM30\n", "(HEAD)\n")[0] == "G0 X1234"
@@ -190,7 +190,7 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "G-1 X1.", "G-1 is not known of haas-mill"),
         (HAAS, "G#1 X1.", "G#1: a code must be a number"),
         (HAAS, "G0 G1 X1.", "G0 and G1 in one block"),
-        (HAAS, "G0 X1. X2.", "X stands twice"),
+        (HAAS, "G0 X1. X2.", "X is given twice in this block"),
         (HAAS, "G0 U1.", "U1. is not understood in this block"),
         (HAAS, "G0 X", "X has no value"),
         (HAAS, "G1 X1. R.1 F5.", "R beside G1: write the arc of the corner"),
@@ -231,8 +231,8 @@ def test_an_m_code_that_the_machine_knows_stays():
         (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
         (HAAS, "#1=#4001", "#4001 means something else"),
         (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
-        (HAAS, "#1=#3020\n#102=#1+1\nX#102", "what stands here comes of the control's clock"),
-        (HAAS, "IF[#3001GT5.]X1.", "what stands here comes of the control's clock"),
+        (HAAS, "#1=#3020\n#102=#1+1\nX#102", "this depends on the control's clock"),
+        (HAAS, "IF[#3001GT5.]X1.", "this depends on the control's clock"),
         (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
         (HAAS, "G0 X[#1EQ#0]", "X: #0, the empty variable, is translated in conditions only"),
         (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable, is translated in a program of G65"),
@@ -264,7 +264,7 @@ def test_what_is_refused_is_reported(control, block, start):
     ("blocks", "line", "start"),
     [
         ("GOTO5\nWHILE[#1LT2]DO1\nN5 X1.\nEND1", 3, "N5 is in a loop: no jump leads into"),
-        ("N5 X1.\nGOTO5", 4, "the program goes round for ever"),
+        ("N5 X1.\nGOTO5", 4, "the program never ends"),
         ("/WHILE[#1LT2]DO1\nEND1", 3, "the head or the end of a loop cannot be skipped"),
         ("M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 7, "M99 with and without P in one program"),
         ("M98 P5 L2\nN1 M30\nO5\nM99 P1", 3, "the called program returns by M99 P"),
@@ -328,7 +328,7 @@ def test_the_orientation_of_the_spindle():
 
 def test_a_number_whose_unit_is_not_said():
     refused = sentence(FANUC, "G0 X0\nG1 X1. F60\n")
-    assert refused.sentence.endswith("hangs on G20 or G21, and neither is said before (--units)")
+    assert refused.sentence.endswith("depends on G20 or G21, and neither is programmed before it (--units)")
 
 
 ROUGH = "G0 X2. Z.1\nG71 P1 Q2 U.02 W0 D.05 F.01\nN1 G0 X1.\nG1 Z-1.\nN2 X2.\nM30\n"
@@ -337,7 +337,7 @@ ROUGH = "G0 X2. Z.1\nG71 P1 Q2 U.02 W0 D.05 F.01\nN1 G0 X1.\nG1 Z-1.\nN2 X2.\nM3
 def test_a_setting_of_the_control_whose_unit_is_not_said():
     refused = sentence(HAAS_LATHE, f"G99 S99 M3\n{ROUGH}")
     assert refused.line == 3
-    assert refused.sentence.startswith("the control's setting for the retract hangs on G20 or G21")
+    assert refused.sentence.startswith("the control's setting for the retract depends on G20 or G21")
     assert "G0 X2. Z-0.95 (line 3)" in lines(HAAS_LATHE, f"G20 G99 S99 M3\n{ROUGH}")
 
 
@@ -438,7 +438,7 @@ def test_m97_calls_a_block_of_its_own_program():
 
 def test_a_block_number_that_two_programs_call_is_refused():
     text = "G20 G0 X0\nM97 P9\nM98 P2\nM30\nN9 X1.\nM99\nO2\nM97 P9\nM99\nN9 X2.\nM99\n"
-    assert sentence(HAAS, text).sentence.startswith("N9 stands twice in this file")
+    assert sentence(HAAS, text).sentence.startswith("N9 is in this file twice")
 
 
 @pytest.mark.parametrize("head", ["", "%\n"])
@@ -618,7 +618,7 @@ def test_hostile_and_long_texts_take_not_the_square_of_their_length(start, part,
 @pytest.mark.parametrize(
     ("control", "text", "line", "start"),
     [
-        (LATHE, "G1 X40. C30. F100.\n", 3, "C beside a slide at a feed: its time hangs"),
+        (LATHE, "G1 X40. C30. F100.\n", 3, "C beside a slide at a feed: its time depends"),
         (LATHE, "G99 C0\nG1 X40. C30. F.1\n", 4, "C beside a slide needs a feed per minute"),
         (LATHE, "C0\nG1 X40. C30. F#100\n", 4, "C beside a slide at a feed: F must be a"),
         (

@@ -187,9 +187,9 @@ class FollowedProgram:
         if entry is None:
             return f"{name} is not in this file: put the subprogram into it"
         if call.number in self.structure.doubled:
-            return f"{name} stands twice in this file: give one of them another number"
+            return f"{name} is in this file twice: give one of them another number"
         if self.kinds.get(call.number, call.kind) != call.kind:
-            return f"{name} is called by G65 and by M98: LinuxCNC wants a copy of it for each"
+            return f"{name} is called by G65 and by M98: LinuxCNC needs a copy of it for each"
         return None
 
     def _return(self, number: int, state: ModalState) -> None:

@@ -110,7 +110,7 @@ def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
             yield RefusedBlock(followed.structure.blocks[index].line, sentence)
     if followed.structure.jumps.targets and not followed.has_end:
         block = followed.structure.blocks[max(followed.structure.jumps.targets)]
-        yield RefusedBlock(block.line, "the program goes round for ever: no jump leads to its end")
+        yield RefusedBlock(block.line, "the program never ends: no jump leads to its end")
     for line, sentence in unset_locals(followed):
         yield RefusedBlock(line, sentence)
 

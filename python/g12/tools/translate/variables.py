@@ -155,6 +155,6 @@ def _without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
         comments = ("a time: LinuxCNC has no clock", *block.comments)
         return block._replace(kind="words", variable=0, expression=None, comments=comments)
     if timed & block.read:
-        problem = "what stands here comes of the control's clock, which LinuxCNC lacks: take it out"
+        problem = "this depends on the control's clock, which LinuxCNC lacks: take it out"
         return block._replace(problem=block.problem or problem)
     return block

@@ -108,9 +108,14 @@ class Draft:
         """Return the word of a letter and take it out, None if there is none; two are refused."""
         found = [word for word in self.words if word.letter == letter]
         if len(found) > 1:
-            raise NotTranslated(f"{letter} stands twice")
+            raise NotTranslated(f"{letter} is given twice in this block")
         self.words = [word for word in self.words if word.letter != letter]
         return found[0] if found else None
+
+    def comment_out(self, letter: str, note: str = "") -> None:
+        """Keep the word of a letter as a comment, if there is one."""
+        word = self.take(letter)
+        self.comments += [f"{word.text}{note}"] if word else []
 
     def take_codes(self, codes: Container[str]) -> list[str]:
         """Take codes out; return those that were there."""

@@ -189,14 +189,15 @@ def _joined(parts: list[Expression], operators: list[str]) -> Expression:
     if operators == ["MOD"]:
         a, b = (part.text for part in parts)
         text = f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"
+    is_all, is_any = "AND" in operators, "OR" in operators
     return Expression(
         text,
         NONE.union(*(part.read for part in parts)),
         not (COMPARING | JOINING).isdisjoint(operators),
         parts[-1].end,
         NONE.union(*(part.compared for part in parts)),
-        NONE.union(*(part.set_if_true for part in parts if "AND" in operators)),
-        NONE.union(*(part.set_if_false for part in parts if "OR" in operators)),
+        NONE.union(*(part.set_if_true for part in parts if is_all)),
+        NONE.union(*(part.set_if_false for part in parts if is_any)),
     )
 
 

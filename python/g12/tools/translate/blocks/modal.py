@@ -78,12 +78,17 @@ class ModalState(NamedTuple):
     tap_top: float | str = UNKNOWN  # the Z level to which it returns
     sizes: tuple = ()  # diameters that G10 L12 has set, by tool
     corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
-    at_x: float | str = UNKNOWN  # the program's point (`positions`)
-    at_y: float | str = UNKNOWN
-    at_z: float | str = UNKNOWN
-    at_a: float | str = UNKNOWN
-    at_b: float | str = UNKNOWN
-    at_c: float | str = UNKNOWN
+    at_x: float | str | None = None  # the program's point (`positions`)
+    at_y: float | str | None = None
+    at_z: float | str | None = None
+    at_a: float | str | None = None
+    at_b: float | str | None = None
+    at_c: float | str | None = None
+
+    def own(self, group: str) -> str:
+        """Return LinuxCNC's ``motion`` or ``distance`` mode."""
+        mode = getattr(self, f"own_{group}")
+        return getattr(self, group) if mode == AS_PROGRAMMED else mode
 
 
 def merged(one: ModalState, other: ModalState) -> ModalState:

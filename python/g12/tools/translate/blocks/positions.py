@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The position of the program's point, in its units (X of a lathe a diameter), if it is known.
 
-A position is a number, or a text: UNKNOWN, or UNSURE where the ways to a block differ. It is known
+A position is a number, None if unknown, UNSURE where the ways to a block differ. It is known
 from absolute numbers on; an expression, a reference point, a tool or another offset end that.
 """
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import MOTIONS, UNKNOWN, ModalState
+from g12.tools.translate.blocks.modal import MOTIONS, ModalState
 
 FIELDS = {axis: f"at_{axis.lower()}" for axis in AXIS_NUMBERS}
-LOST = dict.fromkeys(FIELDS.values(), UNKNOWN)
+LOST: dict[str, None] = dict.fromkeys(FIELDS.values())
 FOLLOWED_CODES = frozenset(  # a block of these codes alone ends at its words
     f"G{n}" for n in (*range(5), 7, 8, *range(17, 22), 33, 40, 41, 42, 61, 64, 80, 90, 91)
 ) | frozenset(f"G{n}" for n in range(93, 100))
 IN_POLAR = {"Y": "C", "V": "H"}
 LENGTH_CODES = frozenset(("G43", "G49"))  # of the tool: a mill's is along Z
-SHIFTING = LENGTH_CODES | {f"G{n}" for n in range(54, 60)}
+ORIGINS = frozenset(f"G{n}" for n in range(54, 60))
+SHIFTING = LENGTH_CODES | ORIGINS
 PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
 DRILLING_MEANINGS = PATTERNS | {"drilling cycle"}
 STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
@@ -33,7 +34,6 @@ STAYING = frozenset(  # codes that move nothing and leave the origin, or set it 
 
 
 def known_position(state: ModalState, axis: str) -> float | None:
-    """Return an axis's position, None if it is not known."""
     at = getattr(state, FIELDS[axis])
     return at if isinstance(at, float) else None
 
@@ -45,18 +45,17 @@ def value_text(value: float) -> str:
 
 
 def axis_of(letter: str) -> str:
-    """Return the axis of a word: that of U is X."""
     return PARTNERS.get(letter, letter)
 
 
-def end_of_word(state: ModalState, word: ForeignWord) -> float | str:
-    """Return where a word's axis goes, UNKNOWN if that is not known."""
+def end_of_word(state: ModalState, word: ForeignWord) -> float | None:
+    """Return where a word's axis goes, None if that is not known."""
     if word.kind != "number":
-        return UNKNOWN
+        return None
     if word.letter in AXIS_NUMBERS and state.distance == "G90":
         return word.number
     start = known_position(state, axis_of(word.letter))
-    return UNKNOWN if start is None or state.distance not in ("G90", "G91") else start + word.number
+    return None if start is None or state.distance not in ("G90", "G91") else start + word.number
 
 
 def _is_drilling(draft: Draft) -> bool:
@@ -66,38 +65,31 @@ def _is_drilling(draft: Draft) -> bool:
     return (begins or goes_on) and not draft.control.is_lathe
 
 
-def _follow_drilling(draft: Draft) -> bool:
-    """Follow X and Y to the hole of a block that drills; return whether it does."""
-    if not _is_drilling(draft):
-        return False
+def _follow_drilling(draft: Draft) -> None:
+    """Follow X and Y to the hole of a block that drills."""
     again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
     words = [w for w in draft.axis_words() if w.letter in "XY"]
     moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}
     lost = draft.state.distance == "G91" and again and not set(draft.meanings) & PATTERNS
-    draft.change(at_z=UNKNOWN, **(dict.fromkeys(moved, UNKNOWN) if lost else moved))
-    return True
+    draft.change(at_z=None, **(dict.fromkeys(moved) if lost else moved))
 
 
 def follow_positions(draft: Draft) -> None:
-    """Follow the positions to the end of a block."""
-    codes = set(draft.codes())
-    lengths = frozenset() if draft.control.is_lathe else LENGTH_CODES
-    shifted = codes & (SHIFTING - lengths) or draft.start.units != draft.state.units
-    turret = draft.control.is_lathe and "T" in draft.letters()
-    changes = "M6" in draft.m_codes()
-    other = (
-        codes - FOLLOWED_CODES - SHIFTING or set(draft.meanings) - STAYING or _is_drilling(draft)
-    )
-    drills = _follow_drilling(draft) if not codes - FOLLOWED_CODES else False
-    if drills:
+    codes, is_lathe = set(draft.codes()), draft.control.is_lathe
+    drills = _is_drilling(draft)
+    if drills and not codes - FOLLOWED_CODES:
+        _follow_drilling(draft)
         return
-    if other or turret or changes or shifted:
+    shifted = codes & (SHIFTING if is_lathe else ORIGINS) or draft.start.units != draft.state.units
+    changes = "M6" in draft.m_codes() or (is_lathe and "T" in draft.letters())
+    other = codes - FOLLOWED_CODES - SHIFTING or set(draft.meanings) - STAYING or drills
+    if other or changes or shifted:
         draft.change(**LOST)
-    elif codes & lengths:
-        draft.change(at_z=UNKNOWN)
+    elif codes & LENGTH_CODES:
+        draft.change(at_z=None)
     if other:
         return
-    words = [*draft.axis_words(), *(draft.increments() if draft.control.is_lathe else ())]
+    words = [*draft.axis_words(), *(draft.increments() if is_lathe else ())]
     if draft.state.polar == "on":  # Y is C there
         words = [w._replace(letter=IN_POLAR.get(w.letter, w.letter)) for w in words]
     if words:

@@ -21,7 +21,7 @@ from math import radians
 from g12.tools.translate.blocks.draft import Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import known_position, value_text
 from g12.tools.translate.rules.decimals import time_in_seconds
 
@@ -37,31 +37,29 @@ def drilling_cycle(draft: Draft) -> None:
     cancelled = draft.meanings.pop("cancel cycle", None)
     code = draft.meanings.pop("drilling cycle", None)
     if cancelled:
-        cancel(draft)
+        _cancel(draft)
     if code:
-        begin(draft, code.code)
+        _begin(draft, code.code)
     elif draft.state.cycle and set(draft.codes()) & (MOTIONS | CONSUMERS):
         draft.change(cycle=UNKNOWN, cycle_words=())
     elif draft.state.cycle and draft.letters() & set("XYZR"):
         if draft.state.cycle == UNSURE:
             raise NotSure("a drilling cycle is on, but not on every way to this block", *CYCLE)
-        drill(draft, draft.state.cycle, _stored_words(draft))
+        _drill(draft, draft.state.cycle, _stored_words(draft))
 
 
-def cancel(draft: Draft) -> None:
+def _cancel(draft: Draft) -> None:
     """G80: leave it to the motion code beside it, or to the one that is needed next."""
     moving = set(draft.codes()) & MOTIONS or draft.axis_words()
-    own = draft.state.own_motion
-    if own == AS_PROGRAMMED:
-        own = draft.state.motion
-    draft.change(cycle=UNKNOWN, cycle_words=(), own_motion=own if moving else "G80")
+    own = draft.state.own("motion") if moving else "G80"
+    draft.change(cycle=UNKNOWN, cycle_words=(), own_motion=own)
     if moving:
         draft.comments.append("G80")
     else:
         draft.put_first("G80")
 
 
-def begin(draft: Draft, code: str) -> None:
+def _begin(draft: Draft, code: str) -> None:
     """Begin a cycle with what the block says and what an earlier one was given."""
     motions = draft.take_codes(MOTIONS)
     if motions:
@@ -69,9 +67,8 @@ def begin(draft: Draft, code: str) -> None:
     given = {word.letter for word in draft.words}
     is_complete = draft.state.cycle_words == UNSURE and given >= {"Z", "R", *NEEDS.get(code, "")}
     kept = {} if is_complete else _stored_words(draft)
-    if code != draft.state.cycle:
-        draft.change(cycle=code)
-    drill(draft, code, kept)
+    draft.change(cycle=code)
+    _drill(draft, code, kept)
 
 
 def _stored_words(draft: Draft) -> dict[str, str]:
@@ -82,8 +79,7 @@ def _stored_words(draft: Draft) -> dict[str, str]:
     return dict(words)
 
 
-def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
-    """Write the words of one block that drills (or stores)."""
+def _drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     distance = draft.sure("distance", f"{code} has Z and R")
     seconds_of_dwell(draft)
     given = {word.letter: word.value for word in draft.words if word.letter in KEPT}
@@ -91,19 +87,19 @@ def drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     values = {**kept, **given}
     _check_words(draft, code, values)
     repeats = repeats_of(draft)
-    if under == distance or {"Z", "R"} <= given.keys():
+    if {"Z", "R"} <= given.keys():
         under = distance
-    else:
-        absolute(draft, code, given, under)
+    if under != distance:
+        _absolute(draft, code, given, under)
     if repeats == "0":
         _store(draft, code)
     else:
         _write_cycle(draft, code, values, given, under)
-        repeat(draft, repeats)
+        _repeat(draft, repeats)
     draft.change(cycle_words=tuple(sorted({"R": UNKNOWN, **values, "@": under}.items())))
 
 
-def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
+def _absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
     """Write the positions of holes under G91 as absolute ones: the levels were given under G90."""
     if under != "G90" or given.keys() & {"Z", "R"}:
         raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
@@ -115,7 +111,7 @@ def absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None
     draft.is_settled = True
 
 
-def repeat(draft: Draft, times: str) -> None:
+def _repeat(draft: Draft, times: str) -> None:
     """Write how often: by L, or by a loop where LinuxCNC's L would stay in one place."""
     if times and draft.is_settled:
         label = f"o<again_{draft.index}>"
@@ -125,14 +121,11 @@ def repeat(draft: Draft, times: str) -> None:
 
 
 def seconds_of_dwell(draft: Draft) -> None:
-    """Write the P of a cycle in seconds."""
-    word = draft.word("P")
-    if not word:
-        return
     unit = draft.control.value("dwell", "cycle", "refuse")
-    if unit == "refuse":
-        raise NotTranslated(f"{word.text}: [dwell] cycle does not say the unit of a cycle's P")
-    draft.replace(word, time_in_seconds(draft, word, unit == "milliseconds"))
+    if word := draft.word("P"):
+        if unit == "refuse":
+            raise NotTranslated(f"{word.text}: [dwell] cycle does not say the unit of a cycle's P")
+        draft.replace(word, time_in_seconds(draft, word, unit == "milliseconds"))
 
 
 def _check_words(draft: Draft, code: str, values: dict[str, str]) -> None:
@@ -156,7 +149,6 @@ def repeats_of(draft: Draft) -> str:
 
 
 def _store(draft: Draft, code: str) -> None:
-    """Store the cycle for the following blocks."""
     if draft.letters() & set("XY"):
         raise NotTranslated(
             f"{code} with L0 only stores the cycle: move to X and Y in another block"
@@ -174,21 +166,20 @@ def _write_cycle(
     used = f"ZR{NEEDS.get(code, '')}"
     for letter in given:
         if letter not in used:
-            draft.comments.append(draft.take(letter).text)
+            draft.comment_out(letter)
     if draft.state.own_motion != code:
         for letter in used:
             if letter not in given and values.get(letter):
                 draft.words.append(ForeignWord(letter, values[letter]))
         if not values.get("R"):
-            _stand_off(draft, distance)
+            _write_level_as_r(draft, distance)
         if "P" in used and "P" not in values:
             draft.words.append(word_of("P0"))
         draft.put_first(code)
     draft.change(own_motion=code)
 
 
-def _stand_off(draft: Draft, distance: str) -> None:
-    """Write R as the tool's Z level."""
+def _write_level_as_r(draft: Draft, distance: str) -> None:
     if draft.sure("plane", "a cycle without R") not in ("G17", UNKNOWN):
         raise NotTranslated("a cycle without R in another plane than G17")
     draft.words.append(ForeignWord("R", "0" if distance == "G91" else position("Z"), "expression"))
@@ -209,7 +200,7 @@ def hole_pattern(draft: Draft) -> None:
     x, y = known_position(draft.state, "X"), known_position(draft.state, "Y")
     if x is None or y is None or draft.state.distance != "G90":
         raise NotTranslated(
-            f"{code} is laid about where the tool stands, which is not known here: write X and Y "
+            f"{code} is laid about the tool's position, which is not known here: write X and Y "
             "as numbers, under G90"
         )
     numbers = {letter: _pattern_number(draft, code, letter) for letter in PATTERN_WORDS[meaning]}
@@ -219,7 +210,7 @@ def hole_pattern(draft: Draft) -> None:
     draft.words += [word_of(text) for text in first.split()]
     draft.after += others
     draft.comments.append(code)
-    draft.change(at_x=holes[-1].real, at_y=holes[-1].imag, at_z=UNKNOWN)
+    draft.change(at_x=holes[-1].real, at_y=holes[-1].imag, at_z=None)
 
 
 def _pattern_number(draft: Draft, code: str, letter: str) -> float:
@@ -235,7 +226,6 @@ def _pattern_number(draft: Draft, code: str, letter: str) -> float:
 
 
 def _steps_of(meaning: str, numbers: dict[str, float]) -> list[complex]:
-    """Return the holes relative to the tool."""
     count, begin = int(numbers["L"]), radians(numbers["J"])
     if meaning == "row of holes":
         return [rect(numbers["I"] * number, begin) for number in range(count)]

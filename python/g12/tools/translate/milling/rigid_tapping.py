@@ -8,7 +8,7 @@ LinuxCNC's own G84 is for a floating holder: it does not. For each hole:
 3. under G98 rapid to where Z stood when the cycle began
 """
 
-from g12.tools.translate.blocks.draft import Draft, line_as_word
+from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import value_text
@@ -28,11 +28,10 @@ def rigid_tap(draft: Draft) -> None:
     elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOVES & set(draft.codes())):
         draft.change(rigid=UNKNOWN, tap_top=UNKNOWN)
     if draft.state.rigid:
-        tap(draft)
+        _tap(draft)
 
 
-def tap(draft: Draft) -> None:
-    """Write a block of G84 or G74, or one that repeats it."""
+def _tap(draft: Draft) -> None:
     code = draft.meanings.get("drilling cycle")
     name = code.code if code else draft.state.cycle
     if name not in SPINDLE_OF_TAP:
@@ -53,7 +52,7 @@ def tap(draft: Draft) -> None:
 
 
 def _pitch_by_speed(draft: Draft, speed: str) -> str:
-    feed = draft.sure("feed", "the pitch of a tap hangs on F")
+    feed = draft.sure("feed", "the pitch of a tap depends on F")
     if feed == UNKNOWN:
         raise NotTranslated("a tap needs F")
     return feed if draft.state.feed_mode == "G95" else f"[{feed} / {speed}]"
@@ -61,8 +60,7 @@ def _pitch_by_speed(draft: Draft, speed: str) -> str:
 
 def _write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
     position = [word.text for word in draft.words if word.letter in "XY"]
-    dwell = draft.take("P")
-    draft.comments += [f"{dwell.text}: no dwell in a rigid tap"] if dwell else []
+    draft.comment_out("P", ": no dwell in a rigid tap")
     draft.take_codes(MOVES)
     draft.words = [word for word in draft.words if word.letter not in "XYZR"]
     lines = [" ".join(["G0", *position])] if position else []
@@ -72,7 +70,8 @@ def _write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
         if not isinstance(top, float):
             raise NotTranslated("a tap under G98 needs Z as a number before its cycle: G0 Z…")
         lines.append(f"G0 Z{value_text(top)}")
-    if draft.is_empty() and not draft.before:
-        draft.words.append(line_as_word(lines.pop(0)))
-    draft.after += lines
-    draft.change(own_motion=UNSURE, at_z=UNKNOWN)
+    if draft.before:
+        draft.after += lines
+    else:
+        draft.write(lines)
+    draft.change(own_motion=UNSURE, at_z=None)

@@ -42,15 +42,17 @@ def safe_height(draft: Draft) -> float:
     safe = draft.control.value("mill", "safe", None)
     if safe is not None:
         return safe
-    units = draft.sure("units", "how high a rapid must be hangs on the units")
+    units = draft.sure("units", "how high a rapid must be depends on the units")
     if units not in SAFE:
-        raise NotTranslated("how high a rapid must be hangs on the units: say G20 or G21 (--units)")
+        raise NotTranslated(
+            "how high a rapid must be depends on the units: say G20 or G21 (--units)"
+        )
     return draft.control.value("mill", *SAFE[units])
 
 
 def waiting_point(draft: Draft) -> dict[str, str]:
     """Return the values of X and Y to which rapids lead that are not written yet."""
-    waiting: Any = draft.sure("waiting", "where X and Y go hangs on the way to this block")
+    waiting: Any = draft.sure("waiting", "where X and Y go depends on the way to this block")
     return dict(waiting)
 
 
@@ -87,7 +89,9 @@ def check_rapid(draft: Draft, across: bool) -> None:
     """Refuse a rapid below the safe height; ``across``: it moves in X or Y. Up is allowed."""
     safe, start, end = safe_height(draft), start_height(draft), _end_height(draft)
     if end is None or (across and start is None):
-        raise NotTranslated("G0, and where Z stands is not known here: write Z as a number first")
+        raise NotTranslated(
+            "G0, and the position of Z is not known here: write Z as a number first"
+        )
     lowest = end if start is None or not across else min(start, end)
     if lowest < safe and (across or start is None or end < start):
         raise NotTranslated(

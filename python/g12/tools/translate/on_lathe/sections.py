@@ -130,7 +130,7 @@ def _begin_section(draft: Draft) -> None:
             "with X and Y"
         )
     feed = feed_of_rapids(draft)
-    why = "a cut begins here, and where {} stands is not known: G0 X Y before it"
+    why = "a cut begins here, and the position of {} is not known: G0 X Y before it"
     x, y = (point_value(draft, axis, draft.start, why.format(axis)) for axis in "XY")
     lines = milled_surface(draft).begin(draft, (x, y), feed)
     absolute = draft.start.distance == "G90"

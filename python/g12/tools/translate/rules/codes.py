@@ -88,7 +88,7 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
 
 def _owned_by_rule(draft: Draft, meaning: str, word: ForeignWord) -> list[ForeignWord]:
     if meaning in draft.meanings:
-        raise NotTranslated(f"{word.code} stands beside {draft.meanings[meaning].code}")
+        raise NotTranslated(f"{draft.meanings[meaning].code} and {word.code} in one block")
     draft.meanings[meaning] = word
     return []
 

@@ -68,8 +68,8 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
         return word
     if rule == "" and not least and 1 in _both_increments(draft, kind):
         raise NotTranslated(
-            f"{word.text} has no decimal point: what it is then hangs on G20 or G21, and neither "
-            "is said before (--units)"
+            f"{word.text} has no decimal point: what it is then depends on G20 or G21, and neither "
+            "is programmed before it (--units)"
         )
     if rule == "":
         raise NotSaid(
@@ -93,7 +93,7 @@ def least_increment(draft: Draft, kind: str) -> float:
         return float(draft.control.value("increments", f"{kind}_{unit}", 0))
     both = _both_increments(draft, kind)
     if draft.control.decimals == "least" and len(both) > 1:
-        raise NotTranslated("a number has no decimal point before G20 or G21 is said")
+        raise NotTranslated("a number has no decimal point, and neither G20 nor G21 is before it")
     return both.pop() if len(both) == 1 else 0.0
 
 

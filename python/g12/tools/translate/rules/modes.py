@@ -89,13 +89,13 @@ def refuse_leftovers(draft: Draft) -> None:
     axes = draft.control.axes
     if draft.meanings:
         word = next(iter(draft.meanings.values()))
-        raise NotTranslated(f"{word.code} cannot stand in this block")
+        raise NotTranslated(f"{word.code} cannot be in this block")
     letters: set[str] = set()
     for word in draft.words:
         if word.kind == "text" or word.letter in "GM":
             continue
         if word.letter in letters:
-            raise NotTranslated(f"{word.letter} stands twice")
+            raise NotTranslated(f"{word.letter} is given twice in this block")
         letters.add(word.letter)
         inside = word.letter in INSIDE.get(draft.state.polar, "")
         if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:

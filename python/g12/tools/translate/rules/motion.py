@@ -23,40 +23,37 @@ INDIFFERENT = frozenset("NMSTFHD$")
 
 
 def motion_mode(draft: Draft) -> None:
-    """Write the motion mode if LinuxCNC is not in it."""
     codes = draft.codes()
     if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
     _refuse_rounding(draft, motion or draft.state.motion)
-    if CONSUMERS.intersection(codes):
-        if motion and (draft.axis_words() or not REFERENCES.isdisjoint(codes)):
-            _take_motion(draft, motion)
-        elif motion:
-            draft.change(motion=motion, own_motion=AS_PROGRAMMED)
+    consumed = not CONSUMERS.isdisjoint(codes)
+    if motion and consumed and (draft.axis_words() or not REFERENCES.isdisjoint(codes)):
+        _take_motion(draft, motion)
     elif motion:
         draft.change(motion=motion, own_motion=AS_PROGRAMMED)
-    elif moves(draft):
+    elif not consumed and _moves(draft):
         _bare_words(draft)
 
 
 def _refuse_rounding(draft: Draft, motion: str) -> None:
-    """Refuse the R of a straight line: some controls round the corner by it."""
+    """Refuse the R of a straight line, by which some controls round the corner."""
     straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
     if straight and "R" in draft.letters() and draft.axis_words():
         raise NotTranslated(f"R beside {motion}: write the arc of the corner as a block")
 
 
-def moves(draft: Draft) -> bool:
+def _moves(draft: Draft) -> bool:
     """Whether words without a motion code move something."""
-    inside = draft.state.polar != "off"
-    return bool(draft.letters() & (set("XYZABCUWHIJR") if inside else set("XYZABC")))
+    return not draft.letters().isdisjoint(
+        "XYZABC" if draft.state.polar == "off" else "XYZABCUWHIJR"
+    )
 
 
 def _take_motion(draft: Draft, motion: str) -> None:
     """Take out a motion code that sets the mode of the following blocks only."""
-    state = draft.state
-    own = state.motion if state.own_motion == AS_PROGRAMMED else state.own_motion
+    own = draft.state.own("motion")
     draft.take_codes(MOTIONS)
     draft.change(motion=motion, own_motion=AS_PROGRAMMED if own == motion else own)
 
@@ -89,14 +86,13 @@ def distance_mode(draft: Draft) -> None:
 
 def needs_g90(draft: Draft) -> bool:
     """Whether absolute words need a G90 here; LinuxCNC is in it afterwards."""
-    state = draft.state
-    own = state.distance if state.own_distance == AS_PROGRAMMED else state.own_distance
-    draft.change(own_distance=AS_PROGRAMMED if state.distance == "G90" else "G90")
+    own = draft.state.own("distance")
+    draft.change(own_distance=AS_PROGRAMMED if draft.state.distance == "G90" else "G90")
     return own != "G90"
 
 
 def in_absolute_words(draft: Draft) -> None:
-    """Write G90 in a block whose words have become places, G91 in front of the next ones."""
+    """Write G90 in a block whose words have become positions, G91 before the next ones."""
     if needs_g90(draft) or draft.state.distance == "G91":
         draft.take_codes({"G91"})
         draft.put_first("G90")

@@ -115,7 +115,7 @@ def offset_by_program(draft: Draft, code: ForeignWord) -> None:
         raise NotTranslated("G10 needs L2, L10, L11, L12, L13 or L20")
     draft.after += draft.take_codes({"G90", "G91"})
     if not draft.is_empty():
-        raise NotTranslated(f"{draft.words[-1].text} cannot stand beside G10")
+        raise NotTranslated(f"{draft.words[-1].text} cannot be beside G10")
     lines, draft.after = draft.after, []
     draft.write(lines)
 

@@ -291,7 +291,7 @@ def _held_slides(draft: Draft) -> list[str]:
     for axis, point in points.items():
         if point is None:
             raise NotTranslated(
-                f"{why}, and where {axis} stands is not known here: beside C let it move by at "
+                f"{why}, and the position of {axis} is not known here: beside C let it move by at "
                 "least 0.001 mm, or not at all"
             )
     return [f"{axis}{value_text(point)}" for axis, point in points.items()]

@@ -70,7 +70,7 @@ def _macro_call(draft: Draft) -> SubprogramCall:
         if word.letter not in ARGUMENTS or word.kind == "bare":
             raise NotTranslated(f"{word.text} cannot be an argument of G65")
         if ARGUMENTS[word.letter] in arguments:
-            raise NotTranslated(f"{word.letter} stands twice: LinuxCNC has one variable for it")
+            raise NotTranslated(f"{word.letter} is given twice: LinuxCNC has one variable for it")
         _check_point(draft, word)
         arguments[ARGUMENTS[word.letter]] = word.value
     draft.words = [word for word in draft.words if word.letter == "N"]

@@ -82,7 +82,7 @@ def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     if not pattern or len(word.value) < least:
         raise NotSaid(
             f"{word.text} has {len(word.value)} digits: tool and offset are "
-            f"{' or '.join(patterns)}; another pattern is said under [tools]",
+            f"{' or '.join(patterns)}; say another pattern under [tools]",
             "tools",
             'patterns = ["TTOO", "TTTOOO"] # T tool, O offset, R what LinuxCNC does not need',
         )

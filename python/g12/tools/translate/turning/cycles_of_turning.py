@@ -280,7 +280,9 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     own = take_end(draft, start)
     tapers = [take_number(draft, letter) for letter in ("R", TAPERS.get(meaning, "I"))]
     taper = next((number for number in tapers if number is not None), None)
-    stored: Any = draft.sure("pass_words", "the cycle takes what was said before") if again else ()
+    stored: Any = (
+        draft.sure("pass_words", "the cycle takes the words of the block before") if again else ()
+    )
     if again and not stored:
         raise NotTranslated(_other_meaning("G90", meaning))
     words = {**dict(stored), **own}

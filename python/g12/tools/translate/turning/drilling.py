@@ -135,7 +135,9 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     code = draft.meanings.pop(meaning, None)
     kept: dict[str, Any] = {}
     if draft.state.cycle == meaning:
-        stored: Any = draft.sure("cycle_words", "a drilling cycle takes what was said before")
+        stored: Any = draft.sure(
+            "cycle_words", "a drilling cycle takes the words of the block before"
+        )
         kept = dict(stored)
     cycle = lathe_cycle(meaning)
     side = _is_side_hole(draft, kept) if cycle.side is None else cycle.side
@@ -292,9 +294,9 @@ def _down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dic
 def _tap_pitch(draft: Draft) -> float:
     """Return the pitch of a tap: F per revolution, or F over the S of its block."""
     speed = next((w.value for w in draft.words if w.letter == "S"), "")
-    per_turn = draft.sure("feed_mode", "the pitch of a tap hangs on F") == "G95"
+    per_turn = draft.sure("feed_mode", "the pitch of a tap depends on F") == "G95"
     try:
-        pitch = float(draft.sure("feed", "the pitch of a tap hangs on F"))
+        pitch = float(draft.sure("feed", "the pitch of a tap depends on F"))
         return pitch if per_turn else pitch / float(speed)
     except (ValueError, ZeroDivisionError):
         raise NotTranslated(

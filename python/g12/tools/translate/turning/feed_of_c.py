@@ -49,8 +49,8 @@ def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
         start, end = known_position(draft.start, axis), known_position(draft.state, axis)
         if start is None or end is None:
             raise NotTranslated(
-                f"C beside a slide at a feed: its time hangs on where {axis} stands, which is not "
-                f"known here: {INSTEAD}"
+                f"C beside a slide at a feed: its time depends on the position of {axis}, which "
+                f"is not known here: {INSTEAD}"
             )
         moved[axis] = (end - start) * _scale_of(draft, axis)
     return moved

@@ -68,8 +68,8 @@ def stored_setting(draft: Draft, name: str) -> float:
     units = draft.sure("units", f"the control's {name.replace('_', ' ')} is a length")
     if units not in values:
         raise NotTranslated(
-            f"the control's setting for the {name.replace('_', ' ')} hangs on G20 or G21, and "
-            "neither is said before (--units)"
+            f"the control's setting for the {name.replace('_', ' ')} depends on G20 or G21, and "
+            "neither is programmed before it (--units)"
         )
     return values[units]
 
@@ -79,7 +79,7 @@ def start_point(draft: Draft) -> complex:
     x, z = known_position(draft.start, "X"), known_position(draft.start, "Z")
     if x is None or z is None:
         raise NotTranslated(
-            "this begins where the tool stands, which is not known here: write G0 with X and Z as "
+            "this begins at the tool's position, which is not known here: write G0 with X and Z as "
             "numbers in a block before it"
         )
     return complex(z, x / 2)
@@ -93,7 +93,7 @@ def take_end(draft: Draft, start: complex) -> dict[str, float]:
         if own is not None and step is not None:
             raise NotTranslated(f"{absolute} and {increment} in one block")
         if own is not None:
-            relative = draft.sure("distance", f"{absolute} is a place or an increment") == "G91"
+            relative = draft.sure("distance", f"{absolute} is a position or an increment") == "G91"
             found[absolute] = own / scale + (at if relative else 0.0)
         elif step is not None:
             found[absolute] = at + step / scale
@@ -163,7 +163,7 @@ def _contour_block(
 def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
     if reader.meanings:
         code = next(iter(reader.meanings.values())).code
-        raise NotTranslated(f"{code} cannot stand in a contour")
+        raise NotTranslated(f"{code} cannot be in a contour")
     values, others = {}, []
     for word in reader.words:
         if word.letter in SHAPING:
@@ -173,11 +173,11 @@ def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
         elif word.letter in BESIDE_CYCLE or _is_mode(word):
             others.append(word.text)
         elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
-            raise NotTranslated(f"{word.text} cannot stand in a contour")
+            raise NotTranslated(f"{word.text} cannot be in a contour")
     own = next((code for code in reader.codes() if code in MOVES), motion)
     if own not in MOVES:
         raise NotTranslated("G0 or G1 is missing")
-    relative = reader.sure("distance", "X and Z are places or increments") == "G91"
+    relative = reader.sure("distance", "X and Z are positions or increments") == "G91"
     return ContourBlock(own, values, reader.block.line, relative, tuple(others))
 
 

@@ -150,7 +150,7 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     """Return the moves of a pecking cycle."""
     depth, offsets = _offsets(given.end - start, given)
     if not depth:
-        raise NotTranslated("the cycle cuts nothing: it ends where the tool stands")
+        raise NotTranslated("the cycle cuts nothing: it ends at the tool's position")
     peck = given.peck or abs(depth)
     if abs(depth) / peck > MOST_CYCLE_PASSES:
         raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
@@ -178,10 +178,10 @@ def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
     if abs(width) < SAME:
         return depth, [0.0]
     if not given.step:
-        raise NotTranslated("the cycle has no step to the next place")
+        raise NotTranslated("the cycle has no step to the next peck")
     count = int(abs(width) / given.step - SAME)
     if count > MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{count} places: the step is too small")
+        raise NotTranslated(f"{count} steps: the step is too small")
     steps = [copysign(given.step * number, width) for number in range(count + 1)]
     return depth, [*steps, width]
 
