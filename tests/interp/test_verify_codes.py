@@ -6,15 +6,15 @@ A row is a beginning, the blocks after it, the codes, and the stock if it is giv
 
 import math
 
+import numpy as np
 import pytest
 
 from g12.tools.commands.main import main
-from g12.tools.machine.ini import read_ini
-from g12.tools.material.stock import StockText
 from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
-from g12.tools.verify.proof import prove
 from g12.tools.verify.report import as_text
+from support.judged_programs import prove_lines
+from support.made_moves import samples_of
 from support.sim_machines import SIM
 
 BEGINNINGS = {  # the machine, and the blocks before a row's
@@ -47,6 +47,9 @@ AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] 
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
+AIR = "T4 M6 G43|S900 M3|G0 X0 Y0 Z30"
+LONGEST = "o<polar_slot> call [24][40][3][1.5][.3][600][200][30"
+LONGEST += "+0" * ((251 - len(LONGEST)) // 2) + "]"  # as long as LinuxCNC reads it
 
 CASES = [
     # where C stands
@@ -153,6 +156,12 @@ CASES = [
     # a Z0 that blocks compute each for itself
     ("any mill", "T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5|X40|X40 Z-2|"
      "G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5", "rapid-into 8"),
+    # the cutter and D
+    ("mill", "G12 I7 K20 Q6 Z-3 D5", "wrong-cutter 6, uncut 6"),
+    ("mill", "G10 L1 P6 R5.1|G12 I7 K20 Q6 Z-3 D6", "worn-cutter 7"),
+    ("any mill", "G10 L1 P4 R0|T4 M6 G43|S900 M3|G0 X0 Y0 Z1|G13 I9 Z-2 D3", "loaded-unknown 6"),
+    # words of other kinds in the block of a cycle
+    ("mill", "G13 I9 Z-2 D4 M8|G0 Z1|G61|G13 X40 I9 Z-2 M9|G0 Z1", ""),
     # what the preview executes otherwise than a machine may
     ("mill", f"{LOW}|/X40|G0 Z1|X40|{LOW}|/G0 Z9", "block-delete 7"),
     ("mill", f"M61 Q3|{LOW}", "tool-unread 6"),
@@ -179,6 +188,23 @@ CASES = [
     # rapids
     ("mill", f"{CLEARED}|G0 Z1|X40|Z-2|Z1", "rapid-beside 9"),
     ("mill", f"{CLEARED}|G0 Z-2|Z1", ""),
+    ("mill", f"{P}|G0 X100 Z1", "rapid-through 7, rapid-beside 7"),
+    ("mill", f"{P}|G0 X10 Y8|X0 Y0|Z2", ""),
+    ("mill", f"Z10|{P}|G0 Z1|X100", ""),
+    ("mill", f"Z10|{P}|G0 Z-1|X100", "rapid-through 9, rapid-beside 9"),
+    ("mill", f"{P}|G1 X60|{P}|G0 X0|Z2", ""),  # along the channel
+    ("mill", f"{RING}|G0 X-15.2|Z1", "core-stands 6, rapid-through 7"),
+    ("mill", f"{SHALLOW}|G0 Z1|Z-4|{CLEARED}|G0 Z1", "rapid-into 8"),
+    ("mill", f"Z-2|{CLEARED}|G0 Z-2|X60|{CLEARED}", "bored-assumed 6, rapid-beside 9"),
+    ("yasnac", "G0 Z-3|G12 I40 R38 D10 F300|G0 X20 Y2|Z2", "bored-assumed 6"),
+    ("mitsubishi", "G0 X0 Y0 Z5|G18 G1 Z-5|G12 I30 D10|G0 X100|Z5", ""),
+    # the top of a pocket that is not below Z0 is where it began to feed
+    ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z10|X100", "above-zero 6"),
+    ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z7|X100",
+     "above-zero 6, rapid-through 8, rapid-beside 8"),
+    ("any mill", f"{AIR}|G13.2 X0 Y0 Z5 I7 R20 K5 D2 H2|G0 Z7|X100", "above-zero 5"),
+    ("any mill", f"{AIR}|G13.2 X0 Y0 Z5 I7 R20 K5 D2 H2|G0 Z6|X100",
+     "above-zero 5, rapid-through 7, rapid-beside 7"),
     ("mill", f"X-100|Z-1|X0|{LOW}|G0 Z1", "rapid-beside 7"),
     ("mill", f"G91 X30 Z-2|G90|{LOW}|G0 Z1", "rapid-beside 6"),
     ("mill", f"{CLEARED}|G0 Z-2|G53 G0 X90 Z0", "rapid-by-machine 8"),
@@ -237,6 +263,21 @@ CASES = [
     ("lathe", f"{GROOVE}|G1 X60|G7.1 C0|G0 C0", ""),
     ("lathe", "G0 X46 Z-30|G7.1 C20|G1 X36 F200|C90|X46|G7.1 C0", ""),
     ("lathe", "G0 X46 Z-30|G7.1 C10|G1 X36 F200|C90|X46|G7.1 C0", "above-surface 6"),
+    # full circles, and modes that are saved and restored, in a section
+    ("radii", "G12.1|G1 X11.902 C-25.519 F500|Z-1|G2 I-3.314 J5.371|G3 I.1 J.7|G2 I-7.3 J.003|"
+     "G1 Z2|G13.1", ""),
+    ("radii", "G12.1|G1 X30 F500|Z-1|M73|G91 G3 X-1 R9|M72|X20 C5|M70|G91|M72 X15|M70|G91|M71|"
+     "X-1|Z4|G13.1", ""),
+    # a contour of a line and an arc, a radius of 0 in a sub, words that cannot be followed
+    ("radii", "G0 X40|G12.1|G1 C30 F900|G41 X12|C-16|G2 X12 C16 R-20|G1 G40 X40|Z-2|G13.1", ""),
+    ("lathe", "o7 sub|G7.1 C#1|G1 X40 F300|C90|X60|G7.1 C0|o7 endsub|G0 X60 Z-20|o7 call [0]|"
+     "o7 call [25]", ""),
+    ("radii", f"G12.1|G1 X30 F800|Z-1|X[28{'+0' * 122}]|G13.1", "contour-unread 5"),
+    ("radii", "o7 sub|o2 if [#<_x> GT 1]|G1 X15 F800|Z-1|o2 endif|o7 endsub|G12.1|o7 call|G13.1|"
+     "o7 call", "contour-unread 11"),
+    ("lathe", f"G0 Z9|{LONGEST}", ""),
+    ("any mill", f"o<polar_slot> sub|G1 X#1|o<polar_slot> endsub|T4 M6 G43|S900 M3|G0 Z1|"
+     f"o<polar_slot> call [8]|{LOW}", ""),  # another sub of that name
     # a sub that is called twice, a sub's own file, two flats round the outside of the bar
     ("any lathe", f"o7 sub|G0 C#1|{FLAT.replace('G41', 'G42')}|o7 endsub|T1 M6|S900 M3|"
      f"G0 X60 Z2|o7 call [0]|o7 call [180]",
@@ -311,12 +352,10 @@ SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are
 def proof_of(tmp_path):
     """Return a function: the proof of a program whose blocks follow a beginning."""
 
-    def proof(beginning, blocks, stock=None, changed=None, **more):
+    def proof(beginning, blocks, stock="", **more):
         machine, head = BEGINNINGS[beginning]
-        program = tmp_path / "program.ngc"
-        program.write_text(f"{head}|{blocks}|M2|".replace("|", "\n"))
-        ini = read_ini(SIM / f"{machine}_headless.ini").replaced(changed or {})
-        return prove(program, ini, stock=StockText(stock) if stock else None, **more)
+        lines = f"{head}|{blocks}".split("|")
+        return prove_lines(tmp_path, lines, machine, stock=stock, **more)
 
     return proof
 
@@ -338,7 +377,38 @@ def test_the_codes_of_a_program(case, codes):
     assert codes(beginning, blocks, *stock) == expected
 
 
-@pytest.mark.parametrize("c", [-660, -300, 60, 200, 361, 400, 540, 660, 720, 1100])
+RUNS = [  # a program, the axis along which a run is beside its path, what is found
+    ("mill", P, "Y", "uncut 6, wall-run 6"),
+    ("lathe", HEXAGON, "X", "path-off 7"),
+    ("lathe", "G0 X46 Z-30|G7.1 C20|G1 X36 F200|C90|X46|G7.1 C0", "Z", "path-off 7"),
+]
+
+
+@pytest.mark.parametrize(("beginning", "blocks", "axis", "found"), RUNS)
+def test_a_run_beside_its_path_is_found(beginning, blocks, axis, found, proof_of, codes):
+    axes = "XYZ" if beginning == "mill" else "XZC"
+    samples = samples_of(proof_of(beginning, blocks).subject.path, 8000, axes=axes)
+    assert codes(beginning, blocks, samples=samples) == ""
+    samples.axes[axis] += 0.03
+    assert codes(beginning, blocks, samples=samples) == found
+
+
+@pytest.mark.parametrize(
+    ("pocket", "found"),
+    [("G13 I17 Z-3 D4", "core-stands 6, rapid-through 7, rapid-through 8"), (P, "")],
+)
+def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(
+    pocket, found, proof_of, codes
+):
+    blocks = f"{pocket}|G0 Z2|X100"
+    subject = proof_of("mill", blocks).subject
+    samples = samples_of(subject.path, 8000)
+    leaving = samples.time > subject.path.time[subject.path.vertices(len(subject.moves) - 1).start]
+    samples.axes["Z"] -= leaving * np.clip(5 - samples.axes["X"] / 3, 0, 5)
+    assert codes("mill", blocks, samples=samples) == found
+
+
+@pytest.mark.parametrize("c", [-300, 361, 660])
 def test_a_wall_of_a_groove_at_any_turn_of_c(c, codes):
     groove = f"{GROOVE.replace('C60', f'C{c}')}|G7.1 C0"
     assert codes("lathe", f"{groove}|G0 Z5") == "rapid-through 10"
@@ -386,6 +456,14 @@ SAID = [  # a program, and a part of its report
      "the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; look for"),
     ("mill", f"G0 Z-4|{LOW}", "bored hole down to X0 Y0 Z−4, because a rapid goes into it; give"),
     ("yasnac", R38, "bored hole down to X0 Y0 Z−5, because the word R names it; give"),
+    ("mill", f"G0 X60 Z10|Z-4|{RING}|G0 Z10|X0|Z-4|{RING}", "goes into it (also in line 11); give"),
+    ("radii", "G12.1|G1 X30 F800|X[#<_x>-5]|G13.1",
+     "line 5: nothing of the section is judged: its contour cannot be read from the words, line 7 "
+     "asks for a position"),
+    ("mill", "G10 L1 P6 R5.1|G12 I7 K20 Q6 Z-3 D6",
+     "the loaded tool T4 (⌀ 10) is not D6 (⌀ 10.2): measured with the cutter of D6"),
+    ("any mill", "G10 L1 P4 R0|T4 M6|G0 X0 Y0 Z1|G13 I9 Z-2 D3",
+     "T4 has no diameter: measured with the diameter of D3"),
     ("lathe", "G0 X60 Z5|G1 Z4 C9 F500|Z5", "alone: the part's edge sees 2408.657 mm/min\n"),
     ("mill", f"{HIGH}|G0 X3000|{HIGH}", "the X axis would go to 3004, its limit is 500 mm"),
     ("mill", f"G10 L2 P1 X2 Z-30|G0 X0 Y0 Z1|{LOW}", f"{MOVED} X2 Y0 Z−30"),

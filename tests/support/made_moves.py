@@ -2,13 +2,11 @@
 """Moves made by hand, for tests that need no LinuxCNC: paths of known shape, and known faults."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
-from g12.tools.path.follow import follow
 from g12.tools.path.samples import Samples
-from g12.tools.path.track import Limits, track
+from g12.tools.path.track import Limits
 from g12.tools.preview.moves import Modes, Move, Trace
 
 HOME = (0.0,) * 9
@@ -87,13 +85,6 @@ class Hand:
         self.moves.append(Move(kind, *where, *how))
         self.at = end
         return self
-
-
-def seen_by(part, hand, diameters, real=None):
-    """Return a hand's trace, its path on a part, and the run whose samples ``real`` makes."""
-    path = track(part, hand.moves, LIMITS)
-    run = follow(path, real(path), 1.0) if real else None
-    return replace(hand.trace(), diameters=diameters), path, run
 
 
 def samples_of(path, count=2000, shift=0.0, axes="XYZ"):

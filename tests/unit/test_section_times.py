@@ -9,7 +9,7 @@ import pytest
 from g12.geometry.curve import Arc, Line
 from g12.tools.install.lathe.segments_rules import hexagon
 from g12.tools.machine.ini import read_machine_ini
-from g12.tools.path.lathe_axes import lathe_axes
+from g12.tools.path.lathe_axes import Rates, lathe_axes
 from g12.tools.path.section_times import Leg, section_times
 from support.sim_machines import SIM
 
@@ -71,6 +71,11 @@ def test_slow_is_the_same_whoever_plans_it():
     path = [curve for turn in range(3) for curve in (Line(*ends(turn)), Line(*ends(turn)[::-1]))]
     segments, face, least = times_of(path, 100)
     assert segments == pytest.approx(least, rel=0.01) and face == segments
+
+
+def test_c_may_pass_its_limit_by_half_the_acceleration_of_a_period():
+    axes = lathe_axes(read_machine_ini(SIM / f"{LATHE}.ini"))
+    assert axes._replace(c=Rates(90.0, 1200.0)).most_c_speed == pytest.approx(90.6)
 
 
 def ends(turn):
