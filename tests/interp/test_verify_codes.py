@@ -275,6 +275,7 @@ CASES = [
     ("radii", f"G12.1|G1 X30 F800|Z-1|X[28{'+0' * 122}]|G13.1", "contour-unread 5"),
     ("radii", "o7 sub|o2 if [#<_x> GT 1]|G1 X15 F800|Z-1|o2 endif|o7 endsub|G12.1|o7 call|G13.1|"
      "o7 call", "contour-unread 11"),
+    ("radii", "o9 sub|o9 endsub [25]|o9 call|G12.1|G1 X30 F500|Z-1|X[#<_value>]|G13.1", ""),
     ("lathe", f"G0 Z9|{LONGEST}", ""),
     ("any mill", f"o<polar_slot> sub|G1 X#1|o<polar_slot> endsub|T4 M6 G43|S900 M3|G0 Z1|"
      f"o<polar_slot> call [8]|{LOW}", ""),  # another sub of that name
