@@ -321,7 +321,7 @@ REFUSED = [
         "G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\nG2 X30. Z-9. R1.\nN20 X50.",
         "line 6: R1 is too small",
     ),
-    ("G28 U0\nG71 U2.\nG71 P10 Q20\nN10 G0 X20.\nN20 G1 X50.", "this begins at the tool's position"),
+    ("G28 U0\nG71 U2.\nG71 P10 Q20\nN10 G0 X20.\nN20 G1 X50.", "this begins at the tool"),
     (
         "G90\nX40. Z-5.",
         "G90 is a cycle here, the turning pass, with X and Z and no G0 or G1: where it is",

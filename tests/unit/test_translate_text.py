@@ -328,7 +328,7 @@ def test_the_orientation_of_the_spindle():
 
 def test_a_number_whose_unit_is_not_said():
     refused = sentence(FANUC, "G0 X0\nG1 X1. F60\n")
-    assert refused.sentence.endswith("depends on G20 or G21, and neither is programmed before it (--units)")
+    assert refused.sentence.endswith("and neither is programmed before it (--units)")
 
 
 ROUGH = "G0 X2. Z.1\nG71 P1 Q2 U.02 W0 D.05 F.01\nN1 G0 X1.\nG1 Z-1.\nN2 X2.\nM30\n"
@@ -337,7 +337,7 @@ ROUGH = "G0 X2. Z.1\nG71 P1 Q2 U.02 W0 D.05 F.01\nN1 G0 X1.\nG1 Z-1.\nN2 X2.\nM3
 def test_a_setting_of_the_control_whose_unit_is_not_said():
     refused = sentence(HAAS_LATHE, f"G99 S99 M3\n{ROUGH}")
     assert refused.line == 3
-    assert refused.sentence.startswith("the control's setting for the retract depends on G20 or G21")
+    assert refused.sentence.startswith("the control's setting for the retract depends on G20")
     assert "G0 X2. Z-0.95 (line 3)" in lines(HAAS_LATHE, f"G20 G99 S99 M3\n{ROUGH}")
 
 

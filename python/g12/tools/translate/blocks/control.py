@@ -159,7 +159,8 @@ class Control:
     def variables(self) -> dict[int, str]:
         """Return what is written for each variable that is the control's own."""
         found: dict[int, str] = {}
-        for key, value in self.tables.get("variables", {}).items():
+        variables: Mapping[str, Any] = self.tables.get("variables", {})
+        for key, value in variables.items():
             first, _, last = key.partition("-")
             for offset, number in enumerate(range(int(first), int(last or first) + 1)):
                 if value == "clock":
@@ -186,10 +187,12 @@ def read_control(name: str) -> Control:
     missing = [key for key in ("machine", "axes", "g_codes", "m_codes") if key not in data]
     if missing:
         raise ControlError(f"{path}: {missing[0]} is missing: say it, or based_on another control")
-    given = {key: tuple(v) if isinstance(v, list) else v for key, v in data.items() if key in TOP}
+    given: dict[str, Any] = {"title": path.stem}
+    given |= {k: tuple(v) if isinstance(v, list) else v for k, v in data.items() if k in TOP}
+    given["start"] = tuple(data.get("start", "").split())
     return Control(
         name=path.stem,
-        **{"title": path.stem, **given, "start": tuple(data.get("start", "").split())},
+        **given,
         meanings={**data["g_codes"], **data["m_codes"]},
         c_axis_on=frozenset(code for code, as_ in data["m_codes"].items() if as_ == "C axis on"),
         tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},

@@ -17,7 +17,7 @@ from g12.tools.translate.blocks.errors import NotTranslated, excerpt
 OWN = "\0"  # before the number of a parameter of LinuxCNC's own: no program's text has it
 UNSIGNED = re.compile(r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 OPERATOR = re.compile(r"EQ|NE|GT|GE|LT|LE|AND|XOR|OR|MOD|[-+*/]")
-VARIABLE = re.compile(f"#({OWN}?[0-9]+)")
+PARAMETER_NAME = re.compile(f"#({OWN}?[0-9]+)")
 FUNCTION = re.compile(r"(SIN|COS|TAN|ASIN|ACOS|ATAN|SQRT|SQR|ABS|ROUND|FIX|FUP|LN|EXP)(?=\[)")
 LONGER_NAMES = {"SQR": "SQRT"}
 COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
@@ -120,7 +120,7 @@ def _variable(text: str, at: int, depth: int) -> Expression:
                 rule = f"{number} {OTHER_MEANING}; write the value in its place"
                 raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
         return _value(index, f"#{index.text}")
-    digits = VARIABLE.match(text, at)
+    digits = PARAMETER_NAME.match(text, at)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
     variable = variable_number(digits[1])
