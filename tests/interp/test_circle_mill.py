@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The circle mill event on the stock interpreter: both front ends, modes, refusals."""
+"""The circle mill event on the stock interpreter: both front ends, and what is modal of them.
+
+Modes, units and refusals are in test_cycles.py.
+"""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from support import cut_geometry, mode_matrix
+from support import cut_geometry
 from support.sim_machines import kept_tracer
 
 INCH = 25.4
@@ -121,85 +122,13 @@ def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
     ]
 
 
-# ---------------------------------------------------------------- modes, units, work offsets
-
-
-def pocket_block(scale, incremental):
-    x, y, z = (1.0, -1.0, -0.6) if incremental else (1.5, -0.75, -0.5)
-    lengths = mode_matrix.words(
-        scale, X=x, Y=y, Z=z, I=0.1, E=0.4, R=1.2, K=0.25, J=0.3, Q=0.02, P=5.0, F=12.0
-    )
-    return f"G13.2 {lengths} D2 H2"
-
-
-def outside_call(scale, incremental):
-    x, y, z = (1.0, -1.0, -0.6) if incremental else (1.5, -0.75, -0.5)
-    lengths = dict(x=x, y=y, z=z, w=0.1, o=0.4, r=0.8, k=0.25, l=-0.02, p=5.0, f=12.0, v=9.0)
-    scaled = {name: f"{value * scale:.10f}" for name, value in lengths.items()}
-    return call(**scaled, d=3, c=2)
-
-
-@pytest.mark.parametrize("block", [pocket_block, outside_call])
-@mode_matrix.any_coordinates
-def test_all_modes_make_the_same_machine_path(inch, metric, coordinates, block):
-    mode_matrix.check_same_path(inch, metric, coordinates, mode_matrix.Case(block, feed=12.0))
-
-
-# ---------------------------------------------------------------- refusals on the interpreter
-
-PLACE = "X1 Y2 Z-.5 I.1 R1.5"
-REFUSED = [  # the sentences are those of unit/test_circle_mill.py
-    ("G13.2 X1 Y2 Z-.5 R1.5 H2", "G13.2: I is missing"),
-    (f"G12.2 {PLACE}", "G12.2: H is missing"),
-    (f"G13.2 {PLACE} H2 D4", "G13.2: D4 must be at most 3"),
-    ("G91 G13.2 X1 Y2 Z.2 I.1 R1.5 H2", "G13.2: Z0.2 must be below the first"),
-    (call(g=7, x=0, y=0, z=-0.1, w=0.1, r=0.2, c=2), "circle_mill: R0.2 must be greater"),
-    (call(g=7, x=0, y=0, z=-0.1, w=0.1, c=2), "circle_mill: R is missing"),
-    ("o<circle_mill> call [7] [0] [0] [-.1] [.1] [.1] [1] [0] [2]", "circle_mill: V0 must be"),
-]
-
-
-@pytest.mark.parametrize(("block", "message"), REFUSED)
-def test_a_bad_event_moves_nothing_and_changes_nothing(inch, block, message):
-    distance = "G91" if "G91" in block else "G90"
-    mode_matrix.check_refused(inch, [*BEFORE, distance], block.replace("G91 ", ""), message)
-
-
-EVENTS = [("G13.2", f"G13.2 {PLACE} H2"), ("circle_mill", call(x=0, y=0, z=0, w=0.1, r=1, c=2))]
-
-
-@pytest.mark.parametrize(("name", "event"), EVENTS)
-@pytest.mark.parametrize(
-    ("mode", "rule"),
-    [
-        ("G41 D1", "brings its own cutter compensation: program G40 first"),
-        ("T0 M6", "no tool is loaded: its diameter sets the path"),
-    ],
-)
-def test_a_mode_that_cannot_work_is_refused(inch, name, event, mode, rule):
-    traced = inch.trace_text([*BEFORE, mode, event])
-    assert traced.error.text == f"{name} line {len(BEFORE) + 2}: {rule}"
-    assert len(traced.moves) == 1
+# ---------------------------------------------------------------- refusals
 
 
 def test_a_second_motion_code_in_the_block_is_refused(inch):
-    traced = inch.trace_text([*BEFORE, f"G13.2 G4 P1 {PLACE} H2"])
+    traced = inch.trace_text([*BEFORE, "G13.2 G4 P1 X1 Y2 Z-.5 I.1 R1.5 H2"])
     assert traced.error is not None
     assert len(traced.moves) == 1
-
-
-@settings(max_examples=60, deadline=None)
-@given(block=mode_matrix.blocks("G13.2", "IERDHKJQLP").map(lambda block: f"{block} X1 Y2 Z-3"))
-def test_any_block_cuts_or_is_refused_in_words(inch, block):
-    mode_matrix.check_cut_or_refused(inch, BEFORE, block, "G13.2")
-
-
-@settings(max_examples=80, deadline=None)
-@given(values=st.dictionaries(st.sampled_from("gworkjlpvdc"), mode_matrix.VALUES))
-def test_any_call_cuts_or_is_refused_in_words(inch, values):
-    texts = {letter: f"{value:.5f}" for letter, value in values.items()}
-    block = call(**{"x": 1, "y": 2, "z": -3, "r": 1, "c": 2, "w": 0.1, **texts})
-    mode_matrix.check_cut_or_refused(inch, BEFORE, block, "circle_mill")
 
 
 @pytest.mark.parametrize("word", ["K1", "X1 Y2 Z-3"])

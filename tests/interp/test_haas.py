@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12/G13 of the Haas dialect on the stock interpreter: depth, D, modes, refusals.
+"""G12/G13 of the Haas dialect on the stock interpreter: D, codes in the block, helix and plunge.
 
-Their geometry is proved in test_valid_programs.py.
+Modes, units and refusals are in test_cycles.py, the geometry in test_valid_programs.py.
 """
 
-import pytest
-from hypothesis import given, settings
+import re
 
-from support import cut_geometry, mode_matrix
-from support.sim_machines import kept_tracer
+import pytest
+
+from g12.tools.preview.tracer import Tracer
+from support import cut_geometry
+from support.sim_machines import SIM, kept_tracer
 
 INCH = 25.4
-TOOLS = {1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0}
 FIRST = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
 
 
-inch = kept_tracer("mill_inch", tools=TOOLS)
-metric = kept_tracer("mill_mm", tools={tool: d * INCH for tool, d in TOOLS.items()})
+inch = kept_tracer("mill_inch", tools={1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0})
 
 
 def cut(tracer, *blocks):
@@ -26,35 +26,12 @@ def cut(tracer, *blocks):
     return traced
 
 
-def test_a_tool_of_the_table_has_its_unit_where_the_programs_is_another(inch, metric):
-    for tracer, unit, radius in ((inch, "G21", "3.175 mm"), (metric, "G20", "0.125 in")):
-        traced = tracer.trace_text([FIRST.replace("G20", unit), "G13 I.05 Z-1 D1"])
-        reported = f"G13 line 2: I0.05 must be greater than the tool radius {radius} (D1)"
-        assert traced.error.text == reported
+# ---------------------------------------------------------------- codes in the block
 
 
-# ---------------------------------------------------------------- modes, units, work offsets
-
-
-def pocket_block(scale, incremental):
-    x, y, z = (1.0, -1.0, -0.4) if incremental else (1.5, -0.75, -0.3)
-    words = mode_matrix.words(scale, X=x, Y=y, I=0.2, K=0.9, Q=0.22, Z=z, F=12.0)
-    return f"G13 {words} D1"
-
-
-POCKET = mode_matrix.Case(pocket_block, feed=12.0)
-
-
-@mode_matrix.any_coordinates
-def test_all_modes_make_the_same_machine_path(inch, metric, coordinates):
-    mode_matrix.check_same_path(inch, metric, coordinates, POCKET)
-
-
-@pytest.mark.parametrize("motion", ["G0", "G1", "G2", "G3", "G80"])
+@pytest.mark.parametrize("motion", ["G0 X0", "G1 X0", "G2 I.1", "G3 I.1", "G80"])
 def test_the_motion_mode_is_what_it_was(inch, motion):
-    first = {"G2": "G2 I.1", "G3": "G3 I.1", "G80": "G80"}.get(motion, f"{motion} X0")
-    traced = cut(inch, first, "G12 I.3 Z-.1 D1")
-    assert motion in traced.modes.gcodes
+    assert motion.split()[0] in cut(inch, motion, "G12 I.3 Z-.1 D1").modes.gcodes
 
 
 def test_a_g91_in_the_block_stays(inch):
@@ -64,9 +41,27 @@ def test_a_g91_in_the_block_stays(inch):
 def test_g7_in_the_block_reads_x_as_a_diameter_and_nothing_else(inch):
     plain = cut(inch, "G12 X1 Y.5 I.3 K.6 Q.2 Z-.1 D1")
     traced = cut(inch, "G7 G12 X2 Y.5 I.3 K.6 Q.2 Z-.1 D1")
-    ends = [[move.end for move in found.moves] for found in (plain, traced)]
-    assert ends[0] == ends[1]
+    assert [move.end for move in plain.moves] == [move.end for move in traced.moves]
     assert "G7" in traced.modes.gcodes
+
+
+@pytest.mark.parametrize("code", ["M8", "M3 S100", "M9", "M48", "S200", "T2"])
+def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, code):
+    traced = cut(inch, "G0 Z.1", f"G12 I.5 Z-.1 D1 {code}")
+    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx([0.375])
+
+
+def test_right_after_g40_the_plunge_must_not_slant(inch):
+    offset = [FIRST, "T2 M6", "G41", "G1 X1", "Y1", "G40"]
+    refused = inch.trace_text([*offset, "G12 I.26 Z-1"]).error
+    assert refused.text.endswith("the tool is still offset: after G40 move in X or Y first")
+    moved = inch.trace_text([*offset, "G12 X1 Y1 I.26 Z-1"])
+    (plunge,) = [
+        move
+        for move in cut_geometry.cutting(moved.moves)
+        if abs(cut_geometry.tangent(move, 0.5)[2]) > 0.1
+    ]
+    assert plunge.start[:2] == pytest.approx(plunge.end[:2])
 
 
 # ---------------------------------------------------------------- the D last commanded
@@ -75,14 +70,11 @@ def test_g7_in_the_block_reads_x_as_a_diameter_and_nothing_else(inch):
 @pytest.mark.parametrize(
     ("blocks", "radius"),
     [
-        (["T2 M6"], 0.25),
         (["T1 M6", "G12 I.6 Z-.1", "T2 M6"], 0.25),
         (["G12 I.6 Z-.1 D1", "T2 M6", "G12 I.6 Z-.1"], 0.125),
-        (["T2 M6", "G12 I.6 Z-.1 D1"], 0.125),
         (["T2 M6", "G12 I.6 Z-.1 D0"], 0.0),
         (["T2 M6", "G41 D1", "G40"], 0.125),
         (["T2 M6", "G41", "G40"], 0.25),
-        (["G12 I.6 Z-.1 D2", "G42 D1", "G40"], 0.125),
         (["T2 M6", "G12 I.6 Z-.1 D1", "G41 D4", "G40"], 0.0),
         (["G42 D1", "G40", "G12 I.6 Z-.1 D2"], 0.25),
         (["G12 I.6 Z-.1 D0", "G42 D1", "G40"], 0.125),
@@ -100,75 +92,71 @@ def test_without_d_the_last_one_follows_the_units(inch):
     assert cut_geometry.radii(traced.moves)[-1] == pytest.approx(20 - 0.125 * INCH)
 
 
-def test_a_refused_block_stores_no_d(inch):
+def test_neither_a_refused_block_nor_one_without_d_stores_one(inch):
     traced = inch.trace_text([FIRST, "G12 I.6 Z-.1 D1", "G12 I.6 Z-.1 K.3 Q.1 D2"])
     assert traced.error
     assert traced.state["cutter_comp_radius"] == pytest.approx(0.125)
-
-
-# ---------------------------------------------------------------- refusals
-
-
-REFUSED = [  # what a block says by itself is in unit/test_haas.py
-    ("G12 I.5 Z-1 D9", "G12: D9 is not in the tool table"),
-    ("G12 I.5 Z-1 D3", "G12: D3 has the negative diameter -0.25 in the tool table"),
-    ("G12 I.5 Z-1", "G12: D is missing, none was commanded before and no tool"),
-    ("G93 G12 I.5 Z-1 D1 F1", "G12: needs feed per minute or revolution (G94, G95), but G93"),
-    ("G18 G12 I.5 Z-1 D1", "G12: needs the XY plane G17, but G18 is active"),
-    ("G95 S0 F.1 G12 I.5 Z-1 D1", "G12: needs a spindle speed for feed per revolution (G95)"),
-    ("G43.1 Z1 G12 I.5 D1", "G12: G43.1 cannot be in the same block"),
-    ("G64 P.1 G12 I.5 Z-1 D1", "G12: G64 cannot be in the same block"),
-    ("G43 G12 I.5 Z-1 D1 H2", "G12: G43 cannot be in the same block"),
-    ("G12 I.5 Z-1 T2 M6", "G12: M6 cannot be in the same block"),
-    ("M61 Q2 G12 I.5 K1 Z-1 D1", "G12: M61 cannot be in the same block"),
-    ("M68 E1 Q.1 G12 I.5 K1 Z-1 D1", "G12: M68 cannot be in the same block"),
-    ("M19 R1 G12 I.5 Z-1 D1", "G12: M19 cannot be in the same block"),
-    ("M62 P5 G12 I.5 Z-1 D1", "G12: M62 cannot be in the same block"),
-    ("G96 S100 G12 I.5 Z-1 D1", "G12: G96 cannot be in the same block"),
-    ("G41 D1 G12 I.5 Z-1", "G12: brings its own cutter compensation: program G40 first"),
-    *(
-        (f"G12 I.5 Z-1 D1 {word}", f"G12: {word} is not a word of this cycle, which knows X Y Z")
-        for word in ("E1", "H1", "@1", "^1")
-    ),
-]
-
-
-@pytest.mark.parametrize(("block", "message"), REFUSED)
-def test_a_refused_block_names_word_rule_and_value(inch, block, message):
-    before = [FIRST, "G1 X1 Y1 Z.1"]
-    mode_matrix.check_refused(inch, before, block, message, keeps=["motion_mode"])
-
-
-def test_without_a_tool_a_cycle_before_does_not_count_as_a_d(inch):
     traced = inch.trace_text([FIRST, "T1 M6", "G12 I.6 Z-.1", "T0 M6", "G12 I.6 Z-.1"])
     assert traced.error.text.startswith("G12 line 5: D is missing")
 
 
-def test_a_negative_diameter_in_the_spindle_is_refused(inch):
-    message = "G12: T3 in the spindle has the negative diameter -0.25 in the tool table"
-    mode_matrix.check_refused(inch, [FIRST, "T3 M6"], "G12 I.75 Z-.1", message)
+# ---------------------------------------------------------------- helix and plunge
 
 
-def test_right_after_g40_the_plunge_must_not_slant(inch):
-    offset = [FIRST, "T2 M6", "G41", "G1 X1", "Y1"]
-    message = "G12: the tool is still offset: after G40 move in X or Y first"
-    mode_matrix.check_refused(inch, [*offset, "G40"], "G12 I.26 Z-1", message)
-    moved = inch.trace_text([*offset, "G40", "G12 X1 Y1 I.26 Z-1"])
-    (plunge,) = [
-        move
-        for move in cut_geometry.cutting(moved.moves)
-        if abs(cut_geometry.tangent(move, 0.5)[2]) > 0.1
-    ]
-    assert plunge.start[:2] == pytest.approx(plunge.end[:2])
+helical = kept_tracer("mill_inch", tools={1: 0.5}, overrides={"G12": {"ENTRY": "helix"}})
 
 
-@pytest.mark.parametrize("code", ["M8", "M3 S100", "M9", "M48", "S200", "T2"])
-def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, code):
-    traced = cut(inch, "G0 Z.1", f"G12 I.5 Z-.1 D1 {code}")
-    assert [r / INCH for r in cut_geometry.radii(traced.moves)] == pytest.approx([0.375])
+def program(block, first=FIRST):
+    """Return a program that cuts a pocket about X1 Y2 from Z.1."""
+    return [first, "G0 X1 Y2 Z0.1", block, "M2"]
 
 
-@settings(max_examples=60)
-@given(block=mode_matrix.blocks("G13", "XYIKQLDZRJ"))
-def test_any_block_cuts_or_is_refused_in_words(inch, block):
-    mode_matrix.check_cut_or_refused(inch, [FIRST, "G0 Z.1"], block, "G13")
+def pocket(machine, *arguments):
+    """Return the moves at a feed of a pocket, those of them that fall, and the trace."""
+    found = machine.trace_text(program(*arguments))
+    assert found.error is None, found.error
+    moves = [move for move in found.moves if move.kind != "rapid"]
+    return moves, [move for move in moves if move.start[2] - move.end[2] > 1e-9], found
+
+
+def test_a_pocket_that_needs_no_way_down_has_no_helix(helical):
+    for depth, message in (("", ""), ("Z.5", "lost its minus sign")):
+        _, falling, found = pocket(helical, f"G12 I.75 {depth} D1")
+        assert not falling
+        assert message in "".join(each.text for each in found.messages)
+
+
+@pytest.mark.parametrize(
+    ("entry", "block", "first", "feed"),
+    [
+        ("helix", "G13 I.4 K.8 Q.2 Z-.3 D1", FIRST, 10),
+        # LinuxCNC's EQ takes numbers 0.0001 apart for equal
+        ("plunge", "G13 I.4 Z-.3 D1", f"{FIRST}\nG95 S1000 F0.00015", 0.00015),
+    ],
+)
+def test_half_of_the_feed_down_and_all_of_it_elsewhere(entry, block, first, feed):
+    overrides = {"G12": {"ENTRY": entry, "PLUNGE_FEED": 50}}
+    with Tracer(SIM / "mill_inch.ini", tools={1: 0.5}, overrides=overrides) as machine:
+        moves, falling, found = pocket(machine, block, first)
+    (down,), (plane,) = {move.feed for move in falling}, {
+        move.feed for move in moves if move not in falling
+    }  # fmt: skip
+    assert (down, plane) == pytest.approx((feed / 2 * INCH, feed * INCH))
+    assert found.modes.feed == pytest.approx(feed)
+
+
+@pytest.mark.parametrize(
+    ("words", "fits"),
+    [
+        ("I.252 Z-2 D1", r"I from (\S+) fits"),
+        ("I.252 Z-99 D1", r"(\S+) down fits at most"),
+        ("I.001 Z-2 D0", r"I from (\S+) fits"),
+    ],
+)
+def test_a_helix_that_hardly_comes_down_is_refused_and_told_what_fits(helical, words, fits):
+    error = helical.trace_text(program(f"G12 {words}")).error
+    assert error.text.startswith("G12 line 3: a helix of radius 0.00")
+    assert error.text.endswith(", or [G12] ENTRY = plunge") and len(error.text) < 256
+    value = float(re.search(f"the most is 1000: {fits}", error.text)[1])
+    better = f"I.5 Z-{value - 0.1} D1" if "down" in fits else re.sub(r"I\S+", f"I{value}", words)
+    assert pocket(helical, f"G12 {better}")[1]

@@ -1,0 +1,273 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The cycles of all dialects on the stock interpreter: modes, units, refusals, messages.
+
+Their geometry is proved in test_valid_programs.py.
+"""
+
+import functools
+from contextlib import ExitStack
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from g12.tools.preview.tracer import Tracer
+from support import mode_matrix
+from support.sim_machines import ROOT, SIM
+
+INCH = mode_matrix.INCH
+FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
+IN_INCHES = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
+EVENT_FIRST = [IN_INCHES, "F20", "T1 M6", "G0 X-1 Y-1 Z1"]
+OUT = -9999
+
+HAAS_TOOLS = {1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0}
+EVENT_TOOLS = {1: 0.5, 2: 0.0, 3: 12.0 / INCH}
+METRIC_TOOLS = {1: 6.0, 3: -4.0, 10: 20.0}
+
+
+def scaled(tools, factor):
+    return {tool: diameter * factor for tool, diameter in tools.items()}
+
+
+def remapped(include):
+    lines = mode_matrix.remaps(ROOT / "configs" / "include" / f"g12_{include}.inc")
+    return {"RS274NGC": {"REMAP": lines}}
+
+
+MACHINES = {  # each dialect on a machine in inches and one in mm
+    "haas inch": ("mill_inch", HAAS_TOOLS, None),
+    "haas mm": ("mill_mm", scaled(HAAS_TOOLS, INCH), None),
+    "yasnac inch": ("mill_inch", scaled(METRIC_TOOLS, 1 / INCH), remapped("yasnac")),
+    "yasnac mm": ("mill_yasnac_mm", METRIC_TOOLS, None),
+    "mitsubishi inch": ("mill_inch", scaled(METRIC_TOOLS, 1 / INCH), remapped("mitsubishi")),
+    "mitsubishi mm": ("mill_mitsubishi_mm", METRIC_TOOLS, None),
+    "event inch": ("mill_inch", EVENT_TOOLS, None),
+    "event mm": ("mill_mm", scaled(EVENT_TOOLS, INCH), None),
+}
+
+
+@pytest.fixture(scope="module")
+def mill():
+    """Return a function that opens a machine of `MACHINES`, each once."""
+    with ExitStack() as opened:
+
+        @functools.cache
+        def machine(name):
+            ini, tools, overrides = MACHINES[name]
+            return opened.enter_context(
+                Tracer(SIM / f"{ini}.ini", tools=tools, overrides=overrides)
+            )
+
+        yield machine
+
+
+def call(**entries):
+    """Return the call of an event with these entries, the others left out."""
+    values = " ".join(f"[{entries.get(letter, OUT)}]" for letter in "gxyzwordckjlpfv")
+    return f"o<circle_mill> call {values}"
+
+
+# ---------------------------------------------------------------- modes, units, work offsets
+
+
+def haas_block(scale, incremental):
+    x, y, z = (1.0, -1.0, -0.4) if incremental else (1.5, -0.75, -0.3)
+    words = mode_matrix.words(scale, X=x, Y=y, I=0.2, K=0.9, Q=0.22, Z=z, F=12.0)
+    return f"G13 {words} D1"
+
+
+def yasnac_block(scale, incremental):
+    lengths = mode_matrix.words(scale, I=1.9, R=0.7, K=1.1, Q=0.3, F=12.0)
+    return f"G13 {lengths} D10 L2"
+
+
+def mitsubishi_block(plane, scale, incremental):
+    return f"{plane}\nG13 {mode_matrix.words(scale, I=1.9, F=12.0)} D10\nG17"
+
+
+def event_block(scale, incremental):
+    x, y, z = (1.0, -1.0, -0.6) if incremental else (1.5, -0.75, -0.5)
+    lengths = mode_matrix.words(
+        scale, X=x, Y=y, Z=z, I=0.1, E=0.4, R=1.2, K=0.25, J=0.3, Q=0.02, P=5.0, F=12.0
+    )
+    return f"G13.2 {lengths} D2 H2"
+
+
+def event_call(scale, incremental):
+    x, y, z = (1.0, -1.0, -0.6) if incremental else (1.5, -0.75, -0.5)
+    lengths = dict(x=x, y=y, z=z, w=0.1, o=0.4, r=0.8, k=0.25, l=-0.02, p=5.0, f=12.0, v=9.0)
+    return call(**{name: f"{value * scale:.10f}" for name, value in lengths.items()}, d=3, c=2)
+
+
+CASES = [
+    ("haas", haas_block),
+    ("yasnac", yasnac_block),
+    *(("mitsubishi", functools.partial(mitsubishi_block, each)) for each in ("G17", "G18", "G19")),
+    ("event", event_block),
+    ("event", event_call),
+]
+
+
+@pytest.mark.parametrize(("dialect", "block"), CASES)
+@mode_matrix.any_coordinates
+def test_all_modes_make_the_same_machine_path(mill, dialect, block, coordinates):
+    case = mode_matrix.Case(block, feed=12.0)
+    inch, metric = mill(f"{dialect} inch"), mill(f"{dialect} mm")
+    mode_matrix.check_same_path(inch, metric, coordinates, case)
+
+
+# ---------------------------------------------------------------- refusals
+
+AT = [IN_INCHES, "G1 X1 Y1 Z.1"]
+MOVED = [FIRST, "G91 G0 X3 Z5"]
+AFTER_G40 = ["G41", "G1 X30", "Y30", "G40"]
+OFFSET = "the tool is still offset: after G40 move in X or Y first"
+PLACE = "X1 Y2 Z-.5 I.1 R1.5"
+POCKET_CALL = call(x=0, y=0, z=0, w=0.1, r=1, c=2)
+REFUSED = [  # what a block says by itself is in unit/test_cycles.py
+    ("haas inch", AT, "G12 I.5 Z-1 D9", "D9 is not in the tool table"),
+    ("haas inch", AT, "G12 I.5 Z-1 D3", "D3 has the negative diameter -0.25 in the tool table"),
+    ("haas inch", AT, "G12 I.5 Z-1", "D is missing, none was commanded before and no tool"),
+    ("haas inch", [IN_INCHES, "T3 M6"], "G12 I.75 Z-.1", "T3 in the spindle has the negative"),
+    ("haas inch", AT, "G93 G12 I.5 Z-1 D1 F1",
+     "needs feed per minute or revolution (G94, G95), but G93"),
+    ("haas inch", AT, "G18 G12 I.5 Z-1 D1", "needs the XY plane G17, but G18 is active"),
+    ("haas inch", AT, "G95 S0 F.1 G12 I.5 Z-1 D1",
+     "needs a spindle speed for feed per revolution (G95)"),
+    ("haas inch", AT, "G41 D1 G12 I.5 Z-1", "brings its own cutter compensation: program G40"),
+    *(("haas inch", AT, f"{other} G12 I.5 K1 Z-1 D1{more}",
+       f"{other.split()[0]} cannot be in the same block")
+      for other, more in (("G43.1 X1", ""), ("G64 P.1", ""), ("G43", " H2"), ("M6 T2", ""),
+                          ("M61 Q2", ""), ("M68 E1 Q.1", ""), ("M19 R1", ""), ("M62 P5", ""),
+                          ("G96 S100", ""))),
+    *(("haas inch", AT, f"G12 I.5 Z-1 D1 {word}", f"{word} is not a word of this cycle, which")
+      for word in ("E1", "H1", "@1", "^1")),
+    ("yasnac mm", MOVED, "G12 R40 D10", "I is missing: the radius of the finished circle"),
+    ("yasnac mm", MOVED, "G12 I50 D77", "D77 is not in the tool table"),
+    ("yasnac mm", [FIRST, "T1 M6", *AFTER_G40], "G12 I30 R20 D10", OFFSET),
+    ("mitsubishi mm", [*MOVED, "G18"], "G12 I50", "D is missing: the tool whose radius reduces"),
+    ("mitsubishi mm", [*MOVED, "G18"], "G13 I10 D10",
+     "I10 must be greater than the tool radius 10 (D10) by at least 0.00508"),
+    ("event inch", EVENT_FIRST, "G13.2 X1 Y2 Z-.5 R1.5 H2", "I is missing"),
+    ("event inch", EVENT_FIRST, f"G12.2 {PLACE}", "H is missing"),
+    ("event inch", EVENT_FIRST, f"G13.2 {PLACE} H2 D4", "D4 must be at most 3"),
+    ("event inch", [*EVENT_FIRST, "G91"], "G13.2 X1 Y2 Z.2 I.1 R1.5 H2",
+     "Z0.2 must be below the first"),
+    ("event inch", [*EVENT_FIRST, "G41 D1"], f"G13.2 {PLACE} H2", "brings its own cutter"),
+    ("event inch", [*EVENT_FIRST, "T0 M6"], f"G13.2 {PLACE} H2", "no tool is loaded: its"),
+    ("event inch", [*EVENT_FIRST, "G41 D1"], POCKET_CALL, "brings its own cutter"),
+    ("event inch", [*EVENT_FIRST, "T0 M6"], POCKET_CALL, "no tool is loaded: its"),
+    ("event inch", EVENT_FIRST, call(g=7, x=0, y=0, z=-0.1, w=0.1, r=0.2, c=2),
+     "R0.2 must be greater"),
+    ("event inch", EVENT_FIRST, call(g=7, x=0, y=0, z=-0.1, w=0.1, c=2), "R is missing"),
+    ("event inch", EVENT_FIRST,
+     "o<circle_mill> call [7] [0] [0] [-.1] [.1] [.1] [1] [0] [2]", "V0 must be"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("machine", "before", "block", "rule"), REFUSED)
+def test_a_refused_block_moves_nothing_and_changes_nothing(mill, machine, before, block, rule):
+    code = next((word for word in block.split() if word[:3] in ("G12", "G13")), "circle_mill")
+    keeps = ["motion_mode"] if machine == "haas inch" else None  # modes beside it may change
+    mode_matrix.check_refused(mill(machine), before, block, f"{code}: {rule}", keeps)
+
+
+@pytest.mark.parametrize(
+    ("machine", "unit", "radius"), [("inch", "G21", "3.175 mm"), ("mm", "G20", "0.125 in")]
+)
+def test_a_tool_of_the_table_has_its_unit_where_the_programs_is_another(
+    mill, machine, unit, radius
+):
+    traced = mill(f"haas {machine}").trace_text([f"{unit} G17 G90 F10", "G13 I.05 Z-1 D1"])
+    rule = f"I0.05 must be greater than the tool radius {radius} (D1)"
+    assert traced.error.text == f"G13 line 2: {rule}"
+
+
+STEPS = st.dictionaries(st.sampled_from("gworkjlpvdc"), mode_matrix.VALUES)
+ANY = [
+    ("haas inch", [IN_INCHES, "G0 Z.1"], "G13", mode_matrix.blocks("G13", "XYIKQLDZRJ")),
+    ("yasnac mm", [FIRST, "G91 G0 X3"], "G13", mode_matrix.blocks("G13", "IRJKQLDX")),
+    ("mitsubishi mm", [FIRST, "G91 G0 X3 G19"], "G13", mode_matrix.blocks("G13", "IDQ")),
+    ("event inch", EVENT_FIRST, "G13.2",
+     mode_matrix.blocks("G13.2", "IERDHKJQLP").map("{} X1 Y2 Z-3".format)),
+    ("event inch", EVENT_FIRST, "circle_mill",
+     STEPS.map(lambda values: call(**{"x": 1, "y": 2, "z": -3, "r": 1, "c": 2, "w": 0.1, **{
+         letter: f"{value:.5f}" for letter, value in values.items()}}))),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("machine", "before", "name", "blocks"), ANY)
+@settings(max_examples=60)
+@given(data=st.data())
+def test_any_block_cuts_or_is_refused_in_words(mill, machine, before, name, blocks, data):
+    mode_matrix.check_cut_or_refused(mill(machine), before, data.draw(blocks), name)
+
+
+# ---------------------------------------------------------------- messages
+
+CUTTERS = {1: 6.0, 2: 10.0, 3: 6.1}
+
+
+@pytest.mark.parametrize("machine", ["mill_mm", "mill_yasnac_mm", "mill_mitsubishi_mm"])
+def test_one_message_for_each_tool_that_d_does_not_name(machine):
+    """T1 and D3 differ by wear; the two D2 with T1 are one message; no radius but D's is cut."""
+    lines = ["F300 T1 M6", "G12 I20 D2", "G13 I20 D2", "G12 I20 D3", "T2 M6", "G12 I20 D2"]
+    with Tracer(SIM / f"{machine}.ini", tools=CUTTERS) as mill:
+        traced = mill.trace_text([*lines, "G20", "G13 I1 D1", "G12 I1 D1", "M2"])
+    assert traced.error is None
+    assert [tuple(message) for message in traced.messages] == [
+        (2, "G12: the cycle uses D2, diameter 10; the loaded tool T1 has 6"),
+        (8, "G13: the cycle uses D1, diameter 0.23622 in; the loaded tool T2 has 0.393701 in"),
+    ]
+    reported = next(event for event in traced.events if "the cycle uses D2" in event.text)
+    assert [move.block for move in traced.moves[: reported.at]] == []
+    radii = [move.radius for move in traced.moves if move.block == 2 and move.kind == "arc"]
+    assert max(radii) == pytest.approx(15.0)
+
+
+def test_a_d_that_still_counts_is_reported_with_the_next_tool():
+    lines = ["F300 T1 M6", "G12 I20 D1", "T2 M6", "G12 I20", "G12 I20", "M2"]
+    with Tracer(SIM / "mill_mm.ini", tools=CUTTERS) as mill:
+        traced = mill.trace_text(lines)
+        refused = mill.trace_text(["F300 T1 M6", "G12 I3 D2", "M2"])
+    text = "G12: the cycle uses the D last commanded, diameter 6; the loaded tool T2 has 10"
+    assert [tuple(message) for message in traced.messages] == [(4, text)]
+    assert refused.error and refused.messages == []
+
+
+# ---------------------------------------------------------------- Yasnac
+
+
+def test_an_approach_however_short_is_made_and_taken_back(mill):
+    approach = 0.00006  # inches: LinuxCNC's NE takes it for 0
+    block = f"G12 I1.5 R{10 / INCH + approach:.9f} D10"
+    traced = mill("yasnac inch").trace_text([IN_INCHES, "G0 X1 Y2 Z-.1", block])
+    assert traced.error is None, traced.error
+    *_, last = traced.moves
+    assert last.start[0] - last.end[0] == pytest.approx(approach * INCH, rel=1e-3)
+    assert last.end[:2] == pytest.approx((1 * INCH, 2 * INCH), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("mode", "block", "cutting"),
+    [
+        ("G94 F300", "G12 I50 R40 D10", ("arc", 300, "G94")),
+        ("G95 F0.2", "G12 I50 R40 D10", ("arc", 0.2, "G95")),
+        ("G20\nF10", "G12 I2 R1 D1", ("arc", 254, "G94")),
+    ],
+)
+def test_fast_moves_at_the_traverse_feed_in_machine_units(mode, block, cutting):
+    settings_ = {"G12": {"YASNAC_TRAVERSE": 1500}}
+    before = [FIRST, "S1000 M3", mode]
+    with Tracer(SIM / "mill_yasnac_mm.ini", tools=METRIC_TOOLS, overrides=settings_) as traversing:
+        found, traced = (traversing.trace_text(text) for text in (before, [*before, block]))
+    kinds = [(move.kind, round(move.feed, 9), move.feed_mode) for move in traced.moves]
+    assert kinds == [("feed", 1500, "G94"), *[cutting] * 3, ("feed", 1500, "G94")]
+    mode_matrix.check_modes(found, traced)
+
+
+def test_the_last_d_commanded_is_left_alone(mill):
+    before = [FIRST, "G41 D1", "G40"]
+    metric = mill("yasnac mm")
+    assert metric.trace_text([*before, "G12 I50 D10"]).state == metric.trace_text(before).state
