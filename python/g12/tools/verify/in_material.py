@@ -34,7 +34,6 @@ LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
 
 
 def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield what a program does to what it is cut from."""
     yield from judge_rapids(workpiece)
     yield from _on_surfaces(workpiece)
     yield from judge_circles(flat_circles(workpiece.subject), workpiece.material)

@@ -85,7 +85,6 @@ class Proof:
 
     @property
     def pockets(self) -> Sequence[MeasuredCut]:
-        """The pockets and bosses."""
         return self.cuts.pockets
 
     @property
@@ -103,7 +102,6 @@ class Proof:
         return self.opened.source_line(line) if self.opened and not file else line
 
     def text(self, finding: Finding, unit: Unit) -> str:
-        """Return the sentence of a finding with the user's lines."""
         text = finding.text(unit)
         return self.opened.in_source(text) if self.opened and not finding.file else text
 

@@ -221,7 +221,6 @@ def _in_order(proof: Proof) -> list[tuple[str, MeasuredCut]]:
 
 
 def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
-    """Return the paragraph of a cut."""
     values = _values_of(kind, cut, proof)
     flats = values.get("across_flats", ())
     flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in flats)
@@ -240,7 +239,6 @@ def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
 
 
 def _allowed_of(kind: str, proof: Proof) -> float:
-    """Return the tolerance of a cut of a kind, mm."""
     return proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
 
 

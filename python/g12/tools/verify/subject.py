@@ -51,7 +51,6 @@ class Subject:
 
     @property
     def moves(self) -> list[Move]:
-        """The program's moves."""
         return self.trace.moves
 
     @cached_property
@@ -75,7 +74,6 @@ class Subject:
         return self if same else self._on(replace(self.part, centre=centre), own)
 
     def on_surface(self, radius: float, own: range | None = None) -> Self:
-        """Return the same on a cylinder's unrolled surface."""
         there = self._on(Surface(turning=True, radius=radius), own)
         return self._surfaces.setdefault(radius, there) if self.samples else there
 
@@ -97,7 +95,6 @@ class Subject:
         return part.points(sampled) if len(sampled) else part.polyline(self.moves[index])
 
     def end(self, index: int) -> tuple[float, float, float]:
-        """Return the point of the part at which a move ends."""
         x, y, z = map(float, self.part.points(np.array(self.moves[index].end))[0])
         return x, y, z
 
@@ -132,7 +129,6 @@ class Subject:
 
     @cached_property
     def widest_cutter(self) -> float:
-        """The largest radius of a cutter."""
         return max(map(self.cutter, range(len(self.moves))), default=0.0)
 
     @cached_property

@@ -71,7 +71,6 @@ class Workpiece:
 
     @property
     def material(self) -> Material:
-        """The material in the plane XY, or of a lathe's face."""
         return self.views[0].material
 
     @cached_property
@@ -192,7 +191,6 @@ def _kind_of_cut(part: Part, moves: Sequence[Move], index: int) -> tuple:
 
 
 def _points_along(subject: Subject, part: Part, own: Sequence[int]) -> np.ndarray:
-    """Return the tool's points (n, 3) along moves that follow each other."""
     return np.concatenate([subject.points(index, part) for index in own])
 
 

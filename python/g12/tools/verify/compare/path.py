@@ -117,14 +117,12 @@ class PathDifference:
 
     @property
     def code(self) -> str:
-        """The code of its finding."""
         if self.kind == RAPID and self.expected.rapid:
             return "not-rapid"
         return "feed-rev" if self.kind == FEED and self.expected.per_rev else self.kind
 
     @property
     def values(self) -> dict[str, Any]:
-        """The values of its finding."""
         if self.expected is None:
             return {}
         feed, per_rev = self.expected.feed, self.expected.per_rev
@@ -162,7 +160,6 @@ class Laid:
 
     @property
     def difference(self) -> PathDifference | None:
-        """The first difference."""
         return self.differences[0] if self.differences else None
 
     def add(self, difference: PathDifference | None) -> None:

@@ -44,7 +44,6 @@ class LaidMoves:
 
     @property
     def difference(self) -> PathDifference | None:
-        """The first difference."""
         return self.laid.difference
 
     @property
@@ -121,7 +120,6 @@ class ToolpathView:
 
 
 def turns(move: Move) -> bool:
-    """Tell whether a move turns C."""
     return move.start[C] != move.end[C]
 
 

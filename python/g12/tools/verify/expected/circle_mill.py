@@ -65,7 +65,6 @@ class EventWords(CircleWords):
 
     @property
     def inside(self) -> bool:
-        """Whether the cutter works inside the wall."""
         return self.side <= 0
 
     @property
@@ -75,7 +74,6 @@ class EventWords(CircleWords):
 
     @property
     def final(self) -> float:
-        """The radius of the last circle."""
         return self.entries["R"] + self.side * self.cutter
 
     def cleared(self, cutter: float) -> float:
@@ -84,7 +82,6 @@ class EventWords(CircleWords):
 
     @property
     def plunge_feed(self) -> float | None:
-        """The feed down."""
         return self.entries.get("P", self.feed)
 
     @property
@@ -164,7 +161,6 @@ def words_of_call(arguments: Sequence[float]) -> dict[str, float]:
 
 
 def entries_of_call(view: BlockInMm) -> dict[str, float]:
-    """Return the entries of a call."""
     return _entries(view, ENTRIES_OF_CALL)
 
 

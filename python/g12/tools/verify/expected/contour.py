@@ -44,14 +44,12 @@ class Element:
 
     @property
     def curve(self) -> Curve:
-        """Return its curve."""
         if self.centre is None:
             return Line(self.start, self.end)
         return Arc(self.start, self.centre, self.sweep)
 
     @property
     def length(self) -> float:
-        """Return its length."""
         return self.curve.length
 
 

@@ -65,7 +65,6 @@ class HaasWords(CircleWords):
 
     @property
     def final(self) -> float:
-        """Return the radius of the last ring."""
         return self.rings[-1]
 
     def cleared(self, cutter: float) -> float:
@@ -175,5 +174,4 @@ def rings_between(first: float, last: float, step: float) -> list[float]:
 
 
 def _pass_depths(view: BlockInMm) -> list[float]:
-    """Return the depth of each pass."""
     return [view.depth(count + 1) for count in range(int(view.words.get("L", 1)))]

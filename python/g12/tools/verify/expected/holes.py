@@ -109,7 +109,6 @@ def _shorter(angle: float, made: float) -> float:
 
 
 def holes_of(call: SubCall) -> Holes:
-    """Return the holes that a call commands."""
     given, side = call.given, call.is_side
     count, kind = round(given.get("count", 1)), round(given.get("kind", DRILL))
     step = given.get("step_angle", 360.0 / count)
@@ -142,7 +141,6 @@ class HolesPath:
         self._turns = [_shorter(holes.angle - c, turned), *[holes.turn] * (holes.count - 1)]
 
     def toolpath(self) -> list[Expected]:
-        """Return the expected moves."""
         writer = self._writer
         writer.vertical("rapid out", self._top, rapid=True)
         for number, turn in enumerate(self._turns):

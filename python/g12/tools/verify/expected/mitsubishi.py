@@ -26,7 +26,6 @@ class MitsubishiWords(CircleWords):
         return cls(final, turn, view.feed(), word, line=view.line, per_rev=view.per_rev)
 
     def cleared(self, cutter: float) -> float:
-        """Return the radius within which material may remain."""
         return core_within(self.final, cutter)
 
     def toolpath(self) -> list[Expected]:

@@ -116,7 +116,6 @@ class Pen:
         return {**found, "_c": c + math.degrees(angle)} if radius > AT_CENTRE else found
 
     def _feed(self) -> float | None:
-        """Return the feed in mm per minute."""
         if self.motion == 0.0:
             return self.rapid_feed
         if self.feed is None:

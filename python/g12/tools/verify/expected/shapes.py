@@ -34,17 +34,14 @@ class ShapePath:
 
     @property
     def path(self) -> list[Expected]:
-        """The moves written so far."""
         return self._writer.path
 
     @property
     def level(self) -> float:
-        """The level of the tool."""
         return self._writer.level
 
     @property
     def levels(self) -> list[float]:
-        """The levels of the passes."""
         depth = self.call.length("depth")
         most = self.call.length("depth_per_pass", depth)
         return equal_steps(0.0, -depth, most, ROUNDING)
@@ -69,7 +66,6 @@ class ShapePath:
         self._writer.arc(name, self._turn * centre, sweep, self._feed(fall), fall)
 
     def plunge(self, level: float) -> None:
-        """Write the move straight down to a level."""
         self._writer.vertical("plunge", level, self.plunge_feed)
 
     def up(self) -> None:
@@ -97,7 +93,6 @@ class Polygon:
         self._outside = max(self._clip, *tops)
 
     def toolpath(self) -> list[Expected]:
-        """Return the expected moves."""
         shape = self._shape
         shape.approach(self._outside, self._outside)
         for level in shape.levels:
@@ -242,7 +237,6 @@ def _pocket_path(call: SubCall) -> list[Expected]:
 
 
 def shape_path(call: SubCall) -> list[Expected]:
-    """Return the expected moves of a shape's call."""
     if call.name == "polar_polygon":
         return Polygon(call).toolpath()
     return (_slot_path if call.name == "polar_slot" else _pocket_path)(call)

@@ -38,7 +38,6 @@ class Expected(NamedTuple):
 
     @property
     def length(self) -> float:
-        """The length in space."""
         return abs(complex(self.curve.length, self.end_level - self.start_level))
 
     @property
@@ -53,11 +52,9 @@ class Expected(NamedTuple):
 
     @property
     def is_circle(self) -> bool:
-        """Whether it is a full circle."""
         return abs(self.sweep) > FULL
 
     def point(self, share: float) -> Point:
-        """Return the point at a share of the move."""
         rise = share * (self.end_level - self.start_level)
         return self.curve.point(share), self.start_level + rise
 
@@ -80,7 +77,6 @@ class Expected(NamedTuple):
 
 
 def distance(one: Point, other: Point) -> float:
-    """Return the distance of two points in space."""
     return abs(complex(abs(one[0] - other[0]), one[1] - other[1]))
 
 
@@ -102,7 +98,6 @@ class Writer:
         self._add(name, Line(self.at, end), self.level - fall, feed, how)
 
     def vertical(self, name: str, level: float, feed: float | None = None, **how: bool) -> None:
-        """Add a move to another level."""
         self._add(name, Line(self.at, self.at), level, feed, how)
 
     def arc(
@@ -133,7 +128,6 @@ class CircleWords:
 
     @property
     def inside(self) -> bool:
-        """Whether the cutter works inside the wall."""
         return True
 
     @property

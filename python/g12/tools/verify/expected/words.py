@@ -176,7 +176,6 @@ class SubCall:
         return self.given[name] * self.unit if name in self.given else default
 
     def x(self) -> float:
-        """Return the X entry as a radius."""
         return self.length("x") / (2 if self.diameters else 1)
 
     def feed(self) -> float | None:

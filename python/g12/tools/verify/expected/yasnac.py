@@ -60,7 +60,6 @@ class YasnacWords(CircleWords):
 
     @property
     def final(self) -> float:
-        """Return the radius of the last circle."""
         return abs(self.radius)
 
     def bore(self, cutter: float) -> float:

@@ -149,6 +149,5 @@ def judge_native_c(moves: Sequence[Move], known: set[int], path: Track) -> Itera
 
 
 def _turns_and_goes(move: Move) -> bool:
-    """Tell whether C turns together with X or Z."""
     change = [abs(end - start) > TURNS for start, end in zip(move.start, move.end)]
     return change[C] and (change[X] or change[Z]) and move.feed_mode != "G93"

@@ -72,7 +72,6 @@ class Wall:
         return (np.atleast_2d(points)[:, :3] - self.origin) @ self.axes.T
 
     def machine(self, point: Point) -> tuple[float, ...]:
-        """Return a point of the plane and its level in machine coordinates."""
         flat, level = point
         return tuple(map(float, self.origin + [flat.real, flat.imag, level] @ self.axes))
 
@@ -113,12 +112,10 @@ class Target:
 
     @cached_property
     def path(self) -> list[Expected]:
-        """The expected toolpath from the wall's centre."""
         return self.words.toolpath()
 
     @cached_property
     def circles(self) -> list[Expected]:
-        """The full circles of the toolpath."""
         return [move for move in self.path if move.is_circle]
 
     @cached_property
@@ -128,7 +125,6 @@ class Target:
 
     @property
     def deepest(self) -> float:
-        """The last depth."""
         return self.depths[-1]
 
 

@@ -42,7 +42,6 @@ class MeasuredCut:
     sound: bool = True
 
     def fed(self, moves: Sequence[Move]) -> list[Move]:
-        """Return its moves at a feed."""
         return [moves[i] for i in self.own if moves[i].kind != "rapid"]
 
     def lowest(self, moves: Sequence[Move]) -> float:
@@ -61,7 +60,6 @@ def in_file(
 
 
 def pace_values(pace: Pace) -> dict[str, Any]:
-    """Return feed and time as plain values."""
     return {
         "lowest_feed": pace.lowest,
         "lowest_feed_at": [float(value) for value in pace.point],

@@ -31,21 +31,17 @@ class Finding:
 
     @property
     def is_finding(self) -> bool:
-        """Tell whether it is a fault."""
         return self.code in FINDINGS
 
     @property
     def is_note(self) -> bool:
-        """Tell whether it is a note."""
         return self.code in NOTES
 
     @property
     def is_not_judged(self) -> bool:
-        """Tell whether it is something that was not judged."""
         return self.code in NOT_JUDGED
 
     def text(self, unit: Unit = MM) -> str:
-        """Return the sentence with sizes in a unit."""
         return in_words(SENTENCES[self.code], self.values, unit)
 
 
@@ -115,7 +111,6 @@ class _Writer(string.Formatter):
         }
 
     def format_field(self, value: Any, format_spec: str) -> str:
-        """Return one value as text."""
         if format_spec in self._forms:
             return self._forms[format_spec](value)
         return plain(value, int(format_spec)) if format_spec.isdigit() else str(value)

@@ -52,7 +52,6 @@ class Outline:
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Points (complex) along the shape."""
         return complex_points(self.line)
 
     @cached_property

@@ -35,7 +35,6 @@ SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "o
 
 
 def measure_section(view: SectionView) -> MeasuredCut:
-    """Return what was measured of a section that moves."""
     section, plane = view.section, view.plane
     off = math.nan if section.doubt else view.found.off
     unread = [Finding("contour-unread", section.line, {"why": section.doubt})]
@@ -163,5 +162,4 @@ def times_of_section(
 
 
 def _seconds(move: Expected) -> float:
-    """Return the time of a move at its feed."""
     return 60.0 * move.length / (move.feed or 1.0)

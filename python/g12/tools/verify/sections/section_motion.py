@@ -237,7 +237,6 @@ def c_speed(view: SectionView) -> float:
 
 
 def _emitted_speed(view: SectionView, index: int) -> float:
-    """Return the speed of C in a move, degrees/s."""
     found = face_demand(view.path, index, view.axes) if view.on_face else None
     if found:
         return found.c_speed * view.axes.c.speed

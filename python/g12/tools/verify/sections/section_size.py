@@ -59,7 +59,6 @@ def on_shape(wall: CutWall, leads: Sequence[LineString]) -> CutWall:
 
 
 def walls_along(view: SectionView) -> Iterator[CutWall]:
-    """Yield the wall of each element that is cut."""
     segments: dict[int, list[np.ndarray]] = {}
     laid, across = view.found.run or view.found.emitted, set(view.across)
     for index, made in laid.spans.items():

@@ -35,7 +35,6 @@ class SectionView(ToolpathView):
 
     @property
     def first(self) -> Move:
-        """Its first move."""
         return self.moves[self.own.start]
 
     @cached_property
@@ -45,7 +44,6 @@ class SectionView(ToolpathView):
 
     @cached_property
     def fed(self) -> list[int]:
-        """The moves at a feed."""
         return [index for index in self.own if self.moves[index].kind != "rapid"]
 
     @cached_property
