@@ -40,18 +40,19 @@ def test_a_good_pocket_ends_with_0(written, capsys):
     code, out, err = verify(capsys, written(GOOD), "--ini", MILL)
     assert (code, err) == (0, "")
     assert out.startswith("line 5  G12 (haas)  ⌀ 40 to Z−3  0 mm off (0.005 allowed)  ")
-    assert out.endswith("verdict: good, 1 note\n")
+    assert out.endswith("verdict: good, 1 note, 1 not judged\n")
 
 
 def test_a_finding_ends_with_1_and_is_told(written, capsys):
     code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
     assert code == 1
-    assert "findings\n  line 4: " in out and out.endswith("verdict: 1 finding, 2 notes\n")
+    assert "findings\n  line 4: " in out
+    assert out.endswith("verdict: 1 finding, 2 notes, 1 not judged\n")
 
 
 def test_notes_are_findings_on_demand(written, capsys):
     code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict")
-    assert code == 1 and out.endswith("verdict: 1 finding\n")
+    assert code == 1 and out.endswith("verdict: 1 finding, 1 not judged\n")
     code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict", "--json")
     assert code == 1 and not json.loads(out)["good"]
 
@@ -64,7 +65,7 @@ def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
     lathe = str(machines / "lathe_mm_headless.ini")
     code, out, _ = verify(capsys, program, "--ini", lathe)
     reported = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
-    assert code == 1 and out.endswith("verdict: 1 finding\n")
+    assert code == 1 and out.endswith("verdict: 1 finding, 1 not judged\n")
     assert (reported["good"], reported["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
 
 

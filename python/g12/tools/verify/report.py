@@ -122,7 +122,7 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
         _listed("notes", notes, proof, unit),
         _listed("not judged", others, proof, unit),
         "\n".join(message_lines(messages)),
-        verdict(len(findings), len(notes)),
+        verdict(len(findings), len(notes), len(others)),
     ]
     return "\n\n".join(filter(None, parts))
 
@@ -286,10 +286,14 @@ def _first_of_lines(where: Sequence[str]) -> str:
     return f"{named[0]}{added}: " if named else ""
 
 
-def verdict(findings: int, notes: int) -> str:
-    """Return the last line: good, or how many findings, and how many notes."""
-    first = counted_as(findings, "finding") if findings else "good"
-    return f"verdict: {', '.join([first, *([counted_as(notes, 'note')] if notes else [])])}"
+def verdict(findings: int, notes: int, not_judged: int) -> str:
+    """Return the last line, which counts what was found, and what was not judged."""
+    counts = [
+        counted_as(findings, "finding") if findings else "good",
+        counted_as(notes, "note") if notes else "",
+        f"{not_judged} not judged" if not_judged else "",
+    ]
+    return f"verdict: {', '.join(filter(None, counts))}"
 
 
 def _in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
