@@ -11,7 +11,6 @@ from g12.compensation.compensated import (
     compensated_contours,
     greatest_levels,
     in_plane,
-    passes_of,
 )
 from g12.compensation.contour import Contour, Plunge
 from support.planned_moves import arc, line
@@ -19,10 +18,10 @@ from support.planned_moves import arc, line
 TOLERANCE, RADIUS = 0.005, 3.0
 
 
-def walls_of(*moves, tolerance=TOLERANCE):
+def walls_of(*moves, paths=((),) * 3):
     """Return a contour of moves that are all under compensation."""
-    cuts = [PathOfMove(move, (), True) for move in moves]
-    return CompensatedContour(Contour(50.0, 0.0), cuts, [], tolerance)
+    cuts = [PathOfMove(move, path, True) for move, path in zip(moves, paths)]
+    return CompensatedContour(Contour(50.0, 0.0), cuts, [], TOLERANCE)
 
 
 @pytest.mark.parametrize(
@@ -61,8 +60,9 @@ def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
     high, low = line(0.0, 0.0, 9.0, 0.0, -1.0, -1.0), line(0.0, 0.0, 9.0, 0.0, 0.0, -2.0)
     other = line(0.0, 1.0, 9.0, 1.0)
     for one, again in ((high, low), (low, high)):
-        made = passes_of([(1, one), (2, Plunge(5, 9.0, 0.0, 1.0)), (2, other), (3, again)])
-        assert [(each.move_index, each.move) for each in made] == [(1, low), (2, other)]
+        paths = [(one,), (Plunge(5, 9.0, 0.0, 1.0), other), (again,)]
+        made = walls_of(one, other, again, paths=paths).passes
+        assert [(each.move_index, each.move) for each in made] == [(0, low), (1, other)]
         assert len(made[0].levels) == 2
 
 

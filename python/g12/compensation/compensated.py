@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 from g12.compensation.closing import closing_of
 from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove
+from g12.errors import number
 from g12.geometry.boxes import BoxTree
-from g12.geometry.curve import Arc
+from g12.geometry.curve import Arc, Box
 
 MEETING = 4.0  # tolerances: ends within this distance close a contour
 RAMP = -1  # the move index of a ramp's passes
@@ -35,24 +36,73 @@ class PathOfMove(NamedTuple):
 
 
 class Pass(NamedTuple):
-    """A move of the tool's centre along move ``move_index`` of the contour, with all its levels."""
+    """A move of the tool's centre along move ``move_index`` of a contour, with all its levels."""
 
+    contour: CompensatedContour
     move_index: int
     move: PlaneMove
     levels: frozenset[int]
 
-    def contact(self, share: float, offset: float) -> complex:
+    def contact(self, share: float) -> complex:
         """Return the contact point of tool and contour at a share of the pass."""
-        return self.move.curve.point(share) - 1j * offset * self.move.curve.direction(share)
+        curve = self.move.curve
+        return curve.point(share) - 1j * self.contour.offset * curve.direction(share)
+
+    def is_low(self, level: float) -> bool:
+        """Return whether the pass is at or below a Z level somewhere."""
+        return self.move.lowest <= level + SAME_POINT
+
+    def cuts(self, point: WallPoint, distance: float) -> bool:
+        """Return whether the pass, at the wall's Z or below, comes nearer than ``distance``."""
+        return self.is_low(point.level) and self.move.curve.distance(point.point) < distance
 
 
 class WallPoint(NamedTuple):
-    """A point of a move, its length ``along`` the contour, and the contour's direction there."""
+    """A point of a wall, its length ``along`` the contour, and the contour's direction there.
+
+    ``level`` is the wall's Z.
+    """
 
     move_index: int
     along: float
     point: complex
     direction: complex
+    level: float
+
+
+class Sweep:
+    """The tool swept along passes: which of them cut a point of a wall."""
+
+    def __init__(self, passes: Iterable[Pass]) -> None:
+        self.passes = list(passes)
+        self._tree = BoxTree([each.move.curve for each in self.passes])
+
+    @property
+    def box(self) -> Box:
+        return self._tree.box
+
+    def deepest(
+        self, point: WallPoint, distance: float, counts: Callable[[Pass], bool] = lambda _: True
+    ) -> tuple[float, Pass | None]:
+        """Return the distance from a point to the nearest pass that counts, and that pass.
+
+        Only passes nearer than ``distance``, at the wall's Z or below, are searched: that and None
+        where there is none.
+        """
+        passes, level = self.passes, point.level
+        away, k = self._tree.nearest(
+            point.point, distance, lambda k: passes[k].is_low(level) and counts(passes[k])
+        )
+        return away, None if k is None else passes[k]
+
+    def cuts(self, point: WallPoint, distance: float) -> bool:
+        return self.deepest(point, distance)[1] is not None
+
+    def cutting(self, point: WallPoint, distance: float) -> Iterator[Pass]:
+        """Yield the passes that come nearer to a point than ``distance``."""
+        for k in self._tree.near((point.point.real, point.point.imag) * 2, distance):
+            if self.passes[k].cuts(point, distance):
+                yield self.passes[k]
 
 
 class CompensatedContour:
@@ -69,9 +119,10 @@ class CompensatedContour:
         ramps: Sequence[PathOfMove],
         tolerance: float,
     ) -> None:
-        self.moves, self.tolerance = [cut.move for cut in cuts], tolerance
+        self.code, self.tolerance = contour.code, tolerance
+        self.moves = [cut.move for cut in cuts]
         self.offset = self.moves[0].offset
-        self.radius = abs(self.offset)
+        self.radius, self.side = abs(self.offset), copysign(1.0, self.offset)
         curves = [move.curve for move in self.moves]
         near = max(MEETING * tolerance, 2 * contour.radius_tolerance)
         self.closing = closing_of(curves, self.radius, near)
@@ -84,8 +135,8 @@ class CompensatedContour:
                 self.walls[index] = wall._replace(z0=level, z1=level)
         self.levels = frozenset(_level_key(self.moves[index].z1) for index in self.walls)
         passes = [(index, move) for index, cut in enumerate(cuts) for move in cut.path]
-        self.passes = passes_of(passes)
-        self.ramps = passes_of((RAMP, move) for ramp in ramps for move in ramp.path)
+        self.passes = self._passes_of(passes)
+        self.ramps = self._passes_of((RAMP, move) for ramp in ramps for move in ramp.path)
 
     @property
     def gouge_distance(self) -> float:
@@ -101,18 +152,32 @@ class CompensatedContour:
         return sqrt(2.0 * self.radius * self.tolerance)
 
     @cached_property
-    def tree(self) -> BoxTree:
-        """The passes, for a search by position."""
-        return BoxTree([each.move.curve for each in self.passes])
+    def sweep(self) -> Sweep:
+        """The passes, without the ramps."""
+        return Sweep(self.passes)
 
     @cached_property
     def wall_tree(self) -> BoxTree:
-        """The walls, for a search by position."""
+        """The walls, in their order."""
         return BoxTree([wall.curve for wall in self.walls.values()])
 
     @cached_property
     def _contour_tree(self) -> BoxTree:
         return BoxTree([move.curve for move in self.moves])
+
+    def _passes_of(self, path: Iterable[tuple[int, object]]) -> list[Pass]:
+        """Return the passes of moves with their indices; repeated ones once, with all Z levels."""
+        kept: dict[tuple[int, ...], Pass] = {}
+        for index, move in path:
+            if not isinstance(move, PlaneMove):
+                continue
+            key, levels = in_plane(move), frozenset([_level_key(move.z1)])
+            before = kept.get(key)
+            if before:
+                index, levels = before.move_index, levels | before.levels
+                move = min(before.move, move, key=lambda each: each.lowest)
+            kept[key] = Pass(self, index, move, levels)
+        return list(kept.values())
 
     def points(self) -> Iterator[WallPoint]:
         """Yield points of the walls, so close that no gouge falls between two of them.
@@ -136,8 +201,16 @@ class CompensatedContour:
             for k in range(count + 1):
                 share = inset + (1.0 - 2.0 * inset) * k / count
                 along, direction = begin + share * length, curve.direction(share)
-                last = WallPoint(index, along, curve.point(share), direction)
+                last = WallPoint(index, along, curve.point(share), direction, wall.z0)
                 yield last
+
+    def gouge_text(self, one: int, other: int) -> str:
+        """Return the message for a refusal of two lines."""
+        one, other = sorted((one, other))
+        return (
+            f"{self.code} line {other}: the tool of radius {number(self.radius)} cannot follow both"
+            f" lines {one} and {other}: beside one of them it cuts into the other"
+        )
 
     def length_to(self, index: int, point: complex) -> float:
         """Return the length along the contour to a point on one of its moves."""
@@ -163,7 +236,7 @@ class CompensatedContour:
         at_end = any(abs(foot - end) <= SAME_POINT for end in ends)
         return copysign(near, across * self.offset), at_end
 
-    def side(self, point: complex, along: float, span: float) -> float:
+    def across(self, point: complex, along: float, span: float) -> float:
         """Return a point's distance to the left of the contour, near a length along it.
 
         Only the contour within ``span`` of that length is searched.
@@ -193,26 +266,6 @@ def compensated_contours(
             ramps = [*cuts[max(at - 1, 0) : at], *cuts[at + len(own) :][:1]]
             yield CompensatedContour(contour, own, ramps, tolerance)
         at += len(own)
-
-
-def is_low(move: PlaneMove, level: float) -> bool:
-    """Return whether a move of the tool is at or below a Z level somewhere."""
-    return move.lowest <= level + SAME_POINT
-
-
-def passes_of(path: Iterable[tuple[int, object]]) -> list[Pass]:
-    """Return the passes of moves with their indices; repeated ones once, with all Z levels."""
-    kept: dict[tuple[int, ...], Pass] = {}
-    for index, move in path:
-        if not isinstance(move, PlaneMove):
-            continue
-        key, level = in_plane(move), frozenset([_level_key(move.z1)])
-        before = kept.get(key)
-        if before:
-            index, level = before.move_index, level | before.levels
-            move = min(before.move, move, key=lambda each: each.lowest)
-        kept[key] = Pass(index, move, level)
-    return list(kept.values())
 
 
 def greatest_levels(moves: Sequence[PlaneMove]) -> dict[int, float]:

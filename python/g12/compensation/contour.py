@@ -9,7 +9,7 @@ X. An angle grows from +x to +c; a positive sweep is counterclockwise (G3), in r
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from copy import copy
 from math import copysign, sqrt
 from typing import NamedTuple, NoReturn
@@ -39,12 +39,10 @@ class PlaneMove(NamedTuple):
 
     @property
     def start(self) -> complex:
-        """The curve's start, x + jc."""
         return self.curve.start
 
     @property
     def end(self) -> complex:
-        """The curve's end, x + jc."""
         return self.curve.end
 
     @property
@@ -54,11 +52,9 @@ class PlaneMove(NamedTuple):
 
     @property
     def lowest(self) -> float:
-        """The least Z."""
         return min(self.z0, self.z1)
 
     def level(self, share: float) -> float:
-        """Return Z at a share of the move."""
         return self.z0 + share * (self.z1 - self.z0)
 
     def reversed(self) -> PlaneMove:
@@ -66,7 +62,6 @@ class PlaneMove(NamedTuple):
         return self._replace(curve=self.curve.reversed(), z0=self.z1, z1=self.z0)
 
     def portion(self, first: float, last: float) -> PlaneMove:
-        """Return the move between two shares of it."""
         curve = self.curve.portion(first, last)
         return self._replace(curve=curve, z0=self.level(first), z1=self.level(last))
 
@@ -150,7 +145,6 @@ class Contour:
         self.notes: list[str] = []
 
     def refuse(self, line: int, reason: str) -> NoReturn:
-        """Raise the refusal of a block of this section."""
         raise Refusal(f"{self.code} line {line}: {reason}")
 
     def line(
@@ -163,14 +157,9 @@ class Contour:
         feed: float,
     ) -> None:
         """Add a G1 to an absolute point; a coordinate that is None stays."""
-        x1 = self.x if x is None else x
-        c1 = self.c if c is None else c
-        z1 = self.z if z is None else z
-        if max(abs(x1), abs(c1), abs(z1)) > LARGEST:
-            self._check_point(line, x1, c1, z1)
-        across = x is not None or c is not None
-        end, z0 = complex(x1, c1), self._level
-        length = abs(end - self._end) if across else 0.0
+        end, z1 = self._absolute(line, x, c, z)
+        z0, in_plane = self._level, x is not None or c is not None
+        length = abs(end - self._end) if in_plane else 0.0
         self._check_feed(feed, line)
         self._check_switch(line, length)
         if length > SAME_POINT:
@@ -180,7 +169,7 @@ class Contour:
         elif abs(z1 - z0) > SAME_POINT:
             self.elements.append(Plunge(line, feed, z0, z1))
             self._level = z1
-        self.x, self.c, self.z = x1, c1, z1
+        self.x, self.c, self.z = end.real, end.imag, z1
 
     def arc(
         self,
@@ -202,20 +191,15 @@ class Contour:
         ``i``/``j``.
         """
         self._check_arc(turn, i, j, radius, line, feed)
-        x1 = self.x if x is None else x
-        c1 = self.c if c is None else c
-        z1 = self.z if z is None else z
-        self._check_point(line, x1, c1, z1)
-        centre = dict(zip(self.names.centre.split(" and "), (i, j)))
-        self._check_lengths(line, **centre, R=radius)
-        end = complex(x1, c1)
+        end, z1 = self._absolute(line, x, c, z)
+        self._check_lengths(line, (*self.names.centre.split(" and "), "R"), (i, j, radius))
         if radius is None:
             curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), line)
         else:
             curve = self._with_radius(turn, end, radius, line)
         self.elements.append(PlaneMove(line, feed, self._offset, curve, self._level, z1))
         self._end, self._level = end, z1
-        self.x, self.c, self.z = x1, c1, z1
+        self.x, self.c, self.z = end.real, end.imag, z1
 
     def compensation(self, side: int, radius: float, *, line: int) -> None:
         """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
@@ -245,7 +229,6 @@ class Contour:
         return following
 
     def mark(self, action: object, *, line: int) -> None:
-        """Add a block without motion."""
         self._check_waiting()
         self.elements.append(Mark(line, action))
 
@@ -270,11 +253,20 @@ class Contour:
                 f"G{self.side} of line {self._switched_on} is on",
             )
 
-    def _check_point(self, line: int, x: float, c: float, z: float) -> None:
-        self._check_lengths(line, **{self.names.x: x, self.names.c: c, self.names.z: z})
+    def _absolute(
+        self, line: int, x: float | None, c: float | None, z: float | None
+    ) -> tuple[complex, float]:
+        """Return the end of a block, with the programmed position for what it leaves out."""
+        x = self.x if x is None else x
+        c = self.c if c is None else c
+        z = self.z if z is None else z
+        self._check_lengths(line, self.names, (x, c, z))
+        return complex(x, c), z
 
-    def _check_lengths(self, line: int, **words: float | None) -> None:
-        for word, value in words.items():
+    def _check_lengths(
+        self, line: int, words: Sequence[str], values: Sequence[float | None]
+    ) -> None:
+        for word, value in zip(words, values):
             if value is not None and abs(value) > LARGEST:
                 reason = f"{word}{number(value)} is no length: at most {number(LARGEST)}"
                 self.refuse(line, reason)
@@ -343,7 +335,6 @@ class Contour:
         return Arc(start, centre, sweep_between(start, end, centre, turn))
 
     def _with_radius(self, turn: int, end: complex, radius: float, line: int) -> Arc:
-        """Return an arc with R."""
         start = self._end
         apart = abs(end - start)
         half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"

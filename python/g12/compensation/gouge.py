@@ -17,34 +17,29 @@ its far side. `neighbours` checks the other contours of the section.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
-from itertools import groupby
+from itertools import chain, groupby
 from typing import NamedTuple, NoReturn
 
 from g12.compensation.compensated import (
     MEETING,
     RAMP,
     CompensatedContour,
+    Pass,
     PathOfMove,
+    Sweep,
     WallPoint,
     compensated_contours,
     in_plane,
-    is_low,
 )
 from g12.compensation.contour import Contour
 from g12.compensation.neighbours import check_neighbours
-from g12.errors import Refusal, number
-from g12.geometry.boxes import BoxTree
+from g12.errors import Refusal
 from g12.geometry.crossing import common_points
 
 SAME_DIRECTION_COSINE = 0.9  # cosine: passes in the same direction differ by less than this angle
 CROSSED = 0.02  # of the tool's radius: a contour that goes farther to both sides crosses itself
 # of the tool's radius: distances from the crossing at which that is checked
 BESIDE_CROSSING = (0.125, 0.25, 0.5, 1.0)
-# How a pass cuts a point of a wall. FACING: the wall that the pass machines is on the tool's side
-# of the point. DEEPER: it is deeper in the material. REPEATED: deeper, and machined in the same
-# direction, as by a later pass.
-FACING, DEEPER, REPEATED = "facing", "deeper", "repeated"
 
 
 class LeadRefusal(Refusal):
@@ -60,7 +55,7 @@ class _Gouge(NamedTuple):
 
     line: int
     lead: bool
-    ramp: bool = False
+    ramp: bool
 
 
 def check_gouges(contour: Contour, cuts: Sequence[PathOfMove], tolerance: float) -> None:
@@ -71,23 +66,18 @@ def check_gouges(contour: Contour, cuts: Sequence[PathOfMove], tolerance: float)
     found = compensated_contours(contour, cuts, tolerance)
     cut = [each for each in found if each.radius > tolerance]
     for each in {signature(each): each for each in reversed(cut)}.values():
-        _Sweep(contour, each).check()
-    check_neighbours(contour, cut)
+        _OwnWalls(contour, each).check()
+    check_neighbours(cut)
 
 
-class _Sweep:
-    """The tool swept along a contour, against the contour's own walls."""
+class _OwnWalls:
+    """A contour's walls, against the tool that machines them."""
 
     def __init__(self, contour: Contour, own: CompensatedContour) -> None:
         self._contour, self._own = contour, own
         # At the ends of an open contour there may be no material: its ramps may cut there.
-        self._passes = [*own.passes, *(own.ramps if own.closing.closed else ())]
-        self._tree = BoxTree([each.move.curve for each in self._passes])
-        self._of_move: dict[int, list[int]] = {}
-        for k, each in enumerate(self._passes):
-            self._of_move.setdefault(each.move_index, []).append(k)
-        self._ahead = 0  # moves from the last point to the later pass that cut it
-        self._is_repeated = False  # a later pass cuts a wall, or a pass may be a lead
+        self._sweep = Sweep([*own.passes, *(own.ramps if own.closing.closed else ())])
+        self._later: Pass | None = None  # the last one found that only repeats the pass for a wall
 
     def check(self) -> None:
         """Refuse the gouges, or report them."""
@@ -100,26 +90,20 @@ class _Sweep:
                 "cross: taken for the leads of a contour that closes there",
             )
         for index, points in groupby(own.points(), key=lambda point: point.move_index):
-            gouges = [hit for point in points for hit in self._gouges(point)]
-            worst = min(gouges, key=lambda hit: (hit.lead, hit.ramp), default=None)
+            gouges = [gouge for point in points for gouge in self._gouges(point)]
+            worst = min(gouges, key=lambda gouge: (gouge.lead, gouge.ramp), default=None)
             line = own.moves[index].line
             if worst and not worst.lead:
                 self._refuse(line, worst.line)
             if worst and not closing.crossing:
                 self._note(line, worst.line, "cut into each other: one is taken for a lead")
-        if self._is_repeated:
-            self._check_crossings()
+        self._check_crossings()
 
     def _refuse(self, one: int, other: int) -> NoReturn:
         """Refuse two lines; where one leads to or from a closed contour the side may be wrong."""
-        moves, (one, other) = self._own.moves, sorted((one, other))
-        is_lead = self._own.closing.closed and {moves[0].line, moves[-1].line} & {one, other}
-        kind = LeadRefusal if is_lead else Refusal
-        raise kind(
-            f"{self._contour.code} line {other}: the tool of radius {number(self._own.radius)}"
-            f" cannot follow both lines {one} and {other}: beside one of them it cuts into the"
-            " other"
-        )
+        own, moves = self._own, self._own.moves
+        is_lead = own.closing.closed and {moves[0].line, moves[-1].line} & {one, other}
+        raise (LeadRefusal if is_lead else Refusal)(own.gouge_text(one, other))
 
     def _note(self, one: int, other: int, what: str) -> None:
         one, other = sorted((one, other))
@@ -128,58 +112,45 @@ class _Sweep:
             self._contour.notes.append(text)
 
     def _gouges(self, point: WallPoint) -> list[_Gouge]:
-        """Return the gouges at a wall's point, none where a later pass cuts it (REPEATED)."""
-        own, distance, at = self._own, self._own.gouge_distance, point.point
-        low = partial(self._is_low, own.walls[point.move_index].z0)
-        guess = self._of_move.get(point.move_index + self._ahead, ()) if self._is_repeated else ()
-        if any(low(k) and self._kind(point, k) == REPEATED for k in guess):
+        """Return the gouges at a wall's point, none where a later pass repeats the wall's own."""
+        distance, later = self._own.gouge_distance, self._later
+        # The pass that repeated the last point mostly repeats this one: that saves the search.
+        if later and later.cuts(point, distance) and self._repeats(later, point):
             return []
-        _, nearest = self._tree.nearest(at, distance, low)
-        if nearest is None:
+        _, deepest = self._sweep.deepest(point, distance)
+        if deepest is None:
             return []
         gouges = []
-        for k in filter(low, (nearest, *self._tree.near((at.real, at.imag) * 2, distance))):
-            kind = self._kind(point, k)
-            if kind == REPEATED:
-                self._ahead = self._passes[k].move_index - point.move_index
-                self._is_repeated = True
+        for each in chain([deepest], self._sweep.cutting(point, distance)):
+            if self._repeats(each, point):
+                self._later = each
                 return []
-            if kind:
-                gouges.append(self._gouge(point, k, kind))
+            gouges.append(self._gouge(point, each))
         return gouges
 
-    def _is_low(self, level: float, k: int) -> bool:
-        return is_low(self._passes[k].move, level)
+    def _repeats(self, cutting: Pass, point: WallPoint) -> bool:
+        """Return whether a pass cuts deeper into the material, in the wall's direction."""
+        curve = cutting.move.curve
+        along = point.direction.conjugate() * curve.direction(curve.share_of(point.point))
+        return along.real > SAME_DIRECTION_COSINE and self._is_deeper(cutting, point)
 
-    def _kind(self, point: WallPoint, k: int) -> str | None:
-        """Return how a pass cuts a point: FACING, DEEPER or REPEATED; None where it does not."""
-        own, (index, move, _) = self._own, self._passes[k]
-        share = move.curve.share_of(point.point)
-        if abs(move.curve.point(share) - point.point) >= own.gouge_distance:
-            return None
-        if index == RAMP:
-            return FACING
-        beside = self._passes[k].contact(share, own.offset) - point.point
-        turned = point.direction.conjugate()
-        clearance = (turned * beside).imag * (1.0 if own.offset > 0.0 else -1.0)
-        if clearance >= -own.tolerance:
-            return FACING
-        same_direction = (turned * move.curve.direction(share)).real > SAME_DIRECTION_COSINE
-        return REPEATED if same_direction else DEEPER
+    def _is_deeper(self, cutting: Pass, point: WallPoint) -> bool:
+        """Return whether the wall that a pass machines is deeper in the material than a point."""
+        own, share = self._own, cutting.move.curve.share_of(point.point)
+        beside = point.direction.conjugate() * (cutting.contact(share) - point.point)
+        return cutting.move_index != RAMP and beside.imag * own.side < -own.tolerance
 
-    def _gouge(self, point: WallPoint, k: int, kind: str) -> _Gouge:
-        """Return the gouge of a pass at a point."""
-        own, closing, index = self._own, self._own.closing, point.move_index
-        cutting, move, _ = self._passes[k]
+    def _gouge(self, point: WallPoint, cutting: Pass) -> _Gouge:
+        own, closing = self._own, self._own.closing
+        index, by = point.move_index, cutting.move_index
         if closing.crossing:
-            lead = all(k <= closing.first or k >= closing.last for k in (index, cutting))
+            lead = all(k <= closing.first or k >= closing.last for k in (index, by))
         else:
-            last = len(own.moves) - 1
-            lead = not closing.closed and kind == DEEPER and index in (0, last)
-        self._is_repeated |= lead
-        corner_before = cutting == index > 0  # the corner before a move belongs to both
-        line = own.moves[index - 1].line if corner_before else move.line
-        return _Gouge(line, lead, cutting == RAMP)
+            at_end = index in (0, len(own.moves) - 1)
+            lead = not closing.closed and at_end and self._is_deeper(cutting, point)
+        corner_before = by == index > 0  # the corner before a move belongs to both
+        line = own.moves[index - 1].line if corner_before else cutting.move.line
+        return _Gouge(line, lead, by == RAMP)
 
     def _check_crossings(self) -> None:
         """Refuse a contour that goes from one side of itself to the other."""
@@ -200,7 +171,7 @@ class _Sweep:
         for share in BESIDE_CROSSING:
             away = share * own.radius
             before, after = (
-                own.side(own.point_at(there + step), here, 2.0 * away) for step in (-away, away)
+                own.across(own.point_at(there + step), here, 2.0 * away) for step in (-away, away)
             )
             if min(before, after) < -deep and max(before, after) > deep:
                 return True
