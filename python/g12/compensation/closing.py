@@ -66,8 +66,6 @@ def closing_of(curves: Sequence[Curve], radius: float, near: float) -> Closing:
 
 
 class _Meeting(NamedTuple):
-    """Lengths along two moves at which they meet."""
-
     start: float
     end: float
     crossing: bool

@@ -99,7 +99,6 @@ class Sweep:
         return self.deepest(point, distance)[1] is not None
 
     def cutting(self, point: WallPoint, distance: float) -> Iterator[Pass]:
-        """Yield the passes that come nearer to a point than ``distance``."""
         for k in self._tree.near((point.point.real, point.point.imag) * 2, distance):
             if self.passes[k].cuts(point, distance):
                 yield self.passes[k]
@@ -153,7 +152,6 @@ class CompensatedContour:
 
     @cached_property
     def sweep(self) -> Sweep:
-        """The passes, without the ramps."""
         return Sweep(self.passes)
 
     @cached_property
@@ -205,7 +203,6 @@ class CompensatedContour:
                 yield last
 
     def gouge_text(self, one: int, other: int) -> str:
-        """Return the message for a refusal of two lines."""
         one, other = sorted((one, other))
         return (
             f"{self.code} line {other}: the tool of radius {number(self.radius)} cannot follow both"
@@ -258,7 +255,6 @@ class CompensatedContour:
 def compensated_contours(
     contour: Contour, cuts: Sequence[PathOfMove], tolerance: float
 ) -> Iterator[CompensatedContour]:
-    """Yield each contour between two ramps."""
     at = 0
     for compensated, group in groupby(cuts, key=lambda cut: cut.compensated):
         own = list(group)

@@ -47,7 +47,6 @@ class PlaneMove(NamedTuple):
 
     @property
     def length(self) -> float:
-        """The curve's length, without the change of Z."""
         return self.curve.length
 
     @property
@@ -67,8 +66,6 @@ class PlaneMove(NamedTuple):
 
 
 class Plunge(NamedTuple):
-    """A move of Z alone."""
-
     line: int
     feed: float
     z0: float
@@ -281,7 +278,6 @@ class Contour:
             self.refuse(self._switch, f"G{self.side} needs a G1 with {either} in its own block")
 
     def _check_switch(self, line: int, length: float) -> None:
-        """Check the G1 that switches compensation on or off."""
         if self._switch is None:
             return
         if self._switch != line or length <= SAME_POINT:

@@ -71,8 +71,6 @@ def check_gouges(contour: Contour, cuts: Sequence[PathOfMove], tolerance: float)
 
 
 class _OwnWalls:
-    """A contour's walls, against the tool that machines them."""
-
     def __init__(self, contour: Contour, own: CompensatedContour) -> None:
         self._contour, self._own = contour, own
         # At the ends of an open contour there may be no material: its ramps may cut there.
@@ -80,7 +78,6 @@ class _OwnWalls:
         self._later: Pass | None = None  # the last one found that only repeats the pass for a wall
 
     def check(self) -> None:
-        """Refuse the gouges, or report them."""
         own, closing = self._own, self._own.closing
         if closing.crossing:
             first, last = own.moves[closing.first], own.moves[closing.last]

@@ -119,7 +119,6 @@ def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
 
 
 def _path_end(contour: Contour, steps: list[_Step]) -> complex:
-    """Return the end of the tool centre's path."""
     step = steps[-1]
     if step.ramp:
         contour.refuse(
@@ -145,7 +144,6 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Jo
 
 
 def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
-    """Return the joint between two elements under compensation."""
     turned = a.move.curve.direction(1.0).conjugate() * b.move.curve.direction(0.0)
     sine, cosine = turned.imag, turned.real
     end_before, start_after, offset = a.parallel.end, b.parallel.start, b.move.offset
@@ -194,7 +192,6 @@ def _code(move: PlaneMove) -> str:
 
 
 def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:
-    """Return the arc about an outside corner before ``move``."""
     turn = -1 if move.offset > 0.0 else 1
     sweep = sweep_between(joint.end_before, joint.start_after, corner, turn)
     return move._replace(curve=Arc(joint.end_before, corner, sweep), z1=move.z0)
@@ -215,7 +212,6 @@ def _parallel(contour: Contour, move: PlaneMove) -> Curve:
 
 
 def _neighbours(contour: Contour, move: PlaneMove) -> str:
-    """Return the lines of the moves beside one, for a message."""
     moves = [e for e in contour.elements if isinstance(e, PlaneMove)]
     k = moves.index(move)  # one ramp comes before it, another after it
     return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"

@@ -102,7 +102,6 @@ def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> 
 
 
 def _is_like(one: PlaneMove, other: PlaneMove) -> bool:
-    """Return whether two lines under compensation share level, feed and offset."""
     level = one.z0 == one.z1 == other.z1
     alike = one.feed == other.feed and one.offset == other.offset
     return one.offset != 0.0 and level and alike
@@ -113,5 +112,4 @@ def _is_line(element: PathElement) -> TypeGuard[PlaneMove]:
 
 
 def _is_short(before: PlaneMove, move: PlaneMove, limit: float) -> bool:
-    """Return whether a move that follows another under compensation may be removed."""
     return bool(before.offset and move.offset) and move.length <= limit

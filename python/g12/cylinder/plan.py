@@ -65,15 +65,12 @@ def _acceleration(direction: Direction, _point: complex, *, settings: CylinderSe
 
 
 class _Surface(StepMaker):
-    """Z and the C axis, making one element after the other."""
-
     def __init__(self, contour: Contour, settings: CylinderSettings) -> None:
         x, angle, z = contour.start
         super().__init__(contour, MachinePosition(x, degrees(angle), z))
         self._settings = settings
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
-        """Add the segments of a move on the surface."""
         settings, (x, c, z) = self._settings, self.position
         split_by = partial(split_on_cylinder, move, settings.radius)
         split = self._split(move, split_by, settings.tolerance, stop, settings.least_z)
@@ -82,11 +79,9 @@ class _Surface(StepMaker):
         self._run(move.line, axes, [(x, c, z, feed) for z, c, x, feed in segments], stop)
 
     def plunge(self, move: Plunge, stop: bool) -> None:
-        """Add a move of X alone."""
         self._run(move.line, "X", [(move.z1, *self.position[1:], move.feed)], stop)
 
     def finish(self, path: Sequence[PathElement]) -> None:
-        """Add the remainder of the last segments in Z and X."""
         x, z = self.position.x, self.position.z
         for element in path:
             x = x if isinstance(element, Mark) else element.z1

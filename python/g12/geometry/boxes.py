@@ -21,7 +21,6 @@ class BoxTree:
 
     @property
     def box(self) -> Box:
-        """The box around all curves."""
         return self._root.box
 
     def near(self, box: Box, distance: float) -> Iterator[int]:

@@ -18,18 +18,14 @@ Box = tuple[float, float, float, float]  # least x and y, greatest x and y
 
 
 class Line(NamedTuple):
-    """A straight curve."""
-
     start: complex
     end: complex
 
     @property
     def length(self) -> float:
-        """The distance of the ends."""
         return abs(self.end - self.start)
 
     def point(self, share: float) -> complex:
-        """Return the point at a share of the line."""
         return self.start + share * (self.end - self.start)
 
     def direction(self, share: float = 0.0) -> complex:
@@ -38,11 +34,9 @@ class Line(NamedTuple):
         return (self.end - self.start) / length if length > DEGENERATE else 0j
 
     def portion(self, first: float, last: float) -> Line:
-        """Return the line between two shares."""
         return Line(self.point(first), self.point(last))
 
     def reversed(self) -> Line:
-        """Return the line from its end to its start."""
         return Line(self.end, self.start)
 
     def offset(self, distance: float) -> Line:
@@ -59,7 +53,6 @@ class Line(NamedTuple):
         return min(1.0, max(0.0, ((point - self.start) * along.conjugate()).real / square))
 
     def distance(self, point: complex) -> float:
-        """Return the distance of a point from the line."""
         return abs(point - self.point(self.share_of(point)))
 
     def length_to(self, point: complex, late: bool = False) -> float:
@@ -68,7 +61,6 @@ class Line(NamedTuple):
 
     @property
     def box(self) -> Box:
-        """The least box around the line."""
         (x0, y0), (x1, y1) = _pair(self.start), _pair(self.end)
         return min(x0, x1), min(y0, y1), max(x0, x1), max(y0, y1)
 
@@ -82,21 +74,17 @@ class Arc(NamedTuple):
 
     @property
     def end(self) -> complex:
-        """The start, turned about the centre by the sweep."""
         return self.point(1.0)
 
     @property
     def radius(self) -> float:
-        """The distance of the start from the centre."""
         return abs(self.start - self.centre)
 
     @property
     def length(self) -> float:
-        """The radius times the angle."""
         return self.radius * abs(self.sweep)
 
     def point(self, share: float) -> complex:
-        """Return the point at a share of the arc."""
         return self.centre + (self.start - self.centre) * cmath.rect(1.0, share * self.sweep)
 
     def direction(self, share: float = 0.0) -> complex:
@@ -105,11 +93,9 @@ class Arc(NamedTuple):
         return math.copysign(1.0, self.sweep) * 1j * outward / (abs(outward) or 1.0)
 
     def portion(self, first: float, last: float) -> Arc:
-        """Return the arc between two shares."""
         return Arc(self.point(first), self.centre, (last - first) * self.sweep)
 
     def reversed(self) -> Arc:
-        """Return the arc from its end to its start."""
         return Arc(self.end, self.centre, -self.sweep)
 
     def offset(self, distance: float) -> Arc:
@@ -121,7 +107,6 @@ class Arc(NamedTuple):
         return self._replace(start=self.start - math.copysign(1.0, self.sweep) * distance * outward)
 
     def share_of(self, point: complex) -> float:
-        """Return the share of the arc's point nearest to a point."""
         angle, sweep = self._angle_to(point), abs(self.sweep)
         if angle <= sweep:
             return angle / (sweep or 1.0)
@@ -139,7 +124,6 @@ class Arc(NamedTuple):
         return within[0] if within else ends
 
     def distance(self, point: complex) -> float:
-        """Return the distance of a point from the arc."""
         if self._angle_to(point) <= abs(self.sweep):
             return abs(abs(point - self.centre) - self.radius)
         return min(abs(point - self.start), abs(point - self.end))

@@ -100,6 +100,5 @@ def _direction(element: MotionElement, share: float) -> Direction:
 
 
 def _length(element: MotionElement) -> float:
-    """Return the length of an element in space."""
     along = element.length if isinstance(element, PlaneMove) else 0.0
     return hypot(along, element.z1 - element.z0)

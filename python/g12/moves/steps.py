@@ -56,7 +56,6 @@ class SectionPlan(NamedTuple):
 
     @property
     def end(self) -> Start:
-        """The start of a contour that continues this one."""
         return Start(self.position.x, self.angle, self.position.z)
 
 

@@ -85,7 +85,6 @@ def split_beside(curve: Curve, law: Law, beside: float) -> Split:
 
 
 def _moved(curve: Curve, share: float, leftwards: float) -> complex:
-    """Return a point of a move, moved to its left."""
     return curve.point(share) + 1j * leftwards * curve.direction(share)
 
 

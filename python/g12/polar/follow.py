@@ -105,7 +105,6 @@ def can_follow(move: PlaneMove, limits: FaceLimits, share: float = 1.0) -> bool:
 def can_follow_at(
     move: PlaneMove, demands: Sequence[Demand], limits: FaceLimits, share: float
 ) -> bool:
-    """Return what `can_follow` does, for the demands of the move."""
     return all(
         FOLLOW_SLACK * followed(move, demand, limits, share) >= move.feed for demand in demands
     )

@@ -101,8 +101,6 @@ def quickness(
 
 
 class _SlideAndSpindle(StepMaker):
-    """Turns elements, one after the other, into moves of the X slide and the C axis."""
-
     def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
         x, self.angle, z = contour.start
         super().__init__(contour, MachinePosition(x, c + degrees(self.angle), z))
@@ -111,7 +109,6 @@ class _SlideAndSpindle(StepMaker):
         self._laws: dict[tuple[float, float], Law] = {}
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
-        """Add the segments of a move in the plane."""
         settings = self._settings
         split = partial(self._split_move, move)
         ends = self._split(move, split, settings.tolerance, stop, settings.least_x)
@@ -137,7 +134,6 @@ class _SlideAndSpindle(StepMaker):
             )
 
     def cut_on_face(self, move: PlaneMove | Plunge) -> None:
-        """Add a move on the face as it is."""
         if isinstance(move, Plunge):
             points = [(*self.position[:2], move.z1)]
         else:
@@ -148,7 +144,6 @@ class _SlideAndSpindle(StepMaker):
         self.position = MachinePosition(*points[-1])
 
     def plunge(self, move: Plunge, stop: bool) -> None:
-        """Add a move of Z alone."""
         self._run(move.line, "Z", [(self.position.x, self.position.c, move.z1, move.feed)], stop)
 
     def finish(self, path: Sequence[PathElement]) -> None:

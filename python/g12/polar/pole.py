@@ -40,7 +40,6 @@ def through_pole(
 
 
 def _rerouted(move: PlaneMove, pole_radius: float) -> list[PathElement] | None:
-    """Return the moves that replace one within ``pole_radius`` of the pole, None for others."""
     curve = move.curve
     ends = [float(k) for k, end in enumerate((curve.start, curve.end)) if abs(end) <= pole_radius]
     if isinstance(curve, Line):

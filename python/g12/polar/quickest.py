@@ -181,7 +181,6 @@ def _joined(run: list[_Span]) -> _Span:
 
 
 def _move_of(span: _Span) -> PathElement:
-    """Return the element, or the portion of it, that a span covers."""
     move = span.element.move
     if not isinstance(move, PlaneMove):
         return move
@@ -233,7 +232,6 @@ def _in_segments(span: _Span) -> float:
 
 
 def _smooth(spans: list[_Span]) -> Iterator[list[_Span]]:
-    """Yield spans without a corner between them."""
     stretch: list[_Span] = []
     for span in spans:
         stretch.append(span)

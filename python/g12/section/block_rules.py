@@ -121,7 +121,6 @@ class SectionBlock(NamedTuple):
 
     @property
     def moves(self) -> bool:
-        """Return whether the block is a segment of the contour."""
         return any(letter in self.words for letter in MOVING_WORDS)
 
 
@@ -222,7 +221,6 @@ def _check_arguments(block: SectionBlock, location: BlockLocation) -> None:
 
 
 def _check_waiting(words: dict[str, float], location: BlockLocation) -> None:
-    """Refuse an M66 that LinuxCNC would refuse."""
     waits = words.get("L", AT_ONCE) != AT_ONCE
     for wrong, reason in (
         (("P" in words) == ("E" in words), "either P or E, the number of the input"),

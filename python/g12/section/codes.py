@@ -23,11 +23,9 @@ class SectionCodes(NamedTuple):
     word: str = ""
 
     def begins(self, block: SectionBlock) -> bool:
-        """Return whether a block switches on."""
         return block.g[GGroup.MOTION] in self.on and not self.ends(block)
 
     def ends(self, block: SectionBlock) -> bool:
-        """Return whether a block switches off."""
         off = not self.word or block.words.get(self.word) == 0.0
         return off and block.g[GGroup.MOTION] in self.off
 

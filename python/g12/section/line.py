@@ -45,7 +45,6 @@ class BlockLocation(NamedTuple):
     line: int
 
     def refuse(self, reason: str) -> Refusal:
-        """Return the refusal of this line, for the caller to raise."""
         line = f" line {self.line}" if self.line else ""
         return Refusal(f"{self.code}{line}: {reason}")
 
@@ -87,12 +86,10 @@ class TextLine(NamedTuple):
 
     @property
     def empty(self) -> bool:
-        """Return whether the line holds no words."""
         return not self.text.lstrip("/")
 
     @property
     def deletable(self) -> bool:
-        """Return whether the line is skipped with block delete."""
         return self.text[:1] == "/"
 
 
