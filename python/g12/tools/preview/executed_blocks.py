@@ -8,14 +8,12 @@ them, in a copy of the program that is traced. No code is shared with the planne
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.tools.errors import ProgramError
 from g12.tools.preview.moves import Event, Trace
-from g12.tools.preview.tracer import Parameters, Tracer
 
 TAG = "g12-verify"
 CLAMP = "clamp"  # printed by the sub of a clamp code; the first word of its event
@@ -62,7 +60,8 @@ class Text(NamedTuple):
     def too_long(self) -> bool:
         """Whether the line that evaluates one of its values is longer than LinuxCNC reads."""
         expressions = (value for _, value in self.words if not is_number(value))
-        return any(len(assignment(self, text)) > LONGEST_REPORT_LINE for text in expressions)
+        own = len(f"/{VALUE}=") if self.deleted else len(f"{VALUE}=")
+        return any(own + len(text) > LONGEST_REPORT_LINE for text in expressions)
 
     @property
     def hides_code(self) -> bool:
@@ -92,9 +91,6 @@ class Block:
     state_after: dict[str, float] = field(default_factory=dict)
     events: tuple[Event, ...] = ()
     own_events: tuple[Event, ...] = ()
-
-
-Selection = Callable[[Text], bool]
 
 
 def is_number(text: str) -> bool:
@@ -174,64 +170,29 @@ def lines_as_written(path: Path) -> list[str]:
     return path.read_text(encoding="utf-8", errors="replace").splitlines()
 
 
-def executed(
-    tracer: Tracer, program: Path, trace: Trace, selected: Selection, parameters: Parameters = None
-) -> list[Block]:
-    """Return every execution of the selected blocks, in order; ``trace`` is the program's."""
-    texts = read_lines(program)
-    lines = with_reports(program, texts, selected)
-    copy = tracer.trace_text(lines, parameters=parameters, watch_offsets=True)
-    if len(copy.moves) != len(trace.moves):
-        raise moves_differ(program)
-    return blocks_in(copy, texts)
-
-
-def moves_differ(program: Path) -> ProgramError:
-    """Return the error for a program whose copy behaves differently."""
-    return ProgramError(
-        f"{program}: moves differently with reports between its lines:"
-        " its blocks cannot be followed"
-    )
-
-
-def with_reports(
-    path: Path, texts: Sequence[Text], selected: Selection, skip: int = 0
-) -> list[str]:
-    """Return a file's lines, with reports around the selected blocks; see `reports_before`."""
-    groups = (
-        (*reports_before(text, skip), line, *reports_after(text, skip))
-        if selected(text) and not text.too_long
-        else (line,)
-        for text, line in zip(texts, lines_as_written(path))
-    )
-    return [line for group in groups for line in group]
-
-
 def reports_before(text: Text, skip: int = 0) -> Iterator[str]:
     """Return the lines that report a block's start, the state before it and its words.
 
     ``skip`` is the number of lines of other files that precede it in the count of texts.
     """
+    yield from _state_reports("begin", text, skip)
     slash = "/" if text.deleted else ""
-    yield f"{slash}{POSITIONS_ENLARGED}"
-    yield f"{slash}(DEBUG,{TAG} begin {skip + text.number} {STATE_TEXT})"
     for index, (_, value) in enumerate(text.words):
         if not is_number(value):
-            yield assignment(text, value)
-            yield assignment(text, f"[{VALUE}*{ENLARGED}]")
+            yield f"{slash}{VALUE}={value}"
+            yield f"{slash}{VALUE}=[{VALUE}*{ENLARGED}]"
             yield f"{slash}(DEBUG,{TAG} value {index} %.9f{VALUE})"
-
-
-def assignment(text: Text, value: str) -> str:
-    """Return the line that evaluates a value of a block."""
-    return f"{'/' if text.deleted else ''}{VALUE}={value}"
 
 
 def reports_after(text: Text, skip: int = 0) -> Iterator[str]:
     """Return the lines that report a block's end, and the state after it."""
+    yield from _state_reports("end", text, skip)
+
+
+def _state_reports(kind: str, text: Text, skip: int) -> Iterator[str]:
     slash = "/" if text.deleted else ""
     yield f"{slash}{POSITIONS_ENLARGED}"
-    yield f"{slash}(DEBUG,{TAG} end {skip + text.number} {STATE_TEXT})"
+    yield f"{slash}(DEBUG,{TAG} {kind} {skip + text.number} {STATE_TEXT})"
 
 
 def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:

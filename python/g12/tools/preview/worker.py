@@ -17,9 +17,8 @@ import shutil
 import signal
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from multiprocessing.connection import Connection
-from typing import Any
 
 INCH = 25.4  # mm; the preview reports inches
 FRESH, START = "G12 TRACE SET-UP", "G12 TRACE STARTS HERE"
@@ -91,31 +90,22 @@ class ToolEntry(ctypes.Structure):
         ("reserve", ctypes.c_char * 512),
     )
 
-    def for_canon(self) -> tuple:
-        """Return the record in the preview's form."""
-        return (self.number, *self.offset, self.diameter, *self.angles, self.orientation)
 
+def load_tools(table: str, random: bool) -> list[tuple]:
+    """Load a tool table in LinuxCNC's shared form, which the interpreter looks tools up in.
 
-class ToolTable:
-    """The tool table in LinuxCNC's shared form, which the interpreter looks tools up in."""
-
-    def __init__(self, table: str, random: bool) -> None:
-        library = tool_library()
-        library["tooldata_init"](ctypes.c_bool(random))
-        library["tool_mmap_creator"](None, int(random))
-        library["tooldata_reset"]()
-        if library["tooldata_load"](table.encode(), None):
-            raise ValueError(f"{table}: LinuxCNC cannot read this tool table")
-        entries = [ToolEntry() for _ in range(library["tooldata_last_index_get"]() + 1)]
-        for index, entry in enumerate(entries):
-            library["tooldata_get"](ctypes.byref(entry), index)
-        self._entries = [entry.for_canon() for entry in entries]
-
-    def __len__(self) -> int:
-        return len(self._entries)
-
-    def __iter__(self) -> Iterator[tuple]:
-        return iter(self._entries)
+    Return its records in the preview's form.
+    """
+    library = tool_library()
+    library["tooldata_init"](ctypes.c_bool(random))
+    library["tool_mmap_creator"](None, int(random))
+    library["tooldata_reset"]()
+    if library["tooldata_load"](table.encode(), None):
+        raise ValueError(f"{table}: LinuxCNC cannot read this tool table")
+    entries = [ToolEntry() for _ in range(library["tooldata_last_index_get"]() + 1)]
+    for index, entry in enumerate(entries):
+        library["tooldata_get"](ctypes.byref(entry), index)
+    return [(e.number, *e.offset, e.diameter, *e.angles, e.orientation) for e in entries]
 
 
 class Lines:
@@ -187,7 +177,7 @@ class Lines:
 class Canon:
     """Records the interpreter's canonical calls, in mm and machine coordinates."""
 
-    def __init__(self, machine: dict, tools: ToolTable, request: dict) -> None:
+    def __init__(self, machine: dict, tools: list[tuple], request: dict) -> None:
         self.machine, self.tools = machine, list(tools)
         self.parameter_file = request["parameter_file"]
         self.lines = Lines(request["program"])
@@ -545,21 +535,19 @@ def record_errors_of_handlers() -> None:
     emccanon.CANON_ERROR = lambda text, *_args: emccanon.MESSAGE(text)
 
 
-def interpret(machine: dict, tools: ToolTable, request: dict) -> dict:
+def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
     canon = Canon(machine, tools, request)
     setup = [f"({FRESH})", "G49", *machine["setup"], *request["setup"], f"({START})"]
     started = time.perf_counter()
     error = interpreted(canon, request["program"], setup)
     seconds = time.perf_counter() - started
-    answer: dict[str, Any] = {
+    return {
         "moves": canon.moves,
         "messages": canon.messages,
         "events": canon.events,
-    }
-    answer["error"], answer["files"] = error, sorted(canon.files)
-    answer["tool_sizes"] = tool_sizes(len(tools))
-    return {
-        **answer,
+        "error": error,
+        "files": sorted(canon.files),
+        "tool_sizes": tool_sizes(len(tools)),
         "position": canon.position,
         "seconds": seconds,
         **state_after(request, canon.length),
@@ -621,7 +609,7 @@ def blank(directory: str) -> dict:
     }
 
 
-def answered(machine: dict, tools: ToolTable, request: dict) -> dict:
+def answered(machine: dict, tools: list[tuple], request: dict) -> dict:
     """Interpret one program; ``failure`` in the answer is a fault of this process."""
     try:
         return interpret(machine, tools, request)
@@ -647,7 +635,7 @@ def ini_refused(machine: dict) -> str | None:
     return None
 
 
-def start(machine: dict, tools: ToolTable) -> dict:
+def start(machine: dict, tools: list[tuple]) -> dict:
     """Load the machine's Python modules and return its answer to a blank program.
 
     ``no_end`` is this LinuxCNC's error for a program without an end.
@@ -673,7 +661,7 @@ def reply(connection: Connection, machine: dict, answer: dict) -> None:
     connection.send({**answer, "printed": printed(machine["output"])})
 
 
-def reply_alone(connection: Connection, machine: dict, tools: ToolTable, request: dict) -> None:
+def reply_alone(connection: Connection, machine: dict, tools: list[tuple], request: dict) -> None:
     """Answer from a fork of this process, which discards the state of the machine's modules."""
     copy = os.fork()
     if copy:
@@ -712,7 +700,7 @@ def serve(descriptor: int) -> None:
 
 def answer_requests(connection: Connection, machine: dict) -> None:
     """Load the machine and answer requests until the other end closes."""
-    tools = ToolTable(machine["tool_table"], machine["random"])
+    tools = load_tools(machine["tool_table"], machine["random"])
     answer = start(machine, tools)
     known = tuple(answer.get("globals", ()))
     reply(connection, machine, answer)

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from g12.machine_ini import remap_lines
+from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import (
     CLAMP,
@@ -20,7 +21,6 @@ from g12.tools.preview.executed_blocks import (
     Block,
     Text,
     blocks_in,
-    executed,
     lines_as_written,
     read_lines,
     reports_after,
@@ -53,14 +53,22 @@ def executed_everywhere(
         for each in subs
         if each.stem != CALL and codes.selected_in(read_lines(each))  # the event's own is a cycle
     ]
-    for some in filter(None, dict.fromkeys(((*files, *clamps), tuple(clamps)))):
+    for some in dict.fromkeys(((*files, *clamps), tuple(clamps), ())):
         copies = Copies(program, some)
         lines = watched_lines(copies, codes, {file.name: code for file, code in clamps.items()})
         copy = copies.trace(tracer, lines, tools, parameters, watch_offsets=True)
-        if [move.end for move in copy.moves] == [move.end for move in trace.moves]:
-            return blocks_in(copy, copies.texts), bool(clamps)
-    selected = codes.selected_in(read_lines(program))
-    return executed(tracer, program, trace, selected.__contains__, parameters), False
+        ends, expected = ([move.end for move in each.moves] for each in (copy, trace))
+        if ends == expected or (not some and len(ends) == len(expected)):
+            return blocks_in(copy, copies.texts), bool(some and clamps)
+    raise moves_differ(program)
+
+
+def moves_differ(program: Path) -> ProgramError:
+    """Return the error for a program whose copy behaves differently."""
+    return ProgramError(
+        f"{program}: moves differently with reports between its lines:"
+        " its blocks cannot be followed"
+    )
 
 
 class Copies:

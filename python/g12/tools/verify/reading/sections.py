@@ -18,7 +18,6 @@ from g12.tools.preview.executed_blocks import (
     Text,
     blocks_in,
     is_number,
-    moves_differ,
     read_lines,
     reports_after,
     reports_before,
@@ -27,7 +26,7 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
 from g12.tools.verify.expected.words import kept_state
 from g12.tools.verify.reading.codes import Codes
-from g12.tools.verify.reading.executed_subs import Copies, called_files
+from g12.tools.verify.reading.executed_subs import Copies, called_files, moves_differ
 
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
 DWELL = 4.0
