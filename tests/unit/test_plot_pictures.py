@@ -235,7 +235,7 @@ def uncut(centre):
 def drawn_in_red(shown):
     """Return how many polylines and marks a plan has in red."""
     axes = Figure().add_subplot()
-    plan_view.draw_paths(plan_view.View(axes, shown), plan_view.milled_levels(shown))
+    plan_view.draw_paths(plan_view.SceneView(axes, shown), plan_view.milled_levels(shown))
     lines = [one for one in axes.collections if one.get_edgecolor()[0] == pytest.approx(RED)]
     return len(lines[0].get_paths()), len([one for one in axes.lines if one.get_marker() == "X"])
 

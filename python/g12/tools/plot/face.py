@@ -19,7 +19,7 @@ from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     Level,
-    View,
+    SceneView,
     bounds_of,
     draw_plan,
     few,
@@ -65,13 +65,13 @@ def draw_face(scene: Scene) -> Figure:
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
     face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
     frame_face(face, scene, levels)
-    draw_plan(View(face, scene), levels)
+    draw_plan(SceneView(face, scene), levels)
     entries = [*legend_entries(scene, levels, ROOM), TIME_IN_RAPIDS]
     columns = 2 if scene.real is None else 1
     style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
     draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, levels, "part")
     if scene.real is not None:
-        mark_worst(View(face, scene))
+        mark_worst(SceneView(face, scene))
         draw_window(figure, (LEFT + FACE_SIZE - DETAIL_SIZE, 0.55), scene)
     return figure
 

@@ -19,7 +19,7 @@ from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     SAME_DEPTH,
     Level,
-    View,
+    SceneView,
     bounds_of,
     draw_paths,
     draw_plan,
@@ -43,7 +43,7 @@ MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
-SIDE = [0, 2]  # axes
+XZ = [0, 2]  # the axes of the side view
 HEIGHTS = 0.8  # width: the labels of the floors' levels, with their lines
 LETTER_HEIGHT = 0.11
 LEADER = 0.2  # the lines to the texts
@@ -98,9 +98,9 @@ def draw_mill(scene: Scene) -> Figure:
     plan.set_aspect("equal", adjustable="datalim")
     plan.set_xlabel("")
     style.caption(plan, "Plan")
-    views = View(plan, scene), View(side, scene, SIDE)
+    views = SceneView(plan, scene), SceneView(side, scene, XZ)
     draw_plan(views[0], levels)
-    style.frame(side, low[SIDE], high[SIDE], scene.unit, "XZ")
+    style.frame(side, low[XZ], high[XZ], scene.unit, "XZ")
     draw_side(views[1], levels, layout.stretch)
     layout.draw_legend(figure, shown)
     if scene.real is not None:
@@ -110,7 +110,7 @@ def draw_mill(scene: Scene) -> Figure:
     return figure
 
 
-def draw_side(view: View, levels: Sequence[Level], stretch: float) -> None:
+def draw_side(view: SceneView, levels: Sequence[Level], stretch: float) -> None:
     """Draw the view along Y: the material removed at each Z level, projected."""
     axes, scene, _ = view
     top = top_of(scene)

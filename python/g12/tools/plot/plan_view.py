@@ -46,7 +46,7 @@ class Level(NamedTuple):
     radius: float = 0.0
 
 
-class View(NamedTuple):
+class SceneView(NamedTuple):
     """Axes that show a scene in two axes of its part, by their indices ``pair``."""
 
     axes: Axes
@@ -193,7 +193,7 @@ def first_shown(scene: Scene) -> int:
 # ------------------------------------------------------------ drawing
 
 
-def draw_plan(view: View, levels: Sequence[Level]) -> None:
+def draw_plan(view: SceneView, levels: Sequence[Level]) -> None:
     seen = view.scene.seen
     draw_stock(view, seen.stock.shape if seen.stock else None)
     for order, level in enumerate(levels):
@@ -206,13 +206,13 @@ def draw_plan(view: View, levels: Sequence[Level]) -> None:
     draw_signs(view)
 
 
-def draw_signs(view: View) -> None:
+def draw_signs(view: SceneView) -> None:
     """Draw signs at the findings that are neither a rapid nor uncut material."""
     for finding in view.scene.seen.signs:
         style.draw_sign(view.axes, view.shown(finding.place))
 
 
-def draw_stock(view: View, shape: BaseGeometry | None) -> None:
+def draw_stock(view: SceneView, shape: BaseGeometry | None) -> None:
     if shape is not None:
         style.fill(view.axes, view.area(shape), style.STOCK, order=0.7)
         style.fill(view.axes, view.area(shape), "none", style.STOCK_EDGE, 2.2)
@@ -225,7 +225,7 @@ def floor(scene: Scene, level: Level) -> tuple[object, object]:
     return level.shade.floor, style.tint(level.shade.line, 0.35)
 
 
-def draw_paths(view: View, levels: Sequence[Level]) -> None:
+def draw_paths(view: SceneView, levels: Sequence[Level]) -> None:
     """Draw rapids, programmed path and actual motion."""
     scene, is_run = view.scene, view.scene.real is not None
     rapids = (move for move in scene.moves[first_shown(scene) :] if move.kind == "rapid")
@@ -249,7 +249,7 @@ def is_point(line: np.ndarray) -> bool:
     return bool(np.ptp(line, axis=0).max() < PICTURE_CHORD)
 
 
-def draw_real(view: View) -> None:
+def draw_real(view: SceneView) -> None:
     """Draw the actual motion, rapids dashed."""
     real = view.scene.real
     lines: dict[bool, list[np.ndarray]] = {True: [], False: []}
@@ -293,7 +293,7 @@ def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
     return list(zip(found, style.feed_colours(len(found)), groups))
 
 
-def draw_plunges(view: View) -> None:
+def draw_plunges(view: SceneView) -> None:
     """Mark where the tool plunges, with the cutter drawn to scale about each point."""
     unit = view.scene.unit.mm
     for (x, y), tool in plunges_of(view.scene):
@@ -303,7 +303,7 @@ def draw_plunges(view: View) -> None:
         view.axes.add_patch(circle)
 
 
-def draw_arrows(view: View) -> None:
+def draw_arrows(view: SceneView) -> None:
     """Show the direction of the longer moves, once where levels repeat them."""
     axes = view.axes
     least = LONG * min(np.diff(axes.get_xlim())[0], np.diff(axes.get_ylim())[0])
@@ -325,7 +325,7 @@ def elements(scene: Scene) -> list[np.ndarray]:
     return blocks
 
 
-def mark_worst(view: View) -> None:
+def mark_worst(view: SceneView) -> None:
     """Circle the largest deviation of the run."""
     worst = worst_of(view.scene.real, view.scene.moves)
     if worst is not None:

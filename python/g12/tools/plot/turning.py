@@ -14,7 +14,7 @@ from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.plan_view import (
     PICTURE_CHORD,
     Level,
-    View,
+    SceneView,
     bounds_of,
     draw_arrows,
     draw_paths,
@@ -41,7 +41,7 @@ def draw_turn(scene: Scene) -> Figure:
     page = TOP + max(height, beside) + BOTTOM
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
     axes = style.add_axes(figure, LEFT, page - TOP - height, width, height)
-    view = View(axes, scene, PROFILE)
+    view = SceneView(axes, scene, PROFILE)
     draw_profile(view, low, high)
     style.draw_legend(figure, turn_entries(scene), LEFT + width + 0.2, page - TOP + 0.08)
     if scene.real is not None:
@@ -50,7 +50,7 @@ def draw_turn(scene: Scene) -> Figure:
     return figure
 
 
-def draw_profile(view: View, low: np.ndarray, high: np.ndarray) -> None:
+def draw_profile(view: SceneView, low: np.ndarray, high: np.ndarray) -> None:
     """Draw the path between two corners of the view, and the spindle's centre line."""
     style.frame(view.axes, low, high, view.scene.unit, ("Z", "X (radius)"))
     view.axes.set_aspect("equal", adjustable="datalim")

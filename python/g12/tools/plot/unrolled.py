@@ -16,7 +16,7 @@ from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.face import TIME_IN_RAPIDS, draw_history
 from g12.tools.plot.plan_view import (
-    View,
+    SceneView,
     bounds_of,
     draw_plan,
     legend_entries,
@@ -46,7 +46,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     more = DETAIL_ROW if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
-    view = View(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
+    view = SceneView(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
     frame_surface(view.axes, flat, low, high, scene.x0_text)
     draw_plan(view, levels)
     panels = panels_of(figure, page - TOP - up - UNDER)
