@@ -74,7 +74,8 @@ def interrupted_by_hand(machine, chance):
         getattr(machine, how)()
     if how == "estop":
         machine.enable()
-    machine.wait_for(lambda _: not on_the_face(machine) and machine.get("motion.in-position"))
+    machine.wait_for(lambda now: not on_the_face(machine) and "G18" in now.modes.gcodes)
+    machine.wait_for(lambda _: machine.get("motion.in-position"))
     machine.errors(), machine.messages()
     stood = joints_of(machine)
     for _ in range(chance.randint(1, 3)):

@@ -3,8 +3,11 @@
 
 import subprocess
 import time
-from dataclasses import dataclass
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -12,44 +15,23 @@ from g12.tools.headless import machine
 from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import Run
 from g12.tools.headless.namespaces import Isolated
-from g12.tools.preview.moves import Error, Message, Modes, modes
+from g12.tools.preview.moves import Error, Message, modes
 from g12.tools.preview.tracer import start_block, write_program
 from g12.tools.verify.proof import Proof, prove
 from support.sim_machines import ROOT, SIM, machine_scope
 
 
-@dataclass(frozen=True)
-class Status:
-    """What LinuxCNC says of itself, in machine units.
-
-    ``task_mode`` is ``manual``, ``auto`` or ``mdi``; ``interp`` is ``idle``, ``reading``,
-    ``paused`` or ``waiting``; ``idle`` says that the interpreter is done and the axes stand.
-    ``position`` (commanded) and ``actual`` are nine floats in the order of X Y Z A B C U V W.
-    ``motion_line`` is the line of the move being made.
-    """
-
-    task_mode: str
-    interp: str
-    enabled: bool
-    paused: bool
-    idle: bool
-    in_position: bool
-    position: tuple[float, ...]
-    actual: tuple[float, ...]
-    motion_line: int
-    feed_override: float
-    tool: int
-    queue: int
-    modes: Modes
-
-
 class Machine(machine.Machine):
-    """The machine of the commands, and what an operator does with it step by step."""
+    """The machine of the commands, and an operator: the methods of `operated_screen` too."""
 
     screen_module = "support.operated_screen"
     screen_folders = (*machine.Machine.screen_folders, str(ROOT / "tests"))
 
-    # Operating.
+    def __getattr__(self, name) -> Callable[..., Any]:
+        """Return the request of a method of the screen or its panel."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return partial(self._request, name)
 
     def mdi(self, text, *, wait=True, timeout=60.0) -> None:
         """Execute one block of MDI; without ``wait`` only start it."""
@@ -61,51 +43,11 @@ class Machine(machine.Machine):
         """Load a program given as text or as lines."""
         self._request("open", str(write_program(text, self.folder / "programs" / "program.ngc")))
 
-    def start(self, line=0) -> None:
-        """Cycle start, or run from ``line``."""
-        self._request("start_from", line)
-
-    def step(self) -> None:
-        """Run the next block and pause."""
-        self._request("step")
-
-    def pause(self) -> None:
-        """Feed hold."""
-        self._request("pause")
-
-    def resume(self) -> None:
-        """Go on after a pause."""
-        self._request("resume")
-
-    def abort(self) -> None:
-        """Stop everything and wait until the axes stand."""
-        self._request("abort")
-
-    def estop(self) -> None:
-        """Press the emergency stop; `enable` switches the machine on again, homed as it was."""
-        self._request("estop")
-
-    def enable(self) -> None:
-        """Leave e-stop and switch the machine on."""
-        self._request("enable")
-
-    def manual(self) -> None:
-        """Go to where the axes are jogged."""
-        self._request("manual")
-
-    def jog(self, axis, speed) -> None:
-        """Jog an axis of `manual`, in units per second, until its speed is set to 0."""
-        self._request("jog", axis, speed)
-
-    def block_delete(self, on) -> None:
-        """Let blocks that begin with / be skipped."""
-        self._request("block_delete", on)
-
     def wait_idle(self, timeout=60.0) -> None:
         """Wait until the interpreter is done and the axes stand."""
         self._request("wait_idle", timeout, timeout=timeout)
 
-    def wait_for(self, condition, timeout=60.0) -> Status:
+    def wait_for(self, condition, timeout=60.0) -> SimpleNamespace:
         """Wait until ``condition`` of the status holds, and return that status."""
         end = time.monotonic() + timeout
         while not condition(status := self.stat()):
@@ -121,12 +63,10 @@ class Machine(machine.Machine):
         """
         self.wait_for(lambda _: any(text in error.text for error in self.errors()), timeout)
 
-    # Looking.
-
-    def stat(self) -> Status:
-        """Return the present status."""
+    def stat(self) -> SimpleNamespace:
+        """Return the present status, as `operated_screen` describes it."""
         values = self._request("stat")
-        return Status(**{**values, "modes": modes(*values["modes"])})
+        return SimpleNamespace(**{**values, "modes": modes(*values["modes"])})
 
     def errors(self) -> list[Error]:
         """Return the operator errors since the last call."""
@@ -136,23 +76,9 @@ class Machine(machine.Machine):
         """Return the operator messages that are no errors, since the last call."""
         return [Message(line, text) for text, line in self._request("messages")]
 
-    def get(self, pin):
-        """Return the value of a HAL pin, parameter or signal."""
-        return self._request("get", pin)
-
-    def set(self, pin, value) -> None:
-        """Set a HAL parameter, a pin that nothing drives, or the signal that a pin reads."""
-        self._request("set", pin, value)
-
-    def sample(self) -> None:
-        """Start recording the motion."""
-        self._request("sample")
-
     def samples(self):
-        """Stop recording and return the motion."""
+        """Stop recording, which ``sample`` started, and return the motion."""
         return self._samples(*self._request("samples"))
-
-    # Whole programs.
 
     def run_text(self, text, timeout=600.0) -> Run:
         """Run a program given as text or as lines; see ``run``."""

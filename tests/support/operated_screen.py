@@ -19,7 +19,7 @@ INTERPRETER = {
 
 
 class OperatedPanel(Panel):
-    """All that an operator does; the names are those of `operated_machine.Machine`."""
+    """All that an operator does."""
 
     def estop(self):
         self._do(self._command.state, linuxcnc.STATE_ESTOP)
@@ -29,6 +29,7 @@ class OperatedPanel(Panel):
         self._mode(linuxcnc.MODE_MANUAL)
 
     def jog(self, axis, speed):
+        """Jog an axis, in units per second, until its speed is set to 0."""
         if speed:
             self._do(self._command.jog, linuxcnc.JOG_CONTINUOUS, AXIS_JOG, axis, speed)
         else:
@@ -38,7 +39,8 @@ class OperatedPanel(Panel):
         self._mode(linuxcnc.MODE_MDI)
         self._do(self._command.mdi, text)
 
-    def start_from(self, line):
+    def start(self, line=0):
+        """Cycle start, or run from a line."""
         self._mode(linuxcnc.MODE_AUTO)
         self._do(self._command.auto, linuxcnc.AUTO_RUN, line)
 
@@ -57,6 +59,7 @@ class OperatedPanel(Panel):
         self.wait_idle(GRACE)
 
     def block_delete(self, on):
+        """Let blocks that begin with / be skipped."""
         self._do(self._command.set_block_delete, on)
 
     def wait_idle(self, timeout):
@@ -69,7 +72,11 @@ class OperatedScreen(RecordingScreen):
     panel_kind = OperatedPanel
 
     def stat(self):
-        """Return the status as plain values."""
+        """Return the status as plain values, in machine units.
+
+        ``idle``: the interpreter is done and the axes are at rest. ``position`` (commanded) and
+        ``actual`` are nine floats. ``motion_line`` is the line of the move in motion.
+        """
         self.panel.wait(lambda stat: stat.task_mode in TASK_MODES, PATIENCE, "milltask")
         stat = self.panel.poll()
         return {
@@ -92,6 +99,7 @@ class OperatedScreen(RecordingScreen):
         return hal.get_value(pin)
 
     def set(self, pin, value):
+        """Set a HAL parameter, a pin that nothing drives, or the signal that a pin reads."""
         signal = signals_by_pin().get(pin)
         text = str(int(value)) if isinstance(value, bool) else str(value)
         hal.set_s(signal, text) if signal else hal.set_p(pin, text)
