@@ -44,24 +44,17 @@ class Pose(ctypes.Structure):
     _fields_ = [(letter, ctypes.c_double) for letter in "xyzabcuvw"]
 
 
-NUMBERS = [
-    "request",
-    "centre",
-    "tool_offset",
-    "type",
-    "speed",
-    "acceleration",
-    "c_speed",
-    "c_acceleration",
-    "feed",
-    "feed_upm",
-    "unit",
-    "most_override",
-]
-BITS = ["enabled", "program", "stands", "face", "program_line", "jog_inhibit",
-        "hold"]  # fmt: skip
+NUMBERS = {
+    "request": 0, "centre": 0, "tool_offset": 0, "type": 0, "speed": 0, "acceleration": 707,
+    "c_speed": 360, "c_acceleration": 3600, "feed": 1, "feed_upm": 0, "unit": 1,
+    "most_override": 0,
+}  # fmt: skip
+BITS = {
+    "enabled": 1, "program": 1, "stands": 1, "face": 0, "program_line": 0, "jog_inhibit": 0,
+    "hold": 0,
+}  # fmt: skip
 STATE = f"struct __comp_state {{ double {', '.join(NUMBERS)}; int {', '.join(BITS)}; }} pins;\n"
-STATE += "".join(f"#define {name} (__comp_inst->{name})\n" for name in NUMBERS + BITS)
+STATE += "".join(f"#define {name} (__comp_inst->{name})\n" for name in [*NUMBERS, *BITS])
 
 
 class Pins(ctypes.Structure):
@@ -75,12 +68,8 @@ class Kinematics:
     def __init__(self, library):
         self.library, self.pins = library, Pins.in_dll(library, "pins")
         assert self.set_up("XZC") == 0
-        self.pins.request = self.pins.centre = self.pins.tool_offset = 0.0
-        self.pins.enabled = self.pins.program = self.pins.stands = 1
-        self.pins.program_line = self.pins.speed = 0
-        self.pins.feed_upm = self.pins.most_override = 0.0
-        self.pins.feed = self.pins.unit = 1.0
-        self.pins.acceleration, self.pins.c_speed, self.pins.c_acceleration = 707, 360, 3600
+        for name, value in {**NUMBERS, **BITS}.items():
+            setattr(self.pins, name, value)
         self.library.kinematicsSwitch(0)
         self.library.run_guard()
 
@@ -313,14 +302,11 @@ def test_by_hand_beside_the_x_line_the_slide_is_as_fast_as_before(library, slide
     left = by_hand(Kinematics(library), slide, tool_offset=8.0)
     kinematics = Kinematics(library)
     kinematics.pins.tool_offset = 8.0
-    there = complex(*xy(kinematics.face(slide, 0, 0)))
+    pose = kinematics.face(slide, 0, 0)
+    there = complex(pose.x, pose.y)
     tangent = kinematics.inverse(Pose(x=abs(there) + 1e-6, y=0.0), slide, 0, 0)
     assert left == pytest.approx(before * slide / abs(there))
     assert (tangent[0] - slide) / 1e-6 * left == pytest.approx(before, rel=0.01)
-
-
-def xy(pose):
-    return pose.x, pose.y
 
 
 def test_a_programs_feed_is_its_own_and_by_hand_far_out(kinematics):

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from g12.tools.path.follow import follow, speed, windows_of, worst_of
+from g12.tools.path.follow import follow, windows_of, worst_of
 from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Part
 from g12.tools.path.samples import Samples
@@ -46,23 +46,20 @@ def test_a_track_tells_length_time_and_feed_of_each_move():
     assert on_face.part_feed(1) == pytest.approx(math.radians(60) * 10 * 60, rel=1e-3)
 
 
-def test_motion_beside_the_path_is_measured():
-    moves = Hand().line(x=100).moves
-    path = track(MILL, moves, LIMITS)
-    real = follow(path, samples_of(path, shift=0.025), 1.0)
-    assert np.allclose(real.deviation, 0.025)
-    assert worst_of(real, moves).deviation == pytest.approx(0.025)
+def run_of(hand, unit=1.0, change=lambda samples: None, **options):
+    """Return a run along a hand's path, its samples changed."""
+    path = track(MILL, hand.moves, LIMITS)
+    samples = samples_of(path, **options)
+    change(samples)
+    return follow(path, samples, unit)
 
 
 def test_an_arc_is_followed_exactly_not_by_its_chords():
-    moves = Hand().rapid(x=50).arc(-1, 0, 0).moves
-    path = track(MILL, moves, LIMITS, chord_error=0.05)
+    path = track(MILL, Hand().rapid(x=50).arc(-1, 0, 0).moves, LIMITS, chord_error=0.05)
     samples = samples_of(path, 3000)
     angle = -np.linspace(0, 2 * math.pi, 3000)
     samples.axes.update(X=50.003 * np.cos(angle), Y=50.003 * np.sin(angle))
-    samples.kind[:] = 3
-    real = follow(path, samples, 1.0)
-    inner = real.deviation[50:-50]
+    inner = follow(path, samples, 1.0).deviation[50:-50]
     assert np.allclose(inner, 0.003, atol=1e-9)
 
 
@@ -70,9 +67,7 @@ def test_a_path_that_crosses_and_repeats_itself_is_followed_in_order():
     hand = Hand().rapid(x=10)
     for _ in range(3):
         hand.arc(1, 0, 0)
-    hand.line(x=-10).line(y=10).line(x=0, y=-10)
-    path = track(MILL, hand.moves, LIMITS)
-    real = follow(path, samples_of(path, 20000), 1.0)
+    real = run_of(hand.line(x=-10).line(y=10).line(x=0, y=-10), count=20000)
     assert (np.diff(real.move) >= 0).all()
     assert set(real.move) == set(range(7))
     assert real.deviation.max() < 1e-3
@@ -84,9 +79,7 @@ def test_a_path_that_retraces_itself_is_followed_back():
     hand = Hand().rapid(x=40)
     for _ in range(3):
         hand.line(z=-10).rapid(z=0)
-    hand.line(x=20).rapid(x=40)
-    path = track(MILL, hand.moves, LIMITS)
-    real = follow(path, samples_of(path, 5000, shift=0.04), 1.0)
+    real = run_of(hand.line(x=20).rapid(x=40), count=5000, shift=0.04)
     assert set(real.move) == set(range(9))
     assert np.allclose(real.deviation, 0.04, atol=1e-6)
 
@@ -110,49 +103,36 @@ def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
 def test_the_tool_length_offset_is_taken_off():
     hand = Hand().line(x=20)
     hand.offset = (0, 0, 30.0, *HOME[3:])
-    hand.line(z=5).line(x=40)
-    path = track(MILL, hand.moves, LIMITS)
-    samples = samples_of(path, 4000)
-    assert samples.axes["Z"].max() == pytest.approx(35)
-    real = follow(path, samples, 1.0)
+    real = run_of(hand.line(z=5).line(x=40), count=4000)
     assert real.points[:, 2].max() == pytest.approx(5)
     assert real.deviation.max() < 1e-6
 
 
 def test_machine_units_are_converted():
-    moves = Hand().line(x=25.4).moves
-    path = track(MILL, moves, LIMITS)
-    samples = samples_of(path)
-    inches = {letter: values / 25.4 for letter, values in samples.axes.items()}
-    samples.axes.update(inches)
-    assert follow(path, samples, 25.4).points[-1][0] == pytest.approx(25.4)
+    def in_inches(samples):
+        samples.axes.update({letter: values / 25.4 for letter, values in samples.axes.items()})
+
+    real = run_of(Hand().line(x=25.4), 25.4, in_inches)
+    assert real.points[-1][0] == pytest.approx(25.4)
 
 
 def test_standstill_is_left_out():
-    moves = Hand().line(x=100).moves
-    path = track(MILL, moves, LIMITS)
-    samples = samples_of(path)
-    samples.kind[:500] = 0
-    assert len(follow(path, samples, 1.0).time) == 1500
+    def waiting(samples):
+        samples.kind[:500] = 0
+
+    assert len(run_of(Hand().line(x=100), change=waiting).time) == 1500
 
 
 def test_the_largest_deviation_is_looked_for_in_cuts_only():
-    moves = Hand().rapid(x=100).line(x=200).moves
-    path = track(MILL, moves, LIMITS)
-    samples = samples_of(path, 4000)
-    samples.axes["Y"][samples.axes["X"] < 50] += 3.0
-    samples.axes["Y"][samples.axes["X"] > 150] += 0.01
-    real = follow(path, samples, 1.0)
-    worst = worst_of(real, moves)
+    def aside(samples):
+        samples.axes["Y"][samples.axes["X"] < 50] += 3.0
+        samples.axes["Y"][samples.axes["X"] > 150] += 0.01
+
+    hand = Hand().rapid(x=100).line(x=200)
+    worst = worst_of(run_of(hand, change=aside, count=4000), hand.moves)
     assert worst.deviation == pytest.approx(0.01)
-    assert worst.move is moves[1]
+    assert worst.move is hand.moves[1]
     assert worst.point[0] > 150
-
-
-def test_speed_is_that_along_the_points():
-    times = np.linspace(0, 1, 11)
-    points = np.stack([30 * times, 40 * times, 0 * times], axis=1)
-    assert np.allclose(speed(points, times), 50)
 
 
 def test_the_lowest_real_feed_leaves_out_starting_and_stopping():

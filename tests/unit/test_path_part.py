@@ -29,10 +29,6 @@ def test_where_x0_lies(centre, unit, place):
     assert part.x0_text(FACE, unit) == ""
 
 
-def test_a_mill_shows_machine_positions():
-    assert np.allclose(MILL.points(position(1, 2, 3, 90)), [[1, 2, 3]])
-
-
 def test_the_face_turns_counterclockwise_with_c():
     assert np.allclose(FACE.points(position(x=10, z=-5, c=90)), [[0, 10, -5]])
     assert np.allclose(FACE.points(position(x=10, c=-30)), [[10 * math.cos(math.pi / 6), -5, 0]])
@@ -64,20 +60,6 @@ def test_chords_of_a_spiral_stay_within_the_error(x, turn, start):
     assert np.abs(middle - (line[1:] + line[:-1]) / 2).max() < 1.5 * part.CHORD_ERROR
 
 
-def test_a_circle_becomes_a_closed_polyline_on_the_circle():
-    line = MILL.polyline(Hand().rapid(x=10).arc(-1, 0, 0).moves[1])
-    assert np.allclose(np.hypot(*line[:, :2].T), 10)
-    assert np.allclose(line[0], line[-1])
-    assert line[1][1] < 0  # clockwise
-
-
-def test_a_turn_of_c_is_an_arc_on_the_face():
-    line = FACE.polyline(Hand().rapid(x=10).line(c=180).moves[1])
-    assert np.allclose(np.hypot(*line[:, :2].T), 10)
-    middle = line[len(line) // 2]
-    assert np.hypot(*(middle[:2] - [0, 10])) < 0.7
-
-
 def test_paths_join_moves_and_break_at_gaps():
     hand = Hand().line(x=10).line(x=10, y=10).rapid(x=50).line(x=60)
     cutting = [move for move in hand.moves if move.kind != "rapid"]
@@ -107,14 +89,6 @@ def test_what_a_cutter_sweeps(line, radius, area):
 )
 def test_only_motion_across_the_tool_is_sideways(hand, sideways):
     assert part.is_sideways(hand.moves[-1]) is sideways
-
-
-@pytest.mark.parametrize(("plane", "third"), [(17, [0, 0, 1]), (18, [0, 1, 0]), (19, [1, 0, 0])])
-def test_the_axes_of_each_plane_are_right_handed(plane, third):
-    move = Hand().arc(1, 5, 0, plane=plane).moves[0]
-    axes = part.plane_axes(move)
-    assert np.allclose(axes[2], third)
-    assert np.allclose(np.cross(axes[0], axes[1]), axes[2])
 
 
 def test_c_stands_where_the_face_is_left_beside_the_centre_for_it():
