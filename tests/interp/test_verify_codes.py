@@ -25,6 +25,7 @@ BEGINNINGS = {  # the machine, and the blocks before a row's
     "yasnac": ("mill_yasnac_mm", "G21 G17 G40 G49 G90 G94|T10 M6 G43|S3000 M3|G0 X0 Y0 Z2"),
     "helix": ("mill_helix_mm", "G21 G17 G40 G49 G90 G94 F600|T4 M6 G43|S3000 M3|G0 X0 Y0 Z1"),
     "mitsubishi": ("mill_mitsubishi_mm", "G21 G17 G40 G49 G90 G94 F600|T10 M6 G43|S3000 M3"),
+    "face": ("lathe_mm_kinematics", "G21 G18 G7 G40 G90 G94 G64 P.01|T1 M6|S900 M3|G0 X120 Z5 C0"),
     "any mill": ("mill_mm", "G21 G17 G40 G49 G90 G94 F600"),
     "any lathe": ("lathe_mm", "G21 G18 G7 G40 G90 G94 F600"),
 }
@@ -48,10 +49,36 @@ ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
 AIR = "T4 M6 G43|S900 M3|G0 X0 Y0 Z30"
-LONGEST = "o<polar_slot> call [24][40][3][1.5][.3][600][200][30"
-LONGEST += "+0" * ((251 - len(LONGEST)) // 2) + "]"  # as long as LinuxCNC reads it
+LONGEST, LONGEST_CALL = (  # as long as LinuxCNC reads a line
+    begin + "+0" * ((251 - len(begin)) // 2) + "]"
+    for begin in ("G12 Z-2 I[9", "o<polar_slot> call [24][40][3][1.5][.3][600][200][30")
+)
+HOLE = "o<hole> sub|G0 Z1|G12 I#1 Z#2 D4|G0 Z1|o<hole> endsub|T4 M6 G43|S900 M3"
+CALLED = "G0 X40|{0}|G0 X40 C0|G12.1|G1 X30 F800|Z-1|{0}|C8|Z2|G13.1|{0}|M2|{1}|G1 X24 F900|C3|{2}"
+SQUARE_AND_PIN = (  # in one section, the pin at a place beside the square
+    "T1 M6|S900 M3|G0 X80 Z2 C0|G12.1|G1 X80 F300|G41 X20|Z-1|C-10|X-20|C10|X20|C0|G40 X80|"
+    "G41 X{0}|G2 X{0} C0 I-4 J0|G1 G40 X80|Z2|G13.1"
+)
+ROUND_A_FLAT = "G0 X30 Z2 C0|G12.1|G1 X20 C3 F900|G42 X14 C0 F600|Z-1 F200|C10 F600|X-10|C-10|X14|"
+ROUND_A_FLAT += "C0|G40 X20 C-3|Z2|G13.1"
 
 CASES = [
+    # other ways to write a pocket
+    ("mill", "#2=0|o100 while [#2 LT 3]|G0 Z1|X[#2 * 60] Y[0 - #2]|#2 = [#2 + 1]|"
+     "N5 G12 I[8 + #2] Z-[1 + 1] D4 (X99 Y99)|o100 endwhile", ""),
+    ("any mill", f"{HOLE}|o<hole> call [9] [-2]|G0 X40|o<hole> call [8] [-3]", ""),
+    ("mill", "G12 I7 K20 Q6 Z-2 D4 M2", ""),
+    ("mill", "G[10 + 2] I7 K20 Q6 Z-2 D4", ""),
+    ("mill", "#5=12|G#5 I7 K20 Q6 Z-2 D4", ""),
+    ("mill", LONGEST, ""),
+    ("mill", f"{P}|G91 G13 I20.5 L3 D4|G90 G0 Z1", ""),  # where the tool stands
+    ("mill", "G20 G0 Z.1|G12 I.3 K.8 Q.2 Z-.1 L3 D4 F20", ""),  # it does not move down again
+    ("mill", "G20 G0 Z.1|G21 G13 I8 K40 Q5 Z-12 D4 F500", "feed-cut-down 7"),
+    ("mill", "G64 P.02|G0 Z3|G20 G13 I.3 K1. Q.3 Z-.5 D4 F20", ""),
+    ("mill", "G64 P.02|G0 Z3|G20 G13.2 X0 Y0 Z-.2 I.1 R1. D1 H1 F20", ""),
+    ("mill", "G0 X10 Y10 Z5|G91|o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] "
+     "[-9999] [.3] [150] [800] [400]", ""),
+    ("mill", f"G92 X4 Y5 Z1|G0 X10 Y20 Z1|G90.1|{P}", ""),
     # where C stands
     ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
     ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),
@@ -188,10 +215,10 @@ CASES = [
     # rapids
     ("mill", f"{CLEARED}|G0 Z1|X40|Z-2|Z1", "rapid-beside 9"),
     ("mill", f"{CLEARED}|G0 Z-2|Z1", ""),
-    ("mill", f"{P}|G0 X100 Z1", "rapid-through 7, rapid-beside 7"),
+    ("mill", f"{P}|G0 X100 Z1", "rapid-through 7"),
     ("mill", f"{P}|G0 X10 Y8|X0 Y0|Z2", ""),
     ("mill", f"Z10|{P}|G0 Z1|X100", ""),
-    ("mill", f"Z10|{P}|G0 Z-1|X100", "rapid-through 9, rapid-beside 9"),
+    ("mill", f"Z10|{P}|G0 Z-1|X100", "rapid-through 9"),
     ("mill", f"{P}|G1 X60|{P}|G0 X0|Z2", ""),  # along the channel
     ("mill", f"{RING}|G0 X-15.2|Z1", "core-stands 6, rapid-through 7"),
     ("mill", f"{SHALLOW}|G0 Z1|Z-4|{CLEARED}|G0 Z1", "rapid-into 8"),
@@ -200,11 +227,10 @@ CASES = [
     ("mitsubishi", "G0 X0 Y0 Z5|G18 G1 Z-5|G12 I30 D10|G0 X100|Z5", ""),
     # the top of a pocket that is not below Z0 is where it began to feed
     ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z10|X100", "above-zero 6"),
-    ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z7|X100",
-     "above-zero 6, rapid-through 8, rapid-beside 8"),
+    ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z7|X100", "above-zero 6, rapid-through 8"),
     ("any mill", f"{AIR}|G13.2 X0 Y0 Z5 I7 R20 K5 D2 H2|G0 Z7|X100", "above-zero 5"),
     ("any mill", f"{AIR}|G13.2 X0 Y0 Z5 I7 R20 K5 D2 H2|G0 Z6|X100",
-     "above-zero 5, rapid-through 7, rapid-beside 7"),
+     "above-zero 5, rapid-through 7"),
     ("mill", f"X-100|Z-1|X0|{LOW}|G0 Z1", "rapid-beside 7"),
     ("mill", f"G91 X30 Z-2|G90|{LOW}|G0 Z1", "rapid-beside 6"),
     ("mill", f"{CLEARED}|G0 Z-2|G53 G0 X90 Z0", "rapid-by-machine 8"),
@@ -263,12 +289,31 @@ CASES = [
     ("lathe", f"{GROOVE}|G1 X60|G7.1 C0|G0 C0", ""),
     ("lathe", "G0 X46 Z-30|G7.1 C20|G1 X36 F200|C90|X46|G7.1 C0", ""),
     ("lathe", "G0 X46 Z-30|G7.1 C10|G1 X36 F200|C90|X46|G7.1 C0", "above-surface 6"),
+    # where the work offset has the spindle
+    *(("radii", f"G0 X31 Z9 C0|{offset}|{ROUND_A_FLAT}", "")
+      for offset in ("G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G55 G10 L2 P2 X70 C9")),
+    ("radii", f"G0 X31 Z9 C0|G10 L20 P1 X35 Z4|{ROUND_A_FLAT}|G20",
+     "rapid-from-unknown 4, rapid-beside 5"),
+    # what LinuxCNC does slower than its words ask
+    ("face", "G12.1|F1008.844|G1 X-57.93351 C0.11121|G13.1", "above-zero 5"),
+    ("lathe", "G64 P.01|G0 X120 Z5|G12.1|F1008.844|G1 X-57.93351 C0.11121|G13.1", "above-zero 7"),
+    ("face", "G0 X60|G12.1|G1 X20 C-30 F5000|C30|G13.1", "above-zero 6"),
+    ("face", "G0 X60 C-45|G12.1|F6637.24|G1 X-15.50263 C-22.13613|X-8 C-12|X-20 F200|G13.1",
+     "above-zero 6"),
+    # subs that are called in a section and outside of it, and by themselves
+    ("radii", CALLED.format("o100 call", "o100 sub", "o100 endsub"), ""),
+    ("radii", CALLED.format("M98 P100", "O100", "M99"), ""),
+    ("radii", "o100 sub|o1 if [#1 gt 0]|G1 X30 F800|C[#1]|X40|C0|o100 call [#1-1]|o1 endif|"
+     "o100 endsub|G0 X40 Z2 C0|G12.1|G1 Z-1 F99|o100 call [3]|Z2|G13.1", ""),
+    # a passage narrower than the cutter
+    ("any lathe", SQUARE_AND_PIN.format(62), ""),
+    ("any lathe", SQUARE_AND_PIN.format(58), "cuts-contour 9, cuts-contour 16"),
     # full circles, and modes that are saved and restored, in a section
     ("radii", "G12.1|G1 X11.902 C-25.519 F500|Z-1|G2 I-3.314 J5.371|G3 I.1 J.7|G2 I-7.3 J.003|"
      "G1 Z2|G13.1", ""),
     ("radii", "G12.1|G1 X30 F500|Z-1|M73|G91 G3 X-1 R9|M72|X20 C5|M70|G91|M72 X15|M70|G91|M71|"
      "X-1|Z4|G13.1", ""),
-    # a contour of a line and an arc, a radius of 0 in a sub, words that cannot be followed
+    # a contour of a line and an arc, a radius of 0 in a sub, words that cannot be read
     ("radii", "G0 X40|G12.1|G1 C30 F900|G41 X12|C-16|G2 X12 C16 R-20|G1 G40 X40|Z-2|G13.1", ""),
     ("lathe", "o7 sub|G7.1 C#1|G1 X40 F300|C90|X60|G7.1 C0|o7 endsub|G0 X60 Z-20|o7 call [0]|"
      "o7 call [25]", ""),
@@ -276,7 +321,7 @@ CASES = [
     ("radii", "o7 sub|o2 if [#<_x> GT 1]|G1 X15 F800|Z-1|o2 endif|o7 endsub|G12.1|o7 call|G13.1|"
      "o7 call", "contour-unread 11"),
     ("radii", "o9 sub|o9 endsub [25]|o9 call|G12.1|G1 X30 F500|Z-1|X[#<_value>]|G13.1", ""),
-    ("lathe", f"G0 Z9|{LONGEST}", ""),
+    ("lathe", f"G0 Z9|{LONGEST_CALL}", ""),
     ("any mill", f"o<polar_slot> sub|G1 X#1|o<polar_slot> endsub|T4 M6 G43|S900 M3|G0 Z1|"
      f"o<polar_slot> call [8]|{LOW}", ""),  # another sub of that name
     # a sub that is called twice, a sub's own file, two flats round the outside of the bar
@@ -292,10 +337,6 @@ CASES = [
     ("mill", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
     ("mill", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 6"),
     ("mill", "G13 I9 K15 Q4 Z-1 D4|G13 I20 K24 Q4 Z-3|G0 Z5", "uncut 7"),
-    ("helix", "G13 I9 K18 Q4 Z-3 D4|G13 I18|G0 Z5", "cut-before 6"),
-    ("helix", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
-    ("helix", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 5"),
-    ("helix", "G13 I9 K15 Q4 Z-1 D4|G13 I20 K24 Q4 Z-3|G0 Z5", "uncut 6"),
     # a retract that is missing between two, a circle where the tool came down
     ("mill", f"{P}|G13 X60 I7 K20 Q6 Z-3|G0 Z2", "rapid-through 7"),
     ("mill", f"{P}|G0 Z2|G13 X60 I7 K20 Q6 Z-3|G0 Z2", ""),
