@@ -13,11 +13,10 @@ beyond any machine or that the call would take for an entry left out; no call lo
 of LinuxCNC can be.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
+from typing import NamedTuple
 
 from g12.cycles.circle_mill import (
     EVENT_ENTRIES,
@@ -63,99 +62,88 @@ def calls_of_events(text: str) -> Iterator[str]:
     modal: dict[str, WrittenEntry] = {}
     for line, row in enumerate(text.upper().splitlines(), start=1):
         for event in re.findall(r"[^$]*\$|[^$]+", re.sub(r"\s", "", row)):
-            yield call_of_event(event, modal, line)
+            try:
+                yield call_of_event(event, modal)
+            except Refusal as rule:
+                raise Refusal(f"line {line}: {rule}") from None
 
 
-class WrittenEntry:
+class WrittenEntry(NamedTuple):
     """One entry of an event: letter and number as written, and whether it is incremental."""
 
-    def __init__(self, letter: str, value: str, incremental: bool) -> None:
-        self.letter = letter
-        self.value = Decimal(value)
-        self.incremental = incremental
+    letter: str
+    value: Decimal
+    incremental: bool
 
 
-def call_of_event(event: str, modal: dict[str, WrittenEntry], line: int) -> str:
+def call_of_event(event: str, modal: dict[str, WrittenEntry]) -> str:
     """Return the call of one event; its modal entries are added to ``modal``."""
     match = EVENT.fullmatch(event)
     if not match:
-        raise refusal(line, f"{event[:40]} is not an event: N…(4)…$")
+        raise Refusal(f"{event[:40]} is not an event: N…(4)…$")
     if match["type"] != CIRCLE_MILL:
-        raise refusal(line, f"event type {match['type']} is not the circle mill event, 4")
-    entries = entries_of_event(match["entries"], line)
+        raise Refusal(f"event type {match['type']} is not the circle mill event, 4")
+    entries = entries_of_event(match["entries"])
     modal.update((letter, entry) for letter, entry in entries.items() if letter in MODAL)
     entries = {**modal, **entries}
-    check_entries(entries, line)
+    for rule in broken_rules(entries):
+        raise Refusal(rule)
     values = " ".join(f"[{argument(letter, entries)}]" for letter in EVENT_ENTRIES)
     call = f"N{match['number']} o<circle_mill> call {values}"
     if len(call) > LONGEST_BLOCK:
-        raise refusal(
-            line, f"the call of the event has {len(call)} characters, the most is {LONGEST_BLOCK}"
+        raise Refusal(
+            f"the call of the event has {len(call)} characters, the most is {LONGEST_BLOCK}"
         )
     return call
 
 
-def entries_of_event(text: str, line: int) -> dict[str, WrittenEntry]:
+def entries_of_event(text: str) -> dict[str, WrittenEntry]:
     entries: dict[str, WrittenEntry] = {}
-    position = 0
-    while position < len(text):
-        match = ENTRY.match(text, position)
+    while text:
+        match = ENTRY.match(text)
         written = match["letter"] if match else ""
         letter = OTHER_LETTERS.get(written, written)
         if not match or letter not in EVENT_ENTRIES:
-            raise refusal(line, f"{text[position:][:20]} does not start with an entry")
-        if letter in entries:
-            raise refusal(line, repeated(entries[letter].letter, written))
-        entries[letter] = WrittenEntry(written, match["value"], bool(match["incremental"]))
-        position = match.end()
+            raise Refusal(f"{text[:20]} does not start with an entry")
+        first = entries.get(letter)
+        if first and first.letter == written:
+            raise Refusal(f"{written} stands twice")
+        if first:
+            raise Refusal(f"{first.letter} and {written} are the same entry: give one of them")
+        value, incremental = Decimal(match["value"]), bool(match["incremental"])
+        entries[letter] = WrittenEntry(written, value, incremental)
+        text = text[match.end() :]
     return entries
 
 
-def repeated(first: str, second: str) -> str:
-    if first == second:
-        return f"{first} stands twice"
-    return f"{first} and {second} are the same entry: give one of them"
-
-
-def check_entries(entries: Mapping[str, WrittenEntry], line: int) -> None:
-    """Refuse an event without a required entry, or with one that no event can have."""
-    for letter in REQUIRED:
-        if letter not in entries:
-            raise refusal(line, f"{letter} is missing")
-    for letter in MODAL:
-        if letter not in entries:
-            raise refusal(line, f"{letter} is missing, and no event before has it")
+def broken_rules(entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
+    """Yield the rules that an event's entries break."""
+    yield from (f"{letter} is missing" for letter in REQUIRED if letter not in entries)
+    missing = (letter for letter in MODAL if letter not in entries)
+    yield from (f"{letter} is missing, and no event before has it" for letter in missing)
     for letter, entry in entries.items():
-        rule = broken_rule(letter, entry) or unfit_for_call(letter, entries)
-        if rule:
-            raise refusal(line, rule)
+        yield from broken_by_entry(letter, entry)
+        value = float(value_in_call(letter, entries))
+        written = f"{entry.letter}{number(value)}"
+        if abs(value) > LARGEST:
+            yield f"{written} is beyond {number(LARGEST)}"
+        if value == LEFT_OUT and not from_the_tool(letter, entry):
+            yield f"{written} would be left out: {number(LEFT_OUT)} in the call means no entry"
 
 
-def broken_rule(letter: str, entry: WrittenEntry) -> str | None:
-    """Return the rule that an entry breaks, None if it breaks none."""
-    written = f"{entry.letter}{number(float(entry.value))}"
+def broken_by_entry(letter: str, entry: WrittenEntry) -> Iterator[str]:
+    """Yield the rules that an entry breaks by itself."""
+    value, written = float(entry.value), f"{entry.letter}{number(float(entry.value))}"
     if entry.incremental and letter not in INCREMENTAL:
-        return f"{entry.letter}/ cannot be incremental"
+        yield f"{entry.letter}/ cannot be incremental"
     if letter in ALLOWED_VALUES and entry.value not in ALLOWED_VALUES[letter]:
-        return f"{written} must be one of {', '.join(map(str, ALLOWED_VALUES[letter]))}"
-    if letter in POSITIVE and not float(entry.value) > 0:
-        return f"{written} must be greater than 0"
-    if letter == "L" and entry.value < 0:
-        return f"{written} must not be negative; L/ is the side only"
-    if letter == "L" and float(entry.value) == 0:
-        return f"{written} must not be 0"
-    return None
-
-
-def unfit_for_call(letter: str, entries: Mapping[str, WrittenEntry]) -> str | None:
-    """Return why the call cannot carry an entry's value, None if it can."""
-    value = float(value_in_call(letter, entries))
-    written = f"{entries[letter].letter}{number(value)}"
-    if abs(value) > LARGEST:
-        return f"{written} is beyond {number(LARGEST)}"
-    if value == LEFT_OUT and not from_the_tool(letter, entries[letter]):
-        return f"{written} would be left out: {number(LEFT_OUT)} in the call means no entry"
-    return None
+        yield f"{written} must be one of {', '.join(map(str, ALLOWED_VALUES[letter]))}"
+    if letter in POSITIVE and not value > 0:
+        yield f"{written} must be greater than 0"
+    if letter == "L" and value < 0:
+        yield f"{written} must not be negative; L/ is the side only"
+    if letter == "L" and value == 0:
+        yield f"{written} must not be 0"
 
 
 def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
@@ -163,9 +151,7 @@ def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
     entry = entries[letter]
     if entry.incremental and letter == "Z":
         return entries["W"].value + entry.value
-    if entry.incremental and letter == "L":
-        return -entry.value
-    return entry.value
+    return -entry.value if entry.incremental and letter == "L" else entry.value
 
 
 def from_the_tool(letter: str, entry: WrittenEntry) -> bool:
@@ -178,7 +164,3 @@ def argument(letter: str, entries: Mapping[str, WrittenEntry]) -> str:
         return f"{LEFT_OUT:.0f}"
     value = f"{value_in_call(letter, entries):f}"
     return f"#<_{letter.lower()}> + {value}" if from_the_tool(letter, entries[letter]) else value
-
-
-def refusal(line: int, rule: str) -> Refusal:
-    return Refusal(f"line {line}: {rule}")

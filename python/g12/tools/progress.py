@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Progress messages of a command during long work."""
 
-from __future__ import annotations
-
 import contextlib
 import sys
 import threading

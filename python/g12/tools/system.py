@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """LinuxCNC's system, and the call of the commands on it."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 from pathlib import Path

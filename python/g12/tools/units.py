@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Units of length for output; everything else is in millimetres."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Container
 from typing import NamedTuple

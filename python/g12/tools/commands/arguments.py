@@ -118,20 +118,15 @@ def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
     parser.add_argument("--override", **percent, help=text)
 
 
-def check_run(options: argparse.Namespace) -> None:
-    if options.override != 100.0 and not options.run:
-        raise UsageError("--override is the feed override of --run, which is not there")
-
-
 def samples_of_run(
     program: Path, options: argparse.Namespace, trace: Trace | None, ini: Ini
 ) -> Samples | None:
     """Return the actual motion of a traced program, if --run is given."""
     if not options.run:
         return None
-    files = (options.ini, options.tools, options.var)
-    with working(run_text(program, options.override, trace, ini), clock=True):
-        return run_program(program, *files, override=options.override).samples
+    override, files = options.override, (options.ini, options.tools, options.var)
+    with working(run_text(program, override, trace, ini), clock=True):
+        return run_program(program, *files, override=override).samples
 
 
 def report_line_numbers(name: str, opened: OpenedProgram) -> None:
@@ -174,7 +169,9 @@ def one_line(name: str, refused: int = FINDING) -> Callable:
 
 
 def checked_ini(options: argparse.Namespace) -> Ini:
-    """Return the machine's INI after a check of all files named."""
+    """Return the machine's INI after a check of the options and of all files named."""
+    if not getattr(options, "run", True) and options.override != 100.0:
+        raise UsageError("--override is the feed override of --run, which is not there")
     for path in filter(None, (options.program, options.ini, options.tools, options.var)):
         existing(path)
     if options.tools:

@@ -43,7 +43,10 @@ def main(arguments: list[str]) -> int:
     """Run the command named first; return its exit code."""
     name, *rest = arguments or ["--help"]
     try:
-        return flushed(name, rest)
+        try:
+            return command(name, rest)
+        finally:
+            print(end="", flush=True)
     except KeyboardInterrupt:
         print_error(f"g12 {name}", "interrupted")
         return INTERRUPTED
@@ -70,14 +73,6 @@ def command(name: str, arguments: list[str]) -> int:
         print_error("g12", f"no command {name!r} (usage: {COMMAND} --help)")
         return 2
     return module_of(name).main(arguments)
-
-
-def flushed(name: str, arguments: list[str]) -> int:
-    """Run a command until all its output is written; return its exit code."""
-    try:
-        return command(name, arguments)
-    finally:
-        print(end="", flush=True)
 
 
 def nobody_reads() -> bool:

@@ -13,10 +13,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from g12.tools.commands.arguments import (
-    FINDING,
     GOOD,
     Parser,
-    check_run,
     checked_ini,
     cut_parser,
     one_line,
@@ -24,14 +22,14 @@ from g12.tools.commands.arguments import (
     samples_of_run,
     stock_of,
 )
-from g12.tools.errors import UsageError, print_error
+from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of, scene_of_proof
-from g12.tools.preview.ended import ended, ended_text, explained
+from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import Tracer
@@ -63,7 +61,6 @@ def command_parser() -> Parser:
 @one_line("plot")
 def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
-    check_run(options)
     ini = checked_ini(options)
     style.check_format(options.output)
     with opened_program(options.program, ini) as opened:
@@ -82,10 +79,9 @@ def main(arguments: list[str]) -> int:
     judged = dict.fromkeys(judged_texts(proof, scene)) if proof else ()
     texts = [f"{options.output} written", *x0, *judged, *message_lines(in_source.messages)]
     print("\n".join(texts))
-    if in_source.error:
-        print_error("g12 plot", ended_text(options.program, in_source.error))
-        report_line_numbers("plot", opened)
-    return FINDING if found.error else GOOD
+    report_line_numbers("plot", opened)
+    ended(options.program, in_source)
+    return GOOD
 
 
 def moves_and_words(

@@ -12,7 +12,6 @@ from typing import Any
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.commands.arguments import (
-    FINDING,
     GOOD,
     Parser,
     add_override,
@@ -23,7 +22,7 @@ from g12.tools.commands.arguments import (
     report_line_numbers,
     run_text,
 )
-from g12.tools.errors import print_error
+from g12.tools.errors import ProgramError
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.filter import opened_program
@@ -116,6 +115,6 @@ def main(arguments: list[str]) -> int:
         line = opened.source_line(line_of_preview(result.error, preview))
         location = f"{options.program}:{line}" if line else options.program
         text = opened.in_source(explained_text(result.error.text, options.ini))
-        print_error("g12 run", f"{location}: {text}")
         report_line_numbers("run", opened)
-    return FINDING if result.error else GOOD
+        raise ProgramError(f"{location}: {text}")
+    return GOOD

@@ -15,7 +15,6 @@ from g12.tools.commands.arguments import (
     GOOD,
     USAGE,
     Parser,
-    check_run,
     checked_ini,
     cut_parser,
     number_above,
@@ -27,7 +26,8 @@ from g12.tools.commands.arguments import (
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.ended import traced
+from g12.tools.preview.ended import ended, explained
+from g12.tools.preview.tracer import trace
 from g12.tools.progress import working
 from g12.tools.units import unit_of
 from g12.tools.verify.proof import Proof, prove
@@ -65,27 +65,25 @@ def command_parser() -> Parser:
 @one_line("verify", refused=USAGE)
 def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
-    check_run(options)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
-        proof = proof_of(opened.path, ini, options)
-        proof = replace(proof, opened=opened) if opened.is_filtered else proof
-        judged = proof.judged  # while the filter's output exists
+        proof = replace(proof_of(opened.path, ini, options), opened=opened)
     report_line_numbers("verify", opened)
     if not (any(proof.cuts) or proof.lines_with("not-measured") or proof.lines_with("not-cut")):
         raise UsageError(f"{options.program}: has no pocket, no section and no holes to verify")
     unit = unit_of(proof.subject.trace.modes.gcodes, options.units)
     text = as_text(proof, unit, full=options.full, strict=options.strict)
     print(as_json(proof, options.strict) if options.json else text)
-    counts = (each.is_finding or (options.strict and each.is_note) for each in judged)
+    counts = (each.is_finding or (options.strict and each.is_note) for each in proof.judged)
     return FINDING if any(counts) else GOOD
 
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
-    trace = None
+    found = None
     if options.run:  # an error of the program is reported before the run
-        trace = traced(program, options.ini, options.tools, options.var)
-    samples = samples_of_run(program, options, trace, ini)
+        found = trace(program, ini.path, tools=options.tools, parameters=options.var)
+        ended(program, explained(found, ini.path))
+    samples = samples_of_run(program, options, found, ini)
     with working(f"interpreting {program.name}") as tell:
         return prove(
             program,

@@ -8,8 +8,8 @@ from pathlib import Path
 from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.moves import Error, Trace
-from g12.tools.preview.tracer import Parameters, Tools, Tracer, trace
+from g12.tools.preview.moves import Trace
+from g12.tools.preview.tracer import Tracer
 from g12.tools.system import COMMAND
 
 UNKNOWN_CODE = "Unknown g code used"
@@ -20,20 +20,12 @@ PACKAGE_MESSAGE = re.compile(r"^g12: (.*)$", re.MULTILINE)  # printed at its sta
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
-def traced(program: Path, ini: Path, tools: Tools = None, parameters: Parameters = None) -> Trace:
-    found = trace(program, ini, tools=tools, parameters=parameters)
-    return ended(program, explained(found, ini))
-
-
 def ended(program: Path | str, result: Trace) -> Trace:
-    if result.error:
-        raise ProgramError(ended_text(program, result.error))
+    """Return the trace of a program that ran to its end, or raise ProgramError."""
+    error = result.error
+    if error:
+        raise ProgramError(f"{program}:{error.line}: {error.rule}")
     return result
-
-
-def ended_text(program: Path | str, error: Error) -> str:
-    """Return the text of an error after the program's name and the line."""
-    return f"{program}:{error.line}: {error.rule}"
 
 
 def explained(result: Trace, ini: Path) -> Trace:
@@ -54,13 +46,9 @@ def explained_text(text: str, ini: Path) -> str:
     if text == UNKNOWN_CODE:
         present = " ".join(codes) or "none"
         return f"{text}: of G12, G13 and G7.1 this INI has {present}; see {COMMAND} check"
-    errors = errors_at_start(ini) if set(POLAR_CODES) & set(codes) else ""
-    if errors:
-        return f"{text}: {errors}"
+    if set(POLAR_CODES) & set(codes):
+        with Tracer(ini) as tracer:
+            errors = PACKAGE_MESSAGE.findall(tracer.printed)
+        if errors:
+            return f"{text}: {'; '.join(errors)}"
     return f"{text}; see {COMMAND} check" if PYTHON_FAILED.match(text) else text
-
-
-def errors_at_start(ini: Path) -> str:
-    """Return the package's errors when LinuxCNC starts with an INI."""
-    with Tracer(ini) as tracer:
-        return "; ".join(PACKAGE_MESSAGE.findall(tracer.printed))
