@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from interpreter import INTERP_EXECUTE_FINISH
 
-from g12.host.interp import Interp
+from g12.host.interp import Interp, state_of
 from g12.section.block_rules import NO_CODE, GGroup
 
 NO_O_WORD = 0  # o_type
@@ -21,10 +21,7 @@ NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
 
 def interned(interp: Interp, text: str) -> str:
     """Return a text that is never freed: the interpreter makes no copies of names."""
-    texts = getattr(interp, "g12_texts", None)
-    if texts is None:
-        texts = interp.g12_texts = {}
-    return texts.setdefault(text, text)
+    return state_of(interp).texts.setdefault(text, text)
 
 
 def locals_at(interp: Interp, level: int) -> dict[str, float]:

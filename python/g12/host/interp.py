@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Names for the types and values of LinuxCNC's interpreter, which its modules lack."""
+"""The interpreter: names for its types and values, which its modules lack; the package's state."""
 
 from __future__ import annotations
 
@@ -14,3 +14,35 @@ ToolTableEntry: TypeAlias = Any  # of the tool table
 
 PER_MINUTE, INVERSE_TIME, PER_REVOLUTION = 0, 1, 2  # feed_mode
 PLANE_CODES = {1: XY, 2: YZ, 3: XZ}  # plane
+
+
+class PackageState:
+    """The package's state of one interpreter, stored on the interpreter object.
+
+    ``modes`` are those that a cycle has to restore, ``feed`` the F before a shape, ``path`` the
+    path control and ``spindle`` the number of the spindle in use before holes. ``radius_commanded``
+    distinguishes a D of radius 0 from no D at all, which the interpreter's own last compensation
+    radius does not. ``first_plane`` is the circle mill's modal reference plane in mm, with the
+    program that commanded it and its time of change. ``shown`` are the messages that are shown once
+    for each program. ``source`` is the file of the last section. ``modes_before_face`` is the block
+    that restores them, ``by_hand`` the G12.1 in MDI, ``accelerations`` those of X and Y in the INI.
+    """
+
+    def __init__(self) -> None:
+        self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
+        self.feed, self.path, self.spindle = 0.0, "", 0
+        self.radius_commanded = False
+        self.first_plane: tuple[float, tuple[str, int] | None] | None = None
+        self.shown: set[object] = set()
+        self.texts: dict[str, str] = {}
+        self.source: Any = None
+        self.modes_before_face = ""
+        self.by_hand: Any = None
+        self.accelerations: list[float] = []
+
+
+def state_of(interp: Interp) -> PackageState:
+    state = getattr(interp, "g12_state", None)
+    if state is None:
+        state = interp.g12_state = PackageState()
+    return state

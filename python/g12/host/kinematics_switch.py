@@ -18,7 +18,7 @@ import hal
 import linuxcnc
 
 from g12.errors import BlockRefusal, number
-from g12.host.interp import PLANE_CODES, Interp
+from g12.host.interp import PLANE_CODES, Interp, state_of
 from g12.host.machine import MACHINE
 from g12.host.program_lines import without_line
 from g12.machine_ini import ACCELERATION_PINS
@@ -68,12 +68,12 @@ def accelerate(interp: Interp, share: float) -> None:
     """
     if not interp.task:
         return
-    of_ini = getattr(interp, "g12_accelerations", None)
+    of_ini = state_of(interp).accelerations
     if not of_ini:
         of_ini = [hal.get_value(pin) for pin in ACCELERATION_PINS]
         for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
             _try_to_set(pin, acceleration)
-        interp.g12_accelerations = of_ini
+        state_of(interp).accelerations = of_ini
     for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
         hal.set_p(pin, repr(share * acceleration))
 
@@ -87,7 +87,7 @@ def _try_to_set(pin: str, acceleration: float) -> None:
 
 
 def restore_accelerations(interp: Interp) -> None:
-    for pin, acceleration in zip(ACCELERATION_PINS, getattr(interp, "g12_accelerations", ())):
+    for pin, acceleration in zip(ACCELERATION_PINS, state_of(interp).accelerations):
         hal.set_p(pin, repr(acceleration))
 
 

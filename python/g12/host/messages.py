@@ -12,11 +12,11 @@ from pathlib import Path
 
 import emccanon
 import linuxcnc
-from interpreter import INTERP_ERROR
+from interpreter import INTERP_ERROR, INTERP_OK
 
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
-from g12.host.interp import Interp
-from g12.host.program_lines import line_of_block, line_of_call
+from g12.host.interp import Interp, state_of
+from g12.host.program_lines import line_of_block, line_of_call, running_file
 
 NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
 
@@ -84,6 +84,21 @@ def handler(function):
     return guarded
 
 
+def waiting_handler(function):
+    """Turn an exception of a remap handler that yields, to wait, into the operator's message."""
+
+    @functools.wraps(function)
+    def guarded(self, **words):
+        try:
+            forget_return(self)
+            yield from function(self, **words)
+        except Exception as error:
+            yield refuse_block(self, error)
+        yield INTERP_OK
+
+    return guarded
+
+
 def forget_return(interp: Interp) -> None:
     """Let the remap's caller continue with its next line if this one fails.
 
@@ -104,9 +119,9 @@ def message(text: str) -> None:
 
 def message_once(interp: Interp, key: object, text: str) -> None:
     """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
-    shown = getattr(interp, "g12_shown", None) or set()
-    interp.g12_shown = shown | {(main_program(interp), key)}
-    if interp.g12_shown != shown:
+    shown, once = state_of(interp).shown, (main_program(interp), key)
+    if once not in shown:
+        shown.add(once)
         message(text)
 
 
@@ -115,7 +130,7 @@ def main_program(interp: Interp) -> tuple[str, int] | None:
 
     In MDI it is the one that is open, if any.
     """
-    name = interp.filename if interp.call_level < 2 else interp.sub_context[0].filename
+    name = running_file(interp)
     try:
         return name, Path(name).stat().st_mtime_ns
     except (OSError, TypeError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The interpreter's state before a cycle, the hand-over to NGC, and the state kept between cycles.
+"""The interpreter's state before a cycle, and what lasts from one cycle to the next.
 
 A comment at a line names the fact about the interpreter that the line relies on.
 """
@@ -16,6 +16,7 @@ from g12.host.interp import (
     Interp,
     ParsedBlock,
     ToolTableEntry,
+    state_of,
 )
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program
@@ -54,31 +55,6 @@ WORD_FIELDS = [
     for letter in "ABCDEHIJKPQRUVWXYZ"
 ]
 NO_L = -1  # a block's l_number without an L word
-
-
-class CycleState:
-    """The package's state of one interpreter, stored on the interpreter object.
-
-    ``modes`` are those that a cycle has to restore, ``feed`` the F before a shape, ``path`` the
-    path control and ``spindle`` the number of the spindle in use before holes. ``radius_commanded``
-    distinguishes a D of radius 0 from no D at all, which the interpreter's own last compensation
-    radius does not. ``first_plane`` is the circle mill's modal reference plane in mm, with the
-    program that commanded it and its time of change.
-    """
-
-    def __init__(self) -> None:
-        self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
-        self.feed, self.path, self.spindle = 0.0, "", 0
-        self.radius_commanded = False
-        self.first_plane: tuple[float, tuple[str, int] | None] | None = None
-
-
-def state_of(interp: Interp) -> CycleState:
-    try:
-        return interp.g12_state
-    except AttributeError:
-        interp.g12_state = CycleState()
-        return interp.g12_state
 
 
 def words_of_block(interp: Interp) -> Words:

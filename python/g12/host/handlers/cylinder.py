@@ -5,9 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from interpreter import INTERP_OK
-
-from g12.cylinder.plan import plan
+from g12.cylinder.plan import CylinderSettings, plan
 from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
 from g12.errors import BlockRefusal
 from g12.host import messages
@@ -20,30 +18,28 @@ from g12.host.section.kind import (
     is_typed,
     run_section,
 )
+from g12.moves.setup import SectionSetup
 from g12.section.codes import SectionCodes, codes_with_word
+from g12.section.start import SectionStart
+
+check_at_start = check_ini
 
 
-def check_at_start() -> None:
-    check_ini()
-
-
+@messages.waiting_handler
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
-    try:
-        messages.forget_return(self)
-        block = self.blocks[self.remap_level]
-        if block.c_flag and block.c_number == 0.0:
-            if has_move_words(block, but=RADIUS):
-                raise BlockRefusal(
-                    messages.code_of_block(self), f"{RADIUS}0 must be alone in its block"
-                )
-        else:
-            if is_typed(self):
-                raise BlockRefusal(messages.code_of_block(self), NOT_IN_MDI)
-            yield from run_section(self, CYLINDER_SECTION)
-    except Exception as error:
-        yield messages.refuse_block(self, error)
-    yield INTERP_OK
+    block, code = self.blocks[self.remap_level], messages.code_of_block(self)
+    if not (block.c_flag and block.c_number == 0.0):
+        if is_typed(self):
+            raise BlockRefusal(code, NOT_IN_MDI)
+        yield from run_section(self, CYLINDER_SECTION)
+    elif has_move_words(block, but=RADIUS):
+        raise BlockRefusal(code, f"{RADIUS}0 must be alone in its block")
+
+
+def _setup(start: SectionStart) -> SectionSetup[CylinderSettings]:
+    check_cylinder_start(start, MACHINE.coordinates)
+    return cylinder_setup(start, MACHINE.settings, MACHINE.axes)
 
 
 def _codes(code: str) -> SectionCodes:
@@ -52,8 +48,7 @@ def _codes(code: str) -> SectionCodes:
 
 CYLINDER_SECTION = SectionKind(
     letters=RADIUS,
-    check=lambda start: check_cylinder_start(start, MACHINE.coordinates),
-    setup=lambda start: cylinder_setup(start, MACHINE.settings, MACHINE.axes),
+    setup=_setup,
     codes=_codes,
     plan=lambda contour, setup, start: plan(contour, setup.plan),
 )

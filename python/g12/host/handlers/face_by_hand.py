@@ -17,7 +17,7 @@ import emccanon
 from g12.errors import BlockRefusal
 from g12.host import kinematics_switch, messages
 from g12.host.call_frame import CallFrame
-from g12.host.interp import Interp
+from g12.host.interp import Interp, state_of
 from g12.host.program_lines import ProgramLines, read_source
 from g12.section.start import SectionStart
 
@@ -29,7 +29,7 @@ COMPENSATION_OFF, COMPENSATED = 0, (1, 2)  # cutter_comp_side
 
 
 class ByHand(NamedTuple):
-    """The state of G12.1 in MDI, stored on the interpreter (``g12_by_hand``) until G13.1.
+    """The state of G12.1 in MDI, until G13.1.
 
     ``code`` is G12.1 as typed, ``radius`` the last commanded compensation radius.
     """
@@ -44,7 +44,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
     code = start.location.code
     if kinematics_switch.y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
-    interp.g12_modes_before = kinematics_switch.modes_before_face(interp)
+    state_of(interp).modes_before_face = kinematics_switch.modes_before_face(interp)
     blocks = kinematics_switch.to_face(
         interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
     )
@@ -54,14 +54,14 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
     interp.execute(kinematics_switch.ON_THE_FACE)
-    interp.g12_by_hand = ByHand(code, interp.cutter_comp_radius)
+    state_of(interp).by_hand = ByHand(code, interp.cutter_comp_radius)
     _lock(interp)
 
 
 def switch_off(interp: Interp) -> Iterator[int]:
     """Switch back from the face, if it is active, and restore the modes before it."""
     code = messages.code_of_block(interp)
-    if getattr(interp, "g12_by_hand", None) and interp.cutter_comp_side in COMPENSATED:
+    if state_of(interp).by_hand and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
     restore_modes_before_face(interp)
@@ -87,7 +87,7 @@ def abort(interp: Interp) -> None:
     )
     emccanon.SET_AUX_OUTPUT_VALUE(kinematics_switch.FACE_OUTPUT, float(request))
     if by_hand:
-        interp.g12_by_hand = by_hand._replace(ended=True)
+        state_of(interp).by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:
         on, off = by_hand.code, messages.code_of_block(interp)
         messages.message(
@@ -109,7 +109,8 @@ def _lock(interp: Interp) -> None:
 
 def _unlock(interp: Interp) -> ByHand | None:
     """Undo `_lock`, and a compensation that began after a G40; return the locked state."""
-    by_hand, interp.g12_by_hand = getattr(interp, "g12_by_hand", None), None
+    state = state_of(interp)
+    by_hand, state.by_hand = state.by_hand, None
     if by_hand and not by_hand.ended:
         interp.cutter_comp_side, interp.cutter_comp_radius = COMPENSATION_OFF, by_hand.radius
         interp.cutter_comp_firstmove = True
@@ -117,9 +118,10 @@ def _unlock(interp: Interp) -> ByHand | None:
 
 
 def restore_modes_before_face(interp: Interp) -> None:
-    found, interp.g12_modes_before = getattr(interp, "g12_modes_before", None), None
-    if found:
-        interp.execute(found)
+    state = state_of(interp)
+    block, state.modes_before_face = state.modes_before_face, ""
+    if block:
+        interp.execute(block)
 
 
 def _switch(

@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from interpreter import INTERP_OK
-
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.handlers import face_by_hand
@@ -41,40 +39,30 @@ def check_at_start() -> None:
         messages.report_at_start(refusal.message)
 
 
+@messages.waiting_handler
 def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and execute a section: the handler of G12.1, which yields to wait."""
-    try:
-        messages.forget_return(self)
-        if is_typed(self):
-            yield from run_by_hand(self)
-        else:
-            in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
-            yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
-    except Exception as error:
-        yield messages.refuse_block(self, error)
-    yield INTERP_OK
+    if is_typed(self):
+        yield from run_by_hand(self)
+    else:
+        in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
+        yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
 
 
+@messages.waiting_handler
 def polar_off(self, **words) -> Iterator[int]:
     """End the face of a G12.1 in MDI: the handler of G13.1 outside a section.
 
     Otherwise it is a safety line and does nothing. With a P word it is LinuxCNC's
     ON_ABORT_COMMAND, to which LinuxCNC appends the reason.
     """
-    try:
-        messages.forget_return(self)
-        block = self.blocks[self.remap_level]
-        if has_move_words(block) or (
-            block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)
-        ):
-            raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
-        if block.p_flag:
-            after_abort(self)
-        elif MACHINE.switches_kinematics and self.task:
-            yield from face_by_hand.switch_off(self)
-    except Exception as error:
-        yield messages.refuse_block(self, error)
-    yield INTERP_OK
+    block = self.blocks[self.remap_level]
+    if has_move_words(block) or (block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)):
+        raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
+    if block.p_flag:
+        after_abort(self)
+    elif MACHINE.switches_kinematics and self.task:
+        yield from face_by_hand.switch_off(self)
 
 
 def after_abort(interp: Interp) -> None:
@@ -95,12 +83,12 @@ def run_by_hand(interp: Interp) -> Iterator[int]:
         raise BlockRefusal(start.location.code, NOT_IN_MDI)
     if face_in_force():
         raise BlockRefusal(start.location.code, "is already on")
+    yield from face_by_hand.switch_on(interp, start, polar_section_setup(start).words.beside)
+
+
+def polar_section_setup(start: SectionStart) -> SectionSetup[PolarSettings]:
+    """Return the setup of a section on the face; refuse to begin it where none can."""
     check_section_start(start, MACHINE.coordinates)
-    setup = _setup(start)  # may refuse
-    yield from face_by_hand.switch_on(interp, start, setup.words.beside)
-
-
-def _setup(start: SectionStart) -> SectionSetup[PolarSettings]:
     return polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
 
 
@@ -110,8 +98,7 @@ def _codes(code: str) -> SectionCodes:
 
 POLAR_SECTION = SectionKind(
     letters="",
-    check=lambda start: check_section_start(start, MACHINE.coordinates),
-    setup=_setup,
+    setup=polar_section_setup,
     codes=_codes,
     plan=lambda contour, setup, start: polar.plan(contour, setup.plan, c=start.c),
 )
@@ -119,7 +106,7 @@ POLAR_SECTION = SectionKind(
 
 def _setup_of_shape(start: SectionStart) -> SectionSetup[PolarSettings]:
     """Return the setup of a shape's section, whose tool goes down along a ramp."""
-    setup = _setup(start)
+    setup = polar_section_setup(start)
     return setup._replace(words=setup.words._replace(third_with_others=True))
 
 

@@ -16,7 +16,8 @@ from g12.errors import BlockRefusal
 from g12.host import messages, modes
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
-from g12.host.interp import Interp
+from g12.host.handlers.polar import polar_section_setup
+from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import check_ini, clamp_codes
@@ -25,7 +26,6 @@ from g12.host.section.start import is_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE, PolarSettings
-from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import code_of_handler
 from g12.section.line import BlockLocation
 from g12.section.modes import decimal
@@ -34,6 +34,7 @@ from g12.shapes import holes, polygon, round_pocket, slot
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine
 
+check_at_start = check_ini
 AnyMachine = TypeVar("AnyMachine")
 
 
@@ -56,10 +57,6 @@ HOLE_CALLS: dict[str, Shape[HoleMachine]] = {
 }
 
 
-def check_at_start() -> None:
-    check_ini()
-
-
 @messages.handler
 def polar_shape(self, **words):
     """Check the shape of the calling sub, and set the locals of its motion: G12.4."""
@@ -68,7 +65,7 @@ def polar_shape(self, **words):
     if MACHINE.switches_kinematics and self.task and face_in_force():
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
-    setup = polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
+    setup = polar_section_setup(start)
     if name in HOLE_CALLS:
         return prepare_holes(self, level, name, start, setup)
     entries = named_entries(self, name, SHAPE_CALLS[name].entries, level)
@@ -107,7 +104,7 @@ def prepare_holes(
     x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
     set_locals_at(interp, level, {**plan.locals, **x_words, **own})
     cycle_state.note_modes(interp)
-    state = cycle_state.state_of(interp)
+    state = state_of(interp)
     state.path, state.spindle = path_control(interp), interp.active_spindle
     interp.execute(f"{STOP_HERE}G61")
     return INTERP_OK
@@ -133,7 +130,7 @@ def polar_shape_done(self, **words):
     """Restore the modes before the shape, F among them: G13.4."""
     shape_at_work(self)
     cycle_state.restore_modes(self)
-    state = cycle_state.state_of(self)
+    state = state_of(self)
     path, state.path = state.path, ""
     if path:  # after a tap, feeds per revolution would refer to the spindle of its $ word
         self.active_spindle = state.spindle
@@ -165,13 +162,9 @@ def shape_at_work(interp: Interp) -> str:
 
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
-    """Return the state before the shape; refuse modes in which no section can begin."""
-    start = start_of_section(interp, 0)
-    line = messages.line_of_refusal(interp, BlockRefusal(name, ""))
+    line = messages.line_of_refusal(interp, BlockRefusal(name, "")) or 0
     # x: the sub itself moves the tool to its start
-    start = start._replace(location=BlockLocation(name, line or 0), x=1.0)
-    check_section_start(start, MACHINE.coordinates)
-    return start
+    return start_of_section(interp, 0)._replace(location=BlockLocation(name, line), x=1.0)
 
 
 def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:

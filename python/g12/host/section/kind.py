@@ -14,7 +14,7 @@ from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
-from g12.host.interp import Interp, ParsedBlock
+from g12.host.interp import Interp, ParsedBlock, state_of
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
@@ -39,13 +39,12 @@ NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
 class SectionKind(NamedTuple, Generic[Planning]):
     """The properties in which one kind of section differs from another.
 
-    ``letters`` are those that the block that switches on may have. ``check`` refuses to begin a
-    section, ``setup`` returns its settings, ``codes`` its codes for the one that began it. ``plan``
-    turns the contour into moves.
+    ``letters`` are those that the block that switches on may have. ``setup`` returns a section's
+    settings, or refuses to begin it, ``codes`` its codes for the one that began it. ``plan`` turns
+    the contour into moves.
     """
 
     letters: str
-    check: Callable[[SectionStart], None]
     setup: Callable[[SectionStart], SectionSetup[Planning]]
     codes: Callable[[str], SectionCodes]
     plan: Callable[[Contour, SectionSetup[Planning], SectionStart], SectionPlan]
@@ -69,11 +68,11 @@ def has_move_words(block: ParsedBlock, but: str = "") -> bool:
 def following_lines(interp: Interp) -> ProgramLines:
     """Return the lines after the block; refuse a program whose file is missing."""
     try:
-        program = ProgramLines(interp, getattr(interp, "g12_source", None))
+        program = ProgramLines(interp, state_of(interp).source)
     except OSError as problem:
         rule = f"the program's file cannot be read while it runs: {problem.strerror}"
         raise BlockRefusal(messages.code_of_block(interp), rule) from None
-    interp.g12_source = program.home
+    state_of(interp).source = program.home
     return program
 
 
@@ -125,7 +124,6 @@ def _section(
     start = start_of_section(interp, program.shown_line, kind.letters)
     if MACHINE.switches_kinematics and interp.task and face_in_force():
         raise start.location.refuse("the face is on already, by hand: G13.1 first")
-    kind.check(start)
     setup = kind.setup(start)
     drag = clamp_codes(start.location.refuse, MACHINE.settings.c_clamp_shapes)
     output = SectionOutput(

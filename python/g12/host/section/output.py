@@ -23,7 +23,7 @@ from typing import NamedTuple
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
 from g12.host import kinematics_switch
-from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp
+from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp, state_of
 from g12.host.program_lines import error_text
 from g12.moves.feed import Segment
 from g12.moves.steps import BlockMoves
@@ -256,11 +256,11 @@ class SectionOutput:
 
     def _switch(self, step: FaceSwitch) -> Iterator[str]:
         """Switch to the face or back; the result of the program's last M66 is restored."""
-        interp = self.interp
+        interp, state = self.interp, state_of(self.interp)
         interp.sequence_number = step.line
         found = interp.params[kinematics_switch.INPUT_RESULT]
         if step.on:
-            interp.g12_modes_before = kinematics_switch.modes_before_face(interp)
+            state.modes_before_face = kinematics_switch.modes_before_face(interp)
             most = step.share, step.override
             yield from kinematics_switch.to_face(
                 interp, self.machine_unit, kinematics_switch.FaceRequest.BY_PROGRAM, *most
@@ -268,10 +268,10 @@ class SectionOutput:
             interp.execute(kinematics_switch.ON_THE_FACE)
             self.path.renew()
         else:
-            interp.execute(interp.g12_modes_before)
+            interp.execute(state.modes_before_face)
             yield from kinematics_switch.to_axes(interp)
             # Only now: an abort during the wait drops the block before it.
-            interp.g12_modes_before = None
+            state.modes_before_face = ""
         if not kinematics_switch.has_switched(interp):
             raise BlockLocation(self.code, step.line).refuse(kinematics_switch.not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""

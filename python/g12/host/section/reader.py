@@ -241,8 +241,7 @@ class SectionReader:
 
     def comment(self, line: TextLine) -> None:
         """Queue a comment, message or report, with the present values of its parameters."""
-        if line.python:
-            self._queue(Action(self.program.shown_line, line.python, self.modes))
+        self._mark(line.python)
         # the interpreter's parsed block has only the last comment of a line
         for comment in line.comments[-1:]:
             if "#" in comment:
@@ -262,9 +261,9 @@ class SectionReader:
     def _queue(self, action: Action) -> None:
         self.contour.mark(action, line=action.line)
 
-    def _mark(self, text: str) -> None:
+    def _mark(self, text: str, level: int | None = None) -> None:
         if text:
-            self._queue(Action(self.program.shown_line, text, self.modes))
+            self._queue(Action(self.program.shown_line, text, self.modes, level))
 
     def _parameter(self, name: str) -> float | None:
         """Return a parameter by number or name, None if there is none."""
@@ -362,19 +361,15 @@ class SectionReader:
         elif code == block_rules.M_INVALIDATE:
             self._saved.pop(level, None)
             self._restored_on_return.discard(level)
-            self._queue(
-                Action(self.program.shown_line, f"M{block_rules.M_INVALIDATE}", self.modes, level)
-            )
+            self._mark(f"M{block_rules.M_INVALIDATE}", level)
         else:
             self._saved[level] = self.modes
             if code == block_rules.M_AUTORESTORE and level > self.start.level:
                 self._restored_on_return.add(level)
-            self._queue(
-                Action(self.program.shown_line, f"M{block_rules.M_SAVE}", self.modes, level)
-            )
+            self._mark(f"M{block_rules.M_SAVE}", level)
 
     def _restore(self, level: int) -> None:
         if level not in self._saved:
             raise self.location.refuse("M72: no modes were saved in this section")
-        self._queue(Action(self.program.shown_line, f"M{block_rules.M_RESTORE}", self.modes, level))
+        self._mark(f"M{block_rules.M_RESTORE}", level)
         self.set_modes(self._saved[level])
