@@ -74,6 +74,11 @@ def depth(path, drawn):
     return drawn.radius - as_shapely(path).distance(as_shapely(drawn.body))
 
 
+def closed(corners):
+    """Return a closed polygon that begins in its first corner."""
+    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+
+
 def polygon(corners):
     """Return a closed polygon that begins in the middle of its first side."""
     middle = 0.5 * (corners[0] + corners[1])
@@ -106,3 +111,30 @@ def rounded(draw, shapes):
         made += [Straight(shape.start, start), corner]
         ahead = Straight(corner.end, following.end)
     return [*made, ahead]
+
+
+def drawn(draw, crossing=False):
+    """Return a closed contour and its tool, or None; ``crossing``: it mostly crosses itself."""
+    corners = star(draw, draw.randint(3, 9))
+    if crossing:
+        draw.shuffle(corners)
+    shapes = polygon(corners)
+    if min(shape.length for shape in shapes) < 0.3:
+        return None
+    if draw.random() < 0.6:
+        shapes = rounded(draw, shapes)
+    return Drawn(shapes, draw.choice([41, 42]), draw.choice([0.3, 1.0, 3.0, 6.0]), shapes)
+
+
+def open_path(draw):
+    """Return lines and arcs one after the other and their tool, or None for too few of them."""
+    at, shapes = complex(draw.uniform(-20, 20), draw.uniform(-20, 20)), []
+    for _ in range(draw.randint(2, 5)):
+        to = complex(draw.uniform(-20, 20), draw.uniform(-20, 20))
+        sweep = draw.choice([1, -1, 0]) * draw.uniform(0.1, 5.0)
+        shape = Round(at, to, sweep) if sweep else Straight(at, to)
+        if shape.length > 0.5 and abs(shape.start - shape.end) > 0.1:
+            shapes.append(shape)
+            at = complex(shape.end)
+    sides, radii = [41, 42], [0.5, 1.0, 4.0]
+    return Drawn(shapes, draw.choice(sides), draw.choice(radii), shapes) if shapes[1:] else None

@@ -9,13 +9,10 @@ import pytest
 from g12.compensation.closing import Closing, closing_of
 from g12.geometry.curve import Arc, Line
 from support.contour_geometry import Round, Straight, lines
+from support.random_contours import closed
 
 NEAR = 0.02
 SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]
-
-
-def closed(corners):
-    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
 
 
 def curves_of(shapes):
@@ -53,8 +50,7 @@ def rolled(on, off, overlap):
 
 @pytest.mark.parametrize("overlap", [0.0, 2.0])
 @pytest.mark.parametrize(
-    ("on", "off", "closes"),
-    [(1, 3, True), (3, 1, True), (2, 2, True), (1, 4, False), (4, 1, False), (4, 4, False)],
+    ("on", "off", "closes"), [(1, 3, True), (3, 2, True), (1, 4, False), (4, 1, False)]
 )
 def test_leads_have_up_to_three_moves(on, off, closes, overlap):
     shapes = rolled(on, off, overlap)
@@ -112,13 +108,8 @@ def test_what_lies_beyond_the_closing_is_no_contour():
     assert parts == [
         (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
     ]  # fmt: skip
-    led, curves = closing(rolled(2, 2, 0.0)), curves_of(rolled(2, 2, 0.0))
-    assert [led.shares(k, curves[k]) != (0.0, 0.0) for k in (0, 2, 5, 8)] == [
-        False, True, True, False,
-    ]  # fmt: skip
     line = Line(0j, 2 + 0j)  # what is only rounding of a move is no part of a contour
     assert Closing(0, 2.0 - 1e-12, 4, 1.0, True, False).shares(0, line) == (0.0, 0.0)
-    assert Closing(0, 1.0, 4, 1.0, True, False).shares(0, line) == (0.5, 1.0)
 
 
 def crossing(shapes):

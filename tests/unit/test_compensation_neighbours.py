@@ -25,6 +25,7 @@ from support.random_contours import (
     as_shapely,
     away,
     blind_path,
+    closed,
     contour_of,
     depth,
     polygon,
@@ -115,10 +116,6 @@ def slot(width, length, at=0j, turn=0.0):
     ]
 
 
-def closed(corners):
-    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
-
-
 HEXAGON = boss(regular(6, 15.6))
 FLATS = [boss([Straight(turn * (13.5 + 25j), turn * (13.5 - 25j))]) for turn in (1, 1j, -1, -1j)]
 
@@ -131,7 +128,6 @@ FLATS = [boss([Straight(turn * (13.5 + 25j), turn * (13.5 - 25j))]) for turn in 
     [
         [(HEXAGON, -5.0), (pocket(slot(14, 40, at=40.0)), -5.0)],  # a slot beside
         [(boss(regular(6, 17.0)), -5.0), (HEXAGON, -5.0)],  # a roughing pass first
-        [(HEXAGON, -5.0), (boss(regular(6, 17.0)), -5.0)],
         [(HEXAGON, -float(k)) for k in range(1, 6)],
         [(HEXAGON, -5.0), (pocket(slot(14, 60, turn=0.5)), -5.0)],  # across, as deep
         [(HEXAGON, -5.0), (pocket(slot(14, 60, turn=0.9)), -3.0)],
@@ -141,6 +137,7 @@ FLATS = [boss([Straight(turn * (13.5 + 25j), turn * (13.5 - 25j))]) for turn in 
         [(boss(regular(6, 17.0)), -5.0), (way_back(HEXAGON), -5.0)],  # finished the other way
         [(flat, -5.0) for flat in FLATS],
         [(FLATS[0], -5.0), (boss(circle(5.0, at=25.0)), -5.0)],  # its end is in the air
+        [*((boss(circle(r)), -1.0) for r in (15, 5)), (pocket(circle(10.0)), -1.0)],  # a pip
     ],
 )
 @pytest.mark.parametrize("turned", [False, True])
@@ -165,17 +162,14 @@ def begun_at(drawn, k):
     ("one", "other"),
     [
         (HEXAGON, boss(regular(6, 17.0))),
-        (HEXAGON, pocket(slot(14, 60, turn=0.5))),
+        (pocket(slot(14, 60, turn=0.5)), HEXAGON),
         (boss(circle(9.0), 2.0), pocket(circle(14.0), 2.0)),
-        (HEXAGON, boss(regular(5, 12.0, at=14.0 + 3j), 6.0)),
     ],
 )
 def test_a_closed_contour_may_begin_anywhere(one, other):
     for k in range(2 * len(one.shapes)):
         for parts in ((begun_at(one, k), other), (other, begun_at(one, k))):
             assert refusal(*((part, -5.0) for part in parts)) == "", k
-    for k in range(2 * len(other.shapes)):
-        assert refusal((one, -5.0), (begun_at(other, k), -5.0)) == "", k
 
 
 def near(gap, *depths, begins=0):
@@ -189,17 +183,12 @@ def near(gap, *depths, begins=0):
     return [(boss(sides, 3.0), depths[0]), (boss(circle(5.0, at=15.0 + gap), 3.0), depths[-1])]
 
 
-def test_a_deep_cut_into_another_contour_is_refused():
-    assert refusal(*near(4.0, -5.0)) == (
-        "G12.1 line 16: the tool of radius 3 cannot follow both lines 6 and 16: beside one of "
-        "them it cuts into the other"
-    )
-
-
-@pytest.mark.parametrize("begins", range(9))
-def test_any_side_of_a_closed_contour_is_looked_at(begins):
-    text = refusal(*near(4.0, -5.0, begins=begins))
-    assert f"cannot follow both lines {3 + (3 - begins) % 9} and 16" in text
+def test_a_deep_cut_into_any_side_of_another_contour_is_refused():
+    for begins in range(9):
+        assert refusal(*near(4.0, -5.0, begins=begins)) == (
+            f"G12.1 line 16: the tool of radius 3 cannot follow both lines {3 + (3 - begins) % 9} "
+            "and 16: beside one of them it cuts into the other"
+        )
 
 
 @pytest.mark.parametrize(("gap", "refused"), [(4.49, True), (4.51, False), (5.0, False)])
@@ -207,10 +196,8 @@ def test_a_shallow_cut_may_be_an_allowance(gap, refused):
     assert is_refused(*near(gap, -5.0)) is refused
 
 
-@pytest.mark.parametrize("depths", [(-3.0,), (-2.0, -4.0), (-4.0, -2.0), (-2.0, -3.0, -4.0)])
-@pytest.mark.parametrize(
-    "others", [(-3.0,), (-2.0,), (-1.0, -5.0), (-5.0, -4.0), (-4.0, -1.0), (-2.0, -5.0)]
-)
+@pytest.mark.parametrize("depths", [(-3.0,), (-2.0, -4.0), (-2.0, -3.0, -4.0)])
+@pytest.mark.parametrize("others", [(-3.0,), (-1.0, -5.0), (-4.0, -1.0)])
 def test_a_deep_cut_is_refused_where_both_are_cut_at_one_height(depths, others):
     (one, _), (other, _) = near(4.0, -5.0)
     cuts = [*((one, z) for z in depths), *((other, z) for z in others)]
@@ -234,10 +221,8 @@ ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
         ([FACE, BEHIND], True),
         ([IN_FRONT, FACE, BEHIND], False),
         (ROUND, False),
-        (ROUND[1:] + ROUND[:1], False),
         (ROUND[2:] + ROUND[:2], False),
         ([Straight(14 - 20j, 14 + 30j), *BESIDE], True),
-        ([Straight(14 - 20j, 14 + 50j), *BESIDE[1:]], True),
         ([Straight(14 - 20j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
         ([Straight(14 - 5j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
         ([BESIDE[0].between(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].between(0.0, 1.4)], True),
@@ -313,8 +298,8 @@ def tip(turn, angle, at, begins):
     return boss(shapes[begins:] + shapes[:begins], 3.0)
 
 
-@pytest.mark.parametrize("angle", [40, 70, 100])
-@pytest.mark.parametrize("gap", [3.6, 4.48, 4.52, 5.3])
+@pytest.mark.parametrize("angle", [40, 100])
+@pytest.mark.parametrize("gap", [3.6, 4.48, 4.52])
 def test_the_deepest_pass_counts_at_every_place(angle, gap):
     """Two corners that point to each other: beside the arcs about them all is shallower."""
     for k in range(8):
@@ -324,34 +309,28 @@ def test_the_deepest_pass_counts_at_every_place(angle, gap):
         assert is_refused((one, -5.0), (other, -5.0)) == (deep > 1.5), k
 
 
-@pytest.mark.parametrize("k", range(8))
-def test_a_corner_cut_off_by_little_is_meant(k):
+def test_a_corner_cut_off_by_little_is_meant():
     """The tip of a corner reaches 0.035 over a line."""
     one = tip(0.0, 60, 0.035 + 0j, 1)
-    corners = [0.03j * k - 20j, 0.03j * k + 21j, 20 + 20j, 20 - 20j]
-    other = begun_at(pocket(closed(corners), 3.0), 3)
-    for parts in ([one, other], [other, one]):
-        assert refusal(*((part, -5.0) for part in parts)) == ""
+    for k in range(8):
+        corners = [0.03j * k - 20j, 0.03j * k + 21j, 20 + 20j, 20 - 20j]
+        other = begun_at(pocket(closed(corners), 3.0), 3)
+        for parts in ([one, other], [other, one]):
+            assert refusal(*((part, -5.0) for part in parts)) == "", k
 
 
-@pytest.mark.parametrize("depths", [(-5.0, -5.0), (-5.0, -6.0)])
-@pytest.mark.parametrize(("gap", "ramp"), [(4.4, 3.3), (4.4, 9.0), (5.3, 3.3), (5.3, 9.0)])
-def test_a_ramp_never_hides_a_pass(depths, gap, ramp):
+@pytest.mark.parametrize("depth", [-5.0, -6.0])
+@pytest.mark.parametrize(("gap", "ramp"), [(4.4, 3.3), (4.4, 9.0), (5.3, 9.0)])
+def test_a_ramp_never_hides_a_pass(depth, gap, ramp):
     """The second square begins where it is nearest to the first, its ramp comes from in there."""
     at = 10 + gap
     square = [at + 0j, at + 5j, at + 10 + 5j, at + 10 - 5j, at - 5j]
-    other = boss(closed(square), 3.0)
-    parts = (FACED, depths[0]), (other, depths[1])
-    assert is_refused(*parts, ramp=ramp * 1j) == (gap < 4.5 and depths[0] == depths[1])
+    parts = (FACED, -5.0), (boss(closed(square), 3.0), depth)
+    assert is_refused(*parts, ramp=ramp * 1j) == (gap < 4.5 and depth == -5.0)
 
 
 def test_a_tool_smaller_than_the_tolerance_cuts_into_nothing():
     assert refusal((boss(circle(5.0), 0.8 * TOLERANCE), -5.0)) == ""
-
-
-def test_a_pip_in_a_pocket_may_be_cut_all_round():
-    face = [(boss(circle(15.0)), -1.0), (boss(circle(5.0)), -1.0)]
-    assert refusal(*face, (pocket(circle(10.0)), -1.0)) == ""
 
 
 # Contours made at random.
