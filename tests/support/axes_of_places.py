@@ -9,7 +9,6 @@ import numpy as np
 from support.contour_geometry import Straight
 
 NEAR = 3e-4  # of where the slide stands: steps in which a rate is measured
-APART = 0.001  # of the same: steps in which a curvature's change is measured
 
 
 def along(shape):
@@ -34,28 +33,22 @@ def places_of(slide, angle, beside=0.0):
 
 def rates(path, at, beside=0.0):
     """Return the slide's place, and how it and C (radians) change per unit of the path."""
-    slide, step, sides = _about(path, at, beside, NEAR)
+    slide, step, sides = _about(path, at, beside)
     there, angle = axes_of(path(sides), beside)
     return slide, np.diff(there)[..., 0] / (2 * step), np.diff(angle)[..., 0] / (2 * step)
 
 
 def bend(path, at, beside=0.0):
     """Return by how much a straight move of slide and C curves more to the left than the path."""
-    _, step, sides = _about(path, at, beside, NEAR)
+    _, step, sides = _about(path, at, beside)
     there, angle = axes_of(path(sides), beside)
     heading = np.diff(path(sides))[..., 0]
     off = places_of(there.mean(axis=-1), angle.mean(axis=-1), beside) - path(at)
     return -2.0 * (off * np.conj(heading)).imag / abs(heading) / step**2
 
 
-def change_of_bend(path, at, beside=0.0):
-    """Return how `bend` changes per unit of the path."""
-    _, step, sides = _about(path, at, beside, APART)
-    return np.diff(bend(path, sides, beside))[..., 0] / (2 * step)
-
-
-def _about(path, at, beside, share):
-    """Return where the slide stands, a step that is a share of it, and the lengths beside."""
+def _about(path, at, beside):
+    """Return where the slide stands, a small step, and the lengths beside."""
     slide, _ = axes_of(path(np.asarray(at)[..., None]), beside)
-    step = share * slide[..., 0]
+    step = NEAR * slide[..., 0]
     return slide[..., 0], step, np.stack((at - step, at + step), axis=-1)

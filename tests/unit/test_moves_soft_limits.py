@@ -57,33 +57,20 @@ def test_every_axis_has_its_ends_and_may_stand_on_them(place, beyond):
 
 
 @pytest.mark.parametrize(
-    ("beyond", "diameters", "text"),
+    ("beyond", "text"),
     [
-        (
-            Beyond(4, "X", 301, 300, "mm", False),
-            False,
-            "the X axis would go to 301 mm, beyond its limit 300 mm",
-        ),
-        (
-            Beyond(4, "X", 301, 300, "mm", True),
-            True,
-            "the X axis would go to 301 mm (radius), beyond its limit 300 mm (G20 is active)",
-        ),
-        (
-            Beyond(4, "Z", 5.5, 5, "in", True),
-            True,
-            "the Z axis would go to 5.5 in, beyond its limit 5 in (G21 is active)",
-        ),
-        (
-            Beyond(4, "C", 721, 720, "degrees", False),
-            True,
-            "the C axis would go to 721 degrees, beyond its limit 720 degrees",
-        ),
+        (("X", 301, 300, "mm", True), "X axis would go to 301 mm (radius), beyond its limit 300 mm"
+                                      " (G20 is active)"),
+        (("Z", 5.5, 5, "in", True), "Z axis would go to 5.5 in, beyond its limit 5 in"
+                                    " (G21 is active)"),
+        (("C", 721, 720, "degrees", False), "C axis would go to 721 degrees, beyond its limit"
+                                            " 720 degrees"),
     ],
-)
-def test_the_words_for_it(beyond, diameters, text):
+)  # fmt: skip
+def test_the_words_for_it(beyond, text):
     """A machine shows the radius of X, in its own unit."""
-    assert beyond.text(diameters) == text
+    assert Beyond(4, *beyond).text(True) == f"the {text}"
+    assert Beyond(4, *beyond).text(False) == f"the {text}".replace(" (radius)", "")
 
 
 def test_inches_on_a_metric_machine():

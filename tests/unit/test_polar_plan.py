@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.moves.steps import BlockMoves, chord_deviation
+from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan, quickness
 from support.axes_of_places import rates
 from support.contour_geometry import Round, Straight, distance, distance_from_path
@@ -78,27 +78,19 @@ def test_moves_x_by_the_least_step_or_not_at_all(shapes):
     assert made[-1].radius[1] == pytest.approx(abs(shapes[-1].end), abs=0.51 * TOLERANCE)
 
 
-def deviation(shape, settings=EXACT, feed=250.0):
-    """Return how far the segments are off a shape that begins anywhere."""
-    start = abs(shape.start)
-    shape = shape.turned(start / shape.start)
-    contour = programmed([shape], feed=feed)
-    made = cuts(contour, plan(contour, settings, c=0.0))
-    assert all(min(cut.radius) >= 0.0 for cut in made)
-    return distance(path(made), [shape]).max()
-
-
-@pytest.mark.parametrize("beside", [0.0026, 0.003, -0.003, 0.1])
-@pytest.mark.parametrize("radius", [2.5e4, 2.5e5, 9e5])
+@pytest.mark.parametrize("beside", [0.0026, -0.003, 0.1])
+@pytest.mark.parametrize("radius", [2.5e4, 9e5])
 def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
     """In as few segments as a line: rounding must not make of 1e-12 of the radius what it likes."""
     away, reach = radius - beside, math.sqrt(400.0 + 2 * radius * abs(beside))
     height = math.sqrt(radius * radius - reach * reach) - away
     arc = Round(reach + 1j * height, -1j * away, 2 * math.asin(reach / radius))
-    assert deviation(arc) <= TOLERANCE
-    contour = programmed([arc.turned(abs(arc.start) / arc.start)])
-    (run,) = runs(plan(contour, EXACT, c=0.0))
+    arc = arc.turned(abs(arc.start) / arc.start)
+    contour = programmed([arc])
+    planned = plan(contour, EXACT, c=0.0)
+    (run,) = runs(planned)
     assert len(run.segments) <= 45
+    assert distance(path(cuts(contour, planned)), [arc]).max() <= TOLERANCE
 
 
 @pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
@@ -186,10 +178,6 @@ def test_no_splitting_needs_many_segments_less(shapes):
     assert segments <= 1.21 * fewest(shapes[0], 2 * TOLERANCE) + 5
 
 
-def bulge(x):
-    return x[len(x) // 2] - (x[0] + x[-1]) / 2
-
-
 # The pole.
 
 
@@ -216,13 +204,7 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
         Refusal, match=r"^G12\.1 line 1: .*spindle's centre \(POLAR_POLE = refuse\)$"
     ):
         plan(programmed([shape]), careful, c=0.0)
-
-
-def test_a_path_beside_the_pole_is_not_refused():
-    careful = LATHE._replace(pole_refused=True)
-    shape = Straight(9 + 0j, -9 + 0.2j)
-    contour = programmed([shape])
-    assert distance(path(cuts(contour, plan(contour, careful, c=0.0))), [shape]).max() < TOLERANCE
+    assert plan(programmed([Straight(9 + 0j, -9 + 0.2j)]), careful, c=0.0).steps
 
 
 # Corners, marks, sections cut in two.
@@ -292,16 +274,6 @@ def test_segments_that_keep_x_stay_within_the_tolerance():
     made = cuts(contour, plan(contour, LATHE, c=0.0))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
-
-
-@pytest.mark.parametrize(
-    ("stop", "kept", "share"),
-    [(True, 0.0, 0.7), (False, 0.0, 0.96), (True, 0.2, 0.7), (False, 0.2, 0.768), (True, 2, 0.48)],
-)
-def test_how_far_off_segments_may_be(stop, kept, share):
-    """By what is left of the tolerance where a slide is kept, half of it at the least."""
-    deviation = chord_deviation(TOLERANCE, stop, kept * TOLERANCE)
-    assert deviation == pytest.approx(share * TOLERANCE)
 
 
 @settings(max_examples=80, deadline=None)

@@ -38,6 +38,7 @@ def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
             "needs a move after G40: the tool is still beside the programmed point",
         ),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"missing_code": "M133"}, "needs the spindle as C: M133 first"),
         ({"x_shift": -2.5}, SHIFTED.format(-2.5)),
         ({"x_shift": -2.5, "diameter": True}, SHIFTED.format(-5)),
         ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
@@ -48,13 +49,6 @@ def test_where_no_section_begins(found, rule):
     with pytest.raises(Refusal) as refused:
         check_section_start(START._replace(**found), "XZC")
     assert str(refused.value) == f"G12.1 line 7: {rule}"
-
-
-@pytest.mark.parametrize("millimetre", [1.0, 1 / INCH])
-def test_ends_that_rounded_words_leave_open_are_closed_in_any_unit(millimetre):
-    assert setup_of(millimetre=millimetre).words.radius_tolerance == pytest.approx(
-        0.0005 * INCH * millimetre
-    )
 
 
 def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
@@ -75,6 +69,7 @@ def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
 )
 def test_lengths_are_in_program_units(machine_unit, millimetre, tolerance):
     made = setup_of(machine_unit=machine_unit, millimetre=millimetre)
+    assert made.words.radius_tolerance == pytest.approx(0.0005 * INCH * millimetre)
     assert made.tolerance == made.plan.tolerance == pytest.approx(tolerance)
     assert made.plan.least_x == pytest.approx(0.001 * millimetre)
     assert made.plan.x_acceleration == pytest.approx(1000.0 * machine_unit)
