@@ -49,11 +49,11 @@ def record(
     start = _known if known else _new
     baseline = _as_requested(start(directory.absolute(), request, named), request, named)
     names = _names(baseline, named)
-    tools, parameters = _tools_and_parameters(baseline, request, everything=not (known and named))
-    machine = machine_of(baseline.ini, tools, parameters)
+    files = _tools_and_parameters(baseline, request, everything=not (known and named))
+    machine = machine_of(baseline.ini, *files)
     job = Job(baseline, machine, baseline.programs, terms, keep=True)
     found = results(job, names, recorders)
-    baseline.take_copies(tools, parameters)
+    baseline.take_copies(files)
     baseline.save()
     return _sorted([*found, *([] if named else _dropped(baseline))])
 
@@ -78,8 +78,9 @@ def check(
     recorded = [_recorded(baseline, name) for name in names] or baseline.names()
     if not recorded:
         raise UsageError(f"{directory}: no program is recorded there")
-    table = _absolute(tool_table(tools)) if tools else baseline.tools
-    machine = machine_of(_machine(ini or baseline.ini), table, baseline.parameters)
+    (_, table), (_, parameters) = baseline.copies
+    table = _absolute(tool_table(tools)) if tools else table
+    machine = machine_of(_machine(ini or baseline.ini), table, parameters)
     present = [name for name in recorded if (folder / name).is_file()]
     job = Job(baseline, machine, folder, terms or Terms())
     found = results(job, present, recorders)
@@ -180,20 +181,16 @@ def _programs(baseline: Baseline, path: Path) -> list[str]:
 
 
 def _tools_and_parameters(
-    baseline, request: RecordRequest, everything: bool
-) -> tuple[Path | None, Path | None]:
+    baseline: Baseline, request: RecordRequest, everything: bool
+) -> list[Path | None]:
     """Return tool table and var file to record with: the machine's, or the directory's copies.
 
     One program more is recorded with the copies, as the others were.
     """
-    files = (
-        (request.tools, baseline.tool_table, baseline.tools),
-        (request.var, baseline.var_file, baseline.parameters),
-    )
-    return tuple(
+    return [
         source if source and (everything or given) and source.is_file() else copy
-        for given, source, copy in files
-    )
+        for given, (source, copy) in zip((request.tools, request.var), baseline.copies)
+    ]
 
 
 def _recorded(baseline: Baseline, name: str) -> str:
@@ -215,9 +212,8 @@ def _dropped(baseline: Baseline) -> list[Result]:
 
 def _outdated(baseline: Baseline) -> list[str]:
     """Return the machine's files that have changed since the recording."""
-    copies = (baseline.tool_table, baseline.tools), (baseline.var_file, baseline.parameters)
     return [
         f"{source.name} has changed since the recording, its recorded copy is used"
-        for source, copy in copies
-        if source and source.is_file() and source.read_bytes() != copy.read_bytes()
+        for source, copy in baseline.copies
+        if source and copy and source.is_file() and source.read_bytes() != copy.read_bytes()
     ]

@@ -104,7 +104,6 @@ class Result:
 
 
 def machine_of(ini: Path, tools: Path | None, parameters: Path | None) -> TracedMachine:
-    """Return the machine of its present files."""
     contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
     return TracedMachine(ini, tools, parameters, linuxcnc_version(), hash_of(contents))
 

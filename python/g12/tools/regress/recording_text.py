@@ -280,7 +280,6 @@ def _ending(line: str) -> tuple[Error | None, str]:
 
 
 def split_facts(text: str) -> tuple[dict[str, str], str]:
-    """Split a text into the facts at its head and the rest."""
     head, *lines = text.split("\n", len(FACTS) + 1)
     if head != HEAD:
         raise TraceTextError(f"line 1: not {HEAD!r}")

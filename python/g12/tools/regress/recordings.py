@@ -38,14 +38,10 @@ class Baseline:
     var_file: Path | None = None
 
     @property
-    def tools(self) -> Path | None:
-        """Return the directory's copy of the tool table, if it has one."""
-        return self.directory / TOOLS if self.tool_table else None
-
-    @property
-    def parameters(self) -> Path | None:
-        """Return the directory's copy of the var file, if it has one."""
-        return self.directory / PARAMETERS if self.var_file else None
+    def copies(self) -> list[tuple[Path | None, Path | None]]:
+        """The sources of tool table and var file, each with the directory's copy of it."""
+        sources = (self.tool_table, TOOLS), (self.var_file, PARAMETERS)
+        return [(source, self.directory / name if source else None) for source, name in sources]
 
     def names(self) -> list[str]:
         found = self.directory.rglob(f"*{SUFFIX}")
@@ -74,7 +70,13 @@ class Baseline:
         return sorted({name for found in names for name in found})
 
     def name_of(self, program: Path) -> str:
-        return _below(program, self.programs, self.directory)
+        try:
+            return program.relative_to(self.programs).as_posix()
+        except ValueError:
+            raise UsageError(
+                f"{program}: not in {self.programs}, the programs of {self.directory}; "
+                "use another -d for it"
+            ) from None
 
     def save(self) -> None:
         self.directory.mkdir(parents=True, exist_ok=True)
@@ -88,10 +90,10 @@ class Baseline:
         }
         write(self.directory / ABOUT, f"{json.dumps(about, indent=2)}\n".encode())
 
-    def take_copies(self, tools: Path | None, parameters: Path | None) -> None:
+    def take_copies(self, sources: Iterable[Path | None]) -> None:
         self.directory.mkdir(parents=True, exist_ok=True)
-        for source, copy in ((tools, self.tools), (parameters, self.parameters)):
-            if source and source != copy:
+        for source, (_, copy) in zip(sources, self.copies):
+            if source and copy and source != copy:
                 write(copy, source.read_bytes())
 
     def _relative(self, path: Path | None) -> str | None:
@@ -130,12 +132,3 @@ def common_folder(programs: Iterable[Path]) -> Path:
     """Return the deepest folder that holds all programs and folders given."""
     folders = [path if path.is_dir() else path.parent for path in programs]
     return Path(os.path.commonpath(folders))
-
-
-def _below(program: Path, folder: Path, directory: Path) -> str:
-    try:
-        return program.relative_to(folder).as_posix()
-    except ValueError:
-        raise UsageError(
-            f"{program}: not in {folder}, the programs of {directory}; use another -d for it"
-        ) from None
