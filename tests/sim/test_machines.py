@@ -47,35 +47,23 @@ def test_each_desktop_machine_has_a_headless_twin():
 def test_twins_differ_in_their_screen_only(ini):
     one = read_ini(ini)
     other = read_ini(ini.with_name(f"{ini.stem}_headless.ini"))
-    assert without_screen(one) == without_screen(other)
+    assert lines_of(one) == lines_of(other)
     assert sample(one.path) == sample(other.path)
 
 
 @pytest.mark.parametrize("ini", GMOCCAPY, ids=name)
 def test_a_machine_on_gmoccapy_is_the_one_on_axis(ini):
     other = read_ini(ini.with_name(f"{ini.stem.removesuffix('_gmoccapy')}.ini"))
-    assert without_screen(read_ini(ini)) == without_screen(other)
+    assert lines_of(read_ini(ini)) == lines_of(other)
     assert ini.read_text().count("NGCGUI_SUBFILE") == other.path.read_text().count("NGCGUI_SUBFILE")
 
 
-def with_screen(ini):
-    """Return the lines of [DISPLAY] that every machine has."""
-    lines = [line for line in ini.lines if line and not line.startswith("#")]
-    shown = lines[lines.index("[DISPLAY]") + 1 :]
-    shown = shown[: next(k for k, line in enumerate(shown) if line.startswith("["))]
-    return [
-        line
-        for line in shown
-        if not line.startswith(("OPEN_FILE", "GEOMETRY", "MAX_FEED_OVERRIDE"))
-    ]
-
-
-def without_screen(ini):
-    """Return the INI's lines outside [DISPLAY] that are no comments."""
+def lines_of(ini, screen=False):
+    """Return the INI's lines outside [DISPLAY], or those in it, that are no comments."""
     lines, section = [], None
     for line in ini.lines:
         section = line if line.startswith("[") else section
-        if section != "[DISPLAY]" and line and not line.startswith("#"):
+        if (section == "[DISPLAY]") is screen and line and not line.startswith("#"):
             lines.append(line)
     return lines
 
@@ -92,7 +80,9 @@ def test_every_machine_runs_its_sample_to_the_end(ini):
 
 def test_every_headless_machine_has_the_same_screen():
     """But for what is the machine's own: its sample, its picture, how far F is turned up."""
-    shown = [with_screen(read_ini(ini)) for ini in HEADLESS]
+    own = ("OPEN_FILE", "GEOMETRY", "MAX_FEED_OVERRIDE")
+    screens = [lines_of(read_ini(ini), screen=True) for ini in HEADLESS]
+    shown = [[line for line in lines if not line.startswith(own)] for lines in screens]
     assert shown == [shown[0]] * len(HEADLESS)
 
 

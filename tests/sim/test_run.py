@@ -115,7 +115,6 @@ def test_an_interrupted_run_is_one_line(tmp_path, start):
         ("F600\nG1 X50", 100, 600),
         ("F1\nG1 X50", 100, 6000),
         ("F1\nG1 X50", 500, 1200),
-        ("F600\nG1 X50", 1, 1000),
         ("F600\nG1 X5\nG4 P1000", 500, 2000.2),
     ],
 )

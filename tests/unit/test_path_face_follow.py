@@ -32,18 +32,6 @@ def test_a_line_turns_c_most_where_it_is_nearest_and_pushes_it_most_beside_that(
     assert max(abs(slide[1])) == pytest.approx(1 / 5.0, rel=1e-3)
 
 
-def test_a_circle_about_the_spindle_turns_c_evenly():
-    arc = Hand().rapid(x=20.0).arc(1, 0.0, 0.0).moves[-1]
-    slide, angle = followed_along(arc, 1 / 20, 0.0, 0.0)
-    assert angle[0] == pytest.approx(1 / 20.0, rel=1e-6)
-    assert max(abs(slide[0])) < 1e-6
-
-
-def test_beside_the_x_line_the_slide_stands_nearer_than_the_tool():
-    slide, _ = followed_along(line(13.0), 0.0, 0.0, 5.0)
-    assert max(abs(slide[1])) == pytest.approx(1 / 12.0, rel=1e-3)  # 13, 12, 5
-
-
 @pytest.mark.parametrize("beside", [0.0, 3.0, -3.0])
 def test_the_derivatives_are_those_of_slide_and_angle(beside):
     radius, step = 30.0, 1e-4
