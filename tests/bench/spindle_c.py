@@ -5,6 +5,7 @@ from bench import Figure
 from support.spindle_lathe import (
     FIRST,
     FLATS,
+    SPINDLE_LATHE,
     TEN_CHANGES,
     SpindleLathe,
     angle_of_flat,
@@ -24,7 +25,7 @@ PARTS = [*FIRST, *FLATS, *THREAD, *TEN_CHANGES, *THREAD, *FLATS, "M2"]
 
 def figures():
     """Yield the figures of one lathe."""
-    with SpindleLathe() as lathe:
+    with SpindleLathe(SPINDLE_LATHE) as lathe:
         yield from at_changes(lathe)
         yield from before_and_after(lathe)
 

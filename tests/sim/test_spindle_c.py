@@ -9,29 +9,31 @@ import pytest
 
 from g12.tools.commands import check, install, uninstall
 from support.kinematics import needs_kinematics
-from support.operated_machine import Machine
-from support.sim_machines import PROGRAMS, copy_of_machines
+from support.operated_machine import Machine, kept_machine
+from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 from support.spindle_lathe import (
     FIRST,
     FLATS,
     INTERRUPTS,
+    SPINDLE_LATHE,
     TEN_CHANGES,
     SpindleLathe,
     angle_of_flat,
     changes_of,
     interrupted,
     jumps,
-    kept_lathe,
     motor_jumps,
     pitch_and_start,
     random_changes,
 )
 
 PITCH = 1.5
+NOT_C = "line 3: needs the spindle as C: M254 first"
+HOLE = "[4] [2] [900] [0] [0] [0]"
 MOST = 0.05  # degrees
 
 
-running = kept_lathe("lathe_spindle_c_mm")
+running = kept_machine("lathe_spindle_c_mm", SpindleLathe)
 
 
 @pytest.fixture
@@ -51,19 +53,18 @@ def as_c(machine):
 
 
 def test_nothing_jumps_at_a_change(lathe):
-    run = lathe.run_text([*FIRST, *random_changes(seed=3, count=6)])
-    assert run.error is None
-    on, off = changes_of(run.samples)
+    samples = lathe.motion_of([*FIRST, *random_changes(seed=3, count=6)])
+    on, off = changes_of(samples)
     assert len(on) == len(off) == 6
     changes = [*on, *off]
-    assert (jumps(run.samples, changes) <= [0.0, MOST, MOST]).all()
-    assert motor_jumps(run.samples, changes) <= 0.5
-    ahead = np.diff(run.samples.axes["P"] - run.samples.axes["T"]) * 360
-    slow = np.abs(np.diff(run.samples.axes["T"])) < 2e-3
+    assert (jumps(samples, changes) <= [0.0, MOST, MOST]).all()
+    assert motor_jumps(samples, changes) <= 0.5
+    ahead = np.diff(samples.axes["P"] - samples.axes["T"]) * 360
+    slow = np.abs(np.diff(samples.axes["T"])) < 2e-3
     assert np.abs(ahead[slow]).max() <= 1  # the ramp begins where the spindle stands
-    assert all(turn_to_c(run.samples, at) <= 0.55 for at in on)
+    assert all(turn_to_c(samples, at) <= 0.55 for at in on)
     standing = np.concatenate([on + 50, off - 1])  # C0 is the index, whatever has happened since
-    beside = (run.samples.axes["T"] - run.samples.axes["C"] / 360)[standing]
+    beside = (samples.axes["T"] - samples.axes["C"] / 360)[standing]
     assert np.abs(beside - np.round(beside)).max() * 360 <= MOST
 
 
@@ -76,9 +77,8 @@ def turn_to_c(samples, change):
 
 
 def test_c_follows_its_command(lathe):
-    run = lathe.run_text([*FIRST, "M254", "G0 C90", "G1 C0 F3000", "M255", "M2"])
-    assert run.error is None
-    error = np.abs(run.samples.axes["E"])
+    samples = lathe.motion_of([*FIRST, "M254", "G0 C90", "G1 C0 F3000", "M255", "M2"])
+    error = np.abs(samples.axes["E"])
     assert 0.01 < error.max() < 0.5
     assert error[-1] == 0
 
@@ -88,15 +88,14 @@ def test_threads_and_flats_are_the_same_after_ten_changes(lathe):
     thread = ["S400 M3", "G0 X20 Z5", f"G33 Z-8 K{PITCH}", "G0 X25", "M5"]
     part = [*turned, *thread, *FLATS]
     program = [*FIRST, *TEN_CHANGES[:3], *part, *TEN_CHANGES, *part, "M2"]
-    run = lathe.run_text(program, timeout=120)
-    assert run.error is None
+    samples = lathe.motion_of(program, timeout=120)
     threads = [number for number, block in enumerate(program, 1) if "G33" in block]
-    (before, start), (after, start_after) = (pitch_and_start(run.samples, at) for at in threads)
+    (before, start), (after, start_after) = (pitch_and_start(samples, at) for at in threads)
     assert before == pytest.approx(PITCH, rel=0.005)
     assert after == pytest.approx(before, rel=0.005)
     assert (start_after - start + 0.5) % 1 - 0.5 == pytest.approx(0, abs=0.01)
     flats = [number for number, block in enumerate(program, 1) if block == "X20 C-20"]
-    before, after = (angle_of_flat(run.samples, line) for line in flats)
+    before, after = (angle_of_flat(samples, line) for line in flats)
     assert before == pytest.approx(0, abs=0.2)
     assert after == pytest.approx(before, abs=MOST)
 
@@ -106,10 +105,9 @@ def test_everything_in_one_program(lathe):
     thread = ["G0 X22 Z4", "G76 P1.5 Z-8 I-1 J0.4 R1.5 K0.92 Q29.5 H0", "M5", "G94"]
     tap = ["G0 X0 Z5", "S200 M3", "G33.1 Z-1 K1", "M5"]
     program = [*FIRST, *faced, *thread, *FLATS, *tap, *FLATS, "M2"]
-    run = lathe.run_text(program, timeout=120)
-    assert run.error is None
-    tapped = run.samples.line == program.index("G33.1 Z-1 K1") + 1
-    turns, z = run.samples.axes["T"][tapped], run.samples.axes["Z"][tapped]
+    samples = lathe.motion_of(program, timeout=120)
+    tapped = samples.line == program.index("G33.1 Z-1 K1") + 1
+    turns, z = samples.axes["T"][tapped], samples.axes["Z"][tapped]
     down = np.arange(len(z)) < z.argmin()
     synchronous = down & (z < 3) & (z > 0)
     assert np.ptp(turns[synchronous]) == pytest.approx(3, abs=0.05)
@@ -118,23 +116,14 @@ def test_everything_in_one_program(lathe):
 @pytest.mark.parametrize(
     ("program", "refusal"),
     [
-        (["G12.1", "G1 X30 F100", "G13.1"], "G12.1 line 3: needs the spindle as C: M254 first"),
-        (["G7.1 C20", "G1 Z1 F100", "G7.1 C0"], "G7.1 line 3: needs the spindle as C: M254 first"),
-        (
-            ["o<polar_slot> call [8] [20] [1]"],
-            "polar_slot line 3: needs the spindle as C: M254 first",
-        ),
+        (["G12.1", "G1 X30 F100", "G13.1"], f"G12.1 {NOT_C}"),
+        (["G7.1 C20", "G1 Z1 F100", "G7.1 C0"], f"G7.1 {NOT_C}"),
+        (["o<polar_slot> call [8] [20] [1]"], f"polar_slot {NOT_C}"),
+        ([f"o<face_holes> call [3] [30] [0] [-9999] {HOLE}"], f"face_holes {NOT_C}"),
+        ([f"o<side_holes> call [3] [-9] [0] [-9999] [40] {HOLE}"], f"side_holes {NOT_C}"),
         (
             ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
             "G12.1 line 6: M255 line 7: the section needs C to its end",
-        ),
-        (
-            ["o<face_holes> call [3] [30] [0] [-9999] [4] [2] [900] [0] [0] [0]"],
-            "face_holes line 3: needs the spindle as C: M254 first",
-        ),
-        (
-            ["o<side_holes> call [3] [-9] [0] [-9999] [40] [4] [2] [900] [0] [0] [0]"],
-            "side_holes line 3: needs the spindle as C: M254 first",
         ),
         (["M255", "G0 C30"], "Linear move on line 4 would exceed C's positive limit"),
         (["G1 X30 C-30 F100"], "Linear move on line 3 would exceed C's negative limit"),
@@ -148,8 +137,7 @@ def test_refused_while_it_is_the_spindle(lathe, program, refusal):
 
 
 def test_a_c_word_where_c_stands_is_none(lathe):
-    run = lathe.run_text([*FIRST, "M254", "G0 C123.456", "M255", "G0 X30 C123.456", "M2"])
-    assert run.error is None
+    lathe.motion_of([*FIRST, "M254", "G0 C123.456", "M255", "G0 X30 C123.456", "M2"])
 
 
 def test_a_jog_of_c_does_not_move_the_spindle(lathe):
@@ -187,7 +175,8 @@ def test_m3_on_the_screen_while_it_is_c_turns_nothing_afterwards(lathe):
 
 
 def test_a_spindle_that_cannot_become_c():
-    with SpindleLathe(overrides={"SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1}}) as machine:
+    slow = {"SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1}}
+    with Machine(SPINDLE_LATHE, overrides=slow) as machine:
         machine.mdi("M254")
         assert machine.errors()[0].text == (
             "M254: the spindle did not become C within 1 s: it has to stop, to find its index and "
@@ -207,11 +196,10 @@ def test_interrupted_at_any_time(lathe, interrupt):
 def test_feed_per_revolution_of_the_live_tool(lathe):
     section = ["G12.1", "G1 C10 F0.1", "X30", "G13.1"]
     start = ["M254", "G0 X40 C0", "S2000 M33", "S2000 G95 $1"]
-    run = lathe.run_text([*FIRST, *start, *section, "G94", "M5 $1", "M255", "M2"])
-    assert run.error is None
+    samples = lathe.motion_of([*FIRST, *start, *section, "G94", "M5 $1", "M255", "M2"])
     line = len(FIRST) + len(start) + 3
-    cut = run.samples.line == line
-    assert np.median(run.samples.requested[cut]) * 60 == pytest.approx(200, rel=0.2)
+    cut = samples.line == line
+    assert np.median(samples.requested[cut]) * 60 == pytest.approx(200, rel=0.2)
 
 
 def test_holes_with_the_live_tool(lathe):
@@ -220,9 +208,8 @@ def test_holes_with_the_live_tool(lathe):
     side = "o<side_holes> call [2] [-10] [30] [-9999] [40] [4] [2] [1200] [-2] [0] [0]"
     tap = "o<face_hole_at> call [10] [0] [3] [2] [1] [0] [0] [1]"
     start = ["M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "G0 X40", side, "G0 Z5"]
-    run = lathe.run_text([*FIRST, "T1 M6", *start, tap, "M5 $1", "M255", "M2"], timeout=60)
-    assert run.error is None
-    line, axes = run.samples.line, run.samples.axes
+    samples = lathe.motion_of([*FIRST, "T1 M6", *start, tap, "M5 $1", "M255", "M2"], timeout=60)
+    line, axes = samples.line, samples.axes
     low = axes["Z"] < -3.998
     angles = 360 * axes["T"][low & (axes["X"] > 14.9) & (axes["X"] < 15.1)]
     assert {round(angle) % 360 for angle in angles} == {20, 140, 260}
@@ -249,12 +236,12 @@ def test_aborts_in_holes_leave_it_c(lathe):
         assert lathe.is_c() and lathe.get("spindle-c-holds")
         lathe.mdi("G90 G0 Z20")
         assert lathe.errors() == []
-    run = lathe.run_text([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", face, "M255", "M2"])
-    assert run.error is None and run.samples.axes["Z"].min() == pytest.approx(-4, abs=0.002)
+    samples = lathe.motion_of([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", face, "M255", "M2"])
+    assert samples.axes["Z"].min() == pytest.approx(-4, abs=0.002)
 
 
 def test_the_manuals_program_switches_c_on_by_m35():
-    with SpindleLathe("lathe_spindle_c_inch") as machine:
+    with SpindleLathe(SIM / "lathe_spindle_c_inch.ini") as machine:
         machine.feed_override(4.0)  # it cuts at 5 inches a minute
         run = machine.run(PROGRAMS / "polar" / "manual_a.ngc")
         assert run.error is None
@@ -310,8 +297,7 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert install.main([str(ini), *options]) == 0
     assert check.main([str(ini)]) == 0
     with Machine(ini) as machine:
-        run = machine.run_text([*FIRST, "S300 M3", "G4 P1", *FLATS, "S300 M3", "G33 Z-5 K1", "M2"])
-        assert run.error is None
+        machine.motion_of([*FIRST, "S300 M3", "G4 P1", *FLATS, "S300 M3", "G33 Z-5 K1", "M2"])
         machine.mdi("M254")
         assert machine.get("spindle-c-on")
         machine.mdi("G0 C90")
@@ -328,8 +314,7 @@ def test_installed_with_the_kinematics_of_the_face(tmp_path):
     features = ["polar", "polar-kinematics", "spindle-c"]
     assert install.main([str(ini), "--with", *features, "--pins", str(pins)]) == 0
     with Machine(ini) as machine:
-        run = machine.run_text([*FIRST, *FLATS, "S300 M3", "G33 Z-5 K1", "M5", *FLATS, "M2"])
-        assert run.error is None
+        machine.motion_of([*FIRST, *FLATS, "S300 M3", "G33 Z-5 K1", "M5", *FLATS, "M2"])
         for block in ("M254", "G0 X20 C0", "G12.1"):
             machine.mdi(block)
         assert machine.get("motion.digital-in-03")

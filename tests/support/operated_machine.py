@@ -15,6 +15,7 @@ from g12.tools.headless import machine
 from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import Run
 from g12.tools.headless.namespaces import Isolated
+from g12.tools.path.samples import Samples
 from g12.tools.preview.moves import Error, Message, modes
 from g12.tools.preview.tracer import start_block, write_program
 from g12.tools.verify.proof import Proof, prove
@@ -76,7 +77,7 @@ class Machine(machine.Machine):
         """Return the operator messages that are no errors, since the last call."""
         return [Message(line, text) for text, line in self._request("messages")]
 
-    def samples(self):
+    def samples(self) -> Samples:
         """Stop recording, which ``sample`` started, and return the motion."""
         return self._samples(*self._request("samples"))
 
@@ -84,14 +85,20 @@ class Machine(machine.Machine):
         """Run a program given as text or as lines; see ``run``."""
         return self.run(write_program(text, self.folder / "program.ngc"), timeout)
 
+    def motion_of(self, text, timeout=600.0) -> Samples:
+        """Run a program, which must end without an error; return its motion."""
+        run = self.run_text(text, timeout)
+        assert run.error is None, run.error
+        return run.samples
+
     def proof_of_run(self, text) -> Proof:
         """Run a program, which must end without an error; return the proof of its real motion.
 
         Verify takes it for granted that the machine stands as it came up: see `reset`.
         """
-        run = self.run_text(text)
-        assert (run.error, run.samples.lost) == (None, 0)
-        return prove(self.folder / "program.ngc", self.ini, samples=run.samples)
+        samples = self.motion_of(text)
+        assert samples.lost == 0
+        return prove(self.folder / "program.ngc", self.ini, samples=samples)
 
     def reset(self) -> None:
         """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
@@ -108,12 +115,12 @@ class Machine(machine.Machine):
         self.errors(), self.messages()
 
 
-def kept_machine(name, **options):
+def kept_machine(name, kind=Machine, **options):
     """Return a fixture: a simulated machine, for as long as `machine_scope` says."""
 
     @pytest.fixture(scope=machine_scope)
     def running():
-        with Machine(SIM / f"{name}.ini", **options) as machine:
+        with kind(SIM / f"{name}.ini", **options) as machine:
             yield machine
 
     return running

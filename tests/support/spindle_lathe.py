@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from support.operated_machine import Machine
-from support.sim_machines import SIM, machine_scope
+from support.sim_machines import SIM
 
+SPINDLE_LATHE = SIM / "lathe_spindle_c_mm.ini"
 PINS = {
     "F": "joint.2.pos-fb",
     "E": "joint.2.f-error",
@@ -24,14 +25,11 @@ UNLOCKED = -1000.0  # least C, below it while the spindle is C
 
 
 class SpindleLathe(Machine):
-    """`lathe_spindle_c_mm`; samples have these axes too, degrees and turns.
+    """A machine of `SPINDLE_LATHE`'s kind; samples have these axes too, degrees and turns.
 
     F and E are C's feedback and following error, T the encoder, P the drive's position input, L the
     least that C may command.
     """
-
-    def __init__(self, name="lathe_spindle_c_mm", **options):
-        super().__init__(SIM / f"{name}.ini", **options)
 
     def _start(self, timeout):
         self._pins = {**self._pins, **PINS}
@@ -41,17 +39,6 @@ class SpindleLathe(Machine):
     def is_c(self):
         """Tell whether the spindle is C."""
         return self.get("spindle-c-on")
-
-
-def kept_lathe(name):
-    """Return a fixture: such a lathe, for as long as `machine_scope` says."""
-
-    @pytest.fixture(scope=machine_scope)
-    def running():
-        with SpindleLathe(name) as machine:
-            yield machine
-
-    return running
 
 
 CUT = [*FIRST, "S600 M3", "G4 P0.3", "M254", *FLATS[1:-1], "G0 C50", "M255", "S500 M4", "G4 P0.3"]
@@ -142,17 +129,10 @@ def jumps(samples, changes, around=50):
 
     They are those within ``around`` samples of the changes.
     """
-    worst = np.zeros(3)
-    for at in changes:
-        near = slice(max(at - around, 0), at + around)
-        command, feedback, error = (samples.axes[name][near] for name in "CFE")
-        here = [
-            np.abs(np.diff(command)).max(),
-            np.abs(np.diff(feedback)).max(),
-            np.abs(error).max(),
-        ]
-        worst = np.maximum(worst, here)
-    return worst
+    c, feedback, error = (samples.axes[name] for name in "CFE")
+    steps = np.array([np.diff(c), np.diff(feedback), error[1:]])
+    near = [steps[:, max(at - around, 0) : at + around] for at in changes]
+    return np.abs(np.concatenate(near, axis=1)).max(axis=1)
 
 
 def motor_jumps(samples, changes, around=50):
