@@ -5,7 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from g12.tools.path.part import Part
 from g12.tools.preview.moves import Error, Move
+from g12.tools.regress.differences import differences
+from g12.tools.regress.edits import Tolerance
 from g12.tools.regress.recording_text import (
     Note,
     Recording,
@@ -111,20 +114,11 @@ def test_reading_gives_back_what_was_written(drawn, facts):
     text = text_of(recording)
     again = read_recording(text)
     assert text_of(again) == text
-    assert len(again.steps) == len(recording.steps)
+    assert differences(recording, again, Tolerance(3e-9, 3e-9, 1e-5), Part(turning=False)) == []
     for step, known in zip(again.steps, recording.steps):
         assert step.block == known.block
-        if isinstance(known, Note):
-            assert step == known
-            continue
-        assert step[0] == known[0]
-        assert (step.plane, step.turns, step.rotation) == (known.plane, known.turns, known.rotation)
-        assert step.end == pytest.approx(known.end, abs=3e-9)
-        assert step.start == pytest.approx(known.start, abs=3e-9)
-        assert step.feed_mode == known.feed_mode
-        assert step.feed == pytest.approx(known.feed, abs=3e-9)
-        if known.centre:
-            assert step.centre == pytest.approx(known.centre, abs=3e-9)
+        if isinstance(known, Move):
+            assert step.start == pytest.approx(known.start, abs=3e-9)
 
 
 @pytest.mark.parametrize(
