@@ -74,14 +74,8 @@ def test_local_parameters_of_a_sub_that_holds_a_section(lathe):
 @pytest.mark.parametrize("name", ["#5420", "#<_x>"])
 def test_position_parameters_show_the_plane(lathe, name):
     c = {"#5420": "#5425", "#<_x>": "#<_c>"}[name]
-    traced = cut(
-        lathe,
-        "G1 X-12 C3",
-        f"X[{name} - 1] C[{c} + 1]",
-        f"(DEBUG,{name} {c} #5422)",
-        "Z-2",
-        "(DEBUG,#<_z>)",
-    )
+    body = ["G1 X-12 C3", f"X[{name} - 1] C[{c} + 1]", f"(DEBUG,{name} {c} #5422)", "Z-2"]
+    traced = cut(lathe, *body, "(DEBUG,#<_z>)")
     assert ends(traced)[1] == (-13, 4)
     assert texts(traced) == ["-13.000000 4.000000 5.000000", "-2.000000"]
 
@@ -121,10 +115,6 @@ CUT = {  # what stands in a section, and where its blocks end; #1 is 1, and what
     "block delete": (["G1 X12", "/G1 X99", "/ U3", "/o1 if [1]", "/M30", " / H1", "C3", "/",
                       "/(MSG, no)"], [(12, 0), (12, 3)]),
     "stops": (["G1 X12 M0", "M1", "X9", "M60"], [(12, 0), (9, 0)]),
-    "if": (
-        ["o1 if [#1 EQ 1]", "G1 X12", "o1 else", "G1 X99", "H-3", "o1 endif", "C1"],
-        [(12, 0), (12, 1)],
-    ),
     "else": (
         ["o1 if [#1 EQ 2]", "G1 X99 U3", "M9", "o1 else", "G1 X12", "o1 endif"],
         [(12, 0)],
@@ -133,15 +123,10 @@ CUT = {  # what stands in a section, and where its blocks end; #1 is 1, and what
         ["o1 if [0]", "U1", "o1 elseif [#1]", "G1 X12", "o1 elseif [1]", "G1 X99", "o1 endif"],
         [(12, 0)],
     ),
-    "while": (
-        ["#2=3", "o1 while [#2 GT 0]", "G1 U-1", "#2=[#2-1]", "o1 endwhile"],
-        [(17, 0)],
-    ),
     "do": (
         ["#2=3", "o1 do", "G1 X[10+#2]", "#2=[#2-1]", "H1", "o1 while [#2 GT 1]"],
         [(13, 0), (13, 1), (12, 1), (12, 2)],
     ),
-    "repeat": (["o1 repeat [2]", "G1 X12", "X13", "o1 endrepeat"], [(12, 0), (13, 0)] * 2),
     "repeat none": (
         ["o1 repeat [0]", "G1 X12", "U1", "#<a>=1", "o1 endrepeat", "G1 C1"],
         [(20, 1)],
@@ -160,6 +145,13 @@ CUT = {  # what stands in a section, and where its blocks end; #1 is 1, and what
         ["o1 repeat [2]", "o2 if [#1 EQ 1]", "G1 X11", "o2 else", "G1 X12", "o2 endif",
          "#1=[#1+1]", "o1 endrepeat"],
         [(11, 0), (12, 0)],
+    ),
+    "assignments of a waiting block's result": (
+        ["G1 X12", "M66 P0 L0", "#1=[10 - #5399]", "X#1 C2", "M66 E0 L0 X9", "C0"],
+        [(12, 0), (10, 2), (9, 2), (9, 0)],
+    ),
+    "the spindle that a parameter of its line names": (
+        ["G1 X12", "#1=0", "#1=5 S500 $#1", "#1=7", "X11"], [(12, 0), (11, 0)],
     ),
 }  # fmt: skip
 
@@ -193,32 +185,34 @@ SUBS = {  # lines of a sub in front, of a section that calls it, and where the b
         ["o<flat> sub", "G1 X#1", "o<flat> endsub"], ["#1=15", "o<flat> call [12]", "X#1"],
         [(12, 0), (15, 0)],
     ),
+    "in other files": (
+        [], ["o<outer> call [12]", "C0", "o<flat> call [9] [3]"],
+        [(12, 0), (12, 2), (13, 2), (13, 0), (9, 0), (9, 6)],
+    ),
+    "remapped codes": (
+        [], ["M410 P12", "X9", "U1", "M410 P8"],
+        [(12, 0), (12, 1), (9, 1), (10, 1), (8, 1), (8, 2)],
+    ),
+    **{
+        f"called by a computed name {name}": (
+            ["o100 sub", "G1 U-2", "o100 endsub", "#<n>=100", "#<_g>=100"],
+            ["G1 X12", f"o{name} call", "C5"], [(12, 0), (10, 0), (10, 5)],
+        )
+        for name in ("#<n>", "#<_g>", "[abs[-#<n>]]")
+    },
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", SUBS)
-def test_a_sub_is_cut_where_it_is_called(lathe, name):
+def test_a_sub_is_cut_where_it_is_called(subs, name):
     sub, body, expected = SUBS[name]
-    assert ends(lathe.trace_text([*sub, *section(*body)])) == expected
+    assert ends(subs.trace_text([*sub, *section(*body)])) == expected
 
 
 def test_labels_are_those_of_the_program_around(lathe):
     one = ["o1 if [1]", "G1 X11", "o1 endif"]
-    program = [
-        FIRST,
-        "o<s> sub",
-        "G12.1",
-        "G1 F100",
-        *one,
-        "G13.1",
-        "o<s> endsub",
-        START,
-        "o<s> call",
-        "G12.1",
-        *one,
-        "G13.1",
-        "M2",
-    ]
+    sub = ["o<s> sub", "G12.1", "G1 F100", *one, "G13.1", "o<s> endsub"]
+    program = [FIRST, *sub, START, "o<s> call", "G12.1", *one, "G13.1", "M2"]
     assert ends(lathe.trace_text(program)) == [(11, 0)]
 
 
@@ -238,20 +232,9 @@ def test_a_sub_that_is_nowhere_is_named(lathe):
     assert not [move for move in traced.moves if move.kind == "feed"]
 
 
-def test_subs_of_other_files(subs):
-    traced = subs.trace_text(section("o<outer> call [12]", "C0", "o<flat> call [9] [3]"))
-    assert ends(traced) == [(12, 0), (12, 2), (13, 2), (13, 0), (9, 0), (9, 6)]
-
-
 def test_fanuc_subs_with_repeats(lathe):
     program = [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
     assert ends(lathe.trace_text(program)) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
-
-
-def test_codes_remapped_to_subs(subs):
-    assert ends(subs.trace_text(section("M410 P12", "X9", "U1", "M410 P8"))) == [
-        (12, 0), (12, 1), (9, 1), (10, 1), (8, 1), (8, 2),
-    ]  # fmt: skip
 
 
 def test_a_section_in_a_sub_of_another_file(subs):
@@ -263,11 +246,6 @@ def test_a_section_in_a_sub_of_another_file(subs):
 # ---------------------------------------------------------------- comments, files
 
 
-def test_a_report_longer_than_a_line_is_cut(lathe):
-    (said,) = texts(cut(lathe, "G1 X12", "(DEBUG," + 30 * "#5420 " + ")"))
-    assert said.startswith("12.000000 12.000000") and len(said) > 200
-
-
 def test_messages_reports_and_comments(lathe):
     body = [
         "(MSG, one)",
@@ -276,11 +254,9 @@ def test_messages_reports_and_comments(lathe):
         "; (MSG, no)",
         "G1 X9 (x)",
     ]
-    traced = cut(lathe, *body, before=["#3=1"])
-    assert texts(traced) == ["one", "three 1.000000 1 1.0 ######", "4.000000"]
-
-
-def test_reports_print(lathe):
+    *said, longer = texts(cut(lathe, *body, f"(DEBUG,{30 * '#5420 '})", before=["#3=1"]))
+    assert said == ["one", "three 1.000000 1 1.0 ######", "4.000000"]
+    assert longer.startswith("9.000000 9.000000") and len(longer) > 200  # and cut
     assert cut(lathe, "#3=4", "(PRINT,a #3)", "(print, b %d#3)").printed == "a 4.000000\n b 4\n"
 
 
@@ -289,7 +265,13 @@ PYTHON = "py,this.params[7] = this.current_x"
 
 @pytest.mark.parametrize(
     ("line", "found"),
-    [(f"({PYTHON})", 15), (f";{PYTHON}", 15), (f" ;{PYTHON}", 0), (f"G4 P0 ;{PYTHON}", 0)],
+    [
+        (f"({PYTHON})", 15),
+        (f";{PYTHON}", 15),
+        (f" ;{PYTHON}", 0),
+        (f"G4 P0 ;{PYTHON}", 0),
+        (f"o1 if [0]\n;{PYTHON}\n({PYTHON})\no1 endif", 0),
+    ],
 )
 def test_python_comments_act_in_their_place(lathe, line, found):
     """LinuxCNC runs one after a semicolon if the line begins with it."""
@@ -302,36 +284,22 @@ def test_python_comments_act_in_their_place(lathe, line, found):
         assert texts(traced) == [f"{found:.6f}"]
 
 
-def test_python_comments_that_are_skipped_do_not_act(lathe):
-    body = ["o1 if [0]", f";{PYTHON}", f"({PYTHON})", "o1 endif", "G1 X9"]
-    assert texts(cut(lathe, *body, before=["#7=1"], after=["(DEBUG,#7)"])) == ["1.000000"]
+FILES = {  # how the lines of a section become a file
+    "crlf": lambda lines: "\r\n".join([*lines, ""]),
+    "empty lines": lambda lines: "\n\n".join([*lines, ""]),
+    "blanks": lambda lines: " \t\n".join([*lines, ""]),
+    "percents": lambda lines: "\n".join(["%", *lines, "%"]),
+    "without a last newline": "\n".join,
+    "not utf-8": lambda lines: "\n".join(lines).replace("X12", f"X12 (Fläche \xb0{'ä' * 200})"),
+}
 
 
-@pytest.mark.parametrize("end", ["\n", "\r\n", "\n\n", " \t\n"])
-def test_line_ends(lathe, end):
-    traced = lathe.trace_text(
-        end.join([*section("G1 X12", "U-2", "o1 repeat [2]", "H1", "o1 endrepeat"), ""])
-    )
-    assert ends(traced)[-1] == (10, 2)
-
-
-def test_percent_files(lathe):
-    traced = lathe.trace_text(["%", *section("G1 X12", "U-2", after=["X30"]), "%"])
-    assert ends(traced) == [(12, 0), (10, 0), (30, 0)]
-    assert lines(traced) == [7, 8, 10]
-
-
-def test_a_file_without_a_last_newline(lathe, tmp_path):
+@pytest.mark.parametrize("kind", FILES)
+def test_a_file_is_cut_however_it_is_written(lathe, tmp_path, kind):
     program = tmp_path / "cut.ngc"
-    program.write_text("\n".join(section("G1 X12", "U-2")))
-    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
-
-
-def test_a_program_that_is_not_utf8(lathe, tmp_path):
-    program = tmp_path / "cut.ngc"
-    text = "\n".join(section("(Fläche \xb0)", f"G1 X12 ({'ä' * 200})", "U-2"))
-    program.write_bytes(text.encode("latin-1"))
-    assert ends(lathe.trace(program)) == [(12, 0), (10, 0)]
+    lines = section("G1 X12", "U-2", "o1 repeat [2]", "H1", "o1 endrepeat", "X9 C0", after=["X30"])
+    program.write_bytes(FILES[kind](lines).encode("latin-1"))
+    assert ends(lathe.trace(program)) == [(12, 0), (10, 0), (10, 2), (9, 0), (30, 0)]
 
 
 @pytest.mark.parametrize("word", ["X12", "U-8"])
@@ -349,25 +317,12 @@ def test_line_numbers_inside_and_behind(lathe):
     body = ["G1 X12", "(one)", "U-1", "", "H2 (two)", "o1 if [1]", "X8", "o1 endif"]
     traced = cut(lathe, *body, after=["X31", "(MSG, x)", "X32"])
     assert lines(traced) == [6, 8, 10, 12, 15, 17]
-
-
-def test_line_numbers_behind_a_section_that_ends_on_a_rewritten_line(lathe):
     assert lines(cut(lathe, "G1 X12", "U-1", "", after=["X31"])) == [6, 7, 10]
 
 
 def test_off_outside_the_mode_does_nothing(lathe):
     traced = lathe.trace_text([FIRST, "G13.1", START, "F100", "G1 X15", "G13.1", "M2"])
     assert ends(traced) == [(15, 0)]
-
-
-# ---------------------------------------------------------------- saved modes
-
-
-@pytest.mark.parametrize("name", ["#<n>", "[#<n>+0]", "#<_g>", "[abs[-#<n>]]", "[#<n>]"])
-def test_subs_called_by_a_computed_name(lathe, name):
-    sub = ["o100 sub", "G1 U-2", "o100 endsub", "#<n>=100", "#<_g>=100"]
-    traced = lathe.trace_text([*sub, *section("G1 X12", f"o{name} call", "C5")])
-    assert ends(traced) == [(12, 0), (10, 0), (10, 5)]
 
 
 def test_an_assignment_beside_the_code_that_ends_the_section(lathe):
@@ -386,10 +341,6 @@ def test_the_spindle_in_use_gives_the_feed_per_revolution():
     assert wrong.error.text == "G12.1 line 6: $2: this machine has 2 spindles"
 
 
-def test_the_spindle_named_by_a_parameter_is_that_of_its_line(lathe):
-    assert cut(lathe, "G1 X12", "#1=0", "#1=5 S500 $#1", "#1=7", "X11").error is None
-
-
 def test_a_sub_whose_line_has_the_number_of_the_line_before_it(tmp_path):
     sub = ["o<far> sub", *[""] * 6, "G41 G1 X20", "C-15", "G40 X30", "o<far> endsub"]
     (tmp_path / "far.ngc").write_text("\n".join([*sub, ""]))
@@ -400,11 +351,6 @@ def test_a_sub_whose_line_has_the_number_of_the_line_before_it(tmp_path):
 
 
 # ---------------------------------------------------------------- waiting for the machine
-
-
-def test_waiting_for_an_input_cuts_the_section_in_two(lathe):
-    body = ["G1 X12", "M66 P0 L0", "#1=[10 - #5399]", "X#1 C2", "M66 E0 L0 X9", "C0"]
-    assert ends(cut(lathe, *body, after=["X30"])) == [(12, 0), (10, 2), (9, 2), (9, 0), (30, 0)]
 
 
 def test_waiting_inside_subs_and_loops(lathe):
