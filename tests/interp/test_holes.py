@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from g12.tools.commands.main import main
-from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from g12.tools.verify.reading.codes import HOLES, SHAPES
+from support.clamped import with_clamp
 from support.sim_machines import SIM, kept_tracer
 
 X, Z, C = 0, 2, 5
@@ -94,20 +94,6 @@ def test_a_tool_beside_the_x_line_drills_where_it_should():
     assert "needs a tool on the X line" in refused.error.text
 
 
-def with_clamp(folder, **settings):
-    """Return what makes a machine know M10 to M12, whose subs show messages of their names."""
-    for code in ("m10", "m11", "m12"):
-        text = f"o<{code}> sub\n(MSG,{code})\no<{code}> endsub\n"
-        (folder / f"{code}.ngc").write_text(text)
-    ini = read_ini(SIM / "lathe_mm.ini")
-    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11, 12)]
-    lines = {
-        "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
-        "SUBROUTINE_PATH": f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{folder}",
-    }
-    return {"RS274NGC": lines, "G12": {"C_CLAMP": "M10 m11", **settings}}
-
-
 SECTIONS = {
     "polar": ["C0", "G12.1", "G1 X40 C5", "X30", "G13.1"],
     "cylinder": ["G7.1 C20", "G1 C30 Z3", "G7.1 C0"],
@@ -117,7 +103,7 @@ SECTIONS = {
 
 @pytest.mark.parametrize("name", SECTIONS)
 def test_sections_and_shapes_are_cut_with_a_light_drag(tmp_path, name):
-    overrides = with_clamp(tmp_path, C_CLAMP_SHAPES="M12")
+    overrides = with_clamp("lathe_mm", tmp_path, C_CLAMP_SHAPES="M12")
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
         traced = lathe.trace_text(program(*SECTIONS[name], "(DEBUG,#<_c>)"))
     assert traced.error is None, traced.error

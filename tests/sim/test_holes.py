@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.machine.ini import read_ini
+from support.clamped import with_clamp
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.polar_programs import FIRST
@@ -21,29 +21,12 @@ SIDE = "o<side_holes> call [2] [-10] [30] [270] [40] [5] [3] [1200] [-2] [0] [0]
 SAME = 0.002  # mm, degrees: within the servo's sampling
 
 
-def with_clamp(name, folder):
-    """Return a machine whose M10 closes the clamp of C, M12 half; outputs, which M11 takes back."""
-    for code, block in (("m10", "M64 P0"), ("m11", "M65 P0\nM65 P1"), ("m12", "M64 P1")):
-        (folder / f"{code}.ngc").write_text(f"o<{code}> sub\n{block}\no<{code}> endsub\n")
-    ini = read_ini(SIM / f"{name}.ini")
-    own = [f"M{n} modalgroup=10 ngc=m{n}" for n in (10, 11, 12)]
-    path = ini.get("RS274NGC", "SUBROUTINE_PATH")
-    return {
-        "G12": {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M12"},
-        "RS274NGC": {
-            "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
-            "SUBROUTINE_PATH": f"{path}:{folder}",
-            "ON_ABORT_COMMAND": "G13.1 P",
-        },
-    }
-
-
 @pytest.fixture(
     scope=machine_scope,
     params=["lathe_mm", pytest.param("lathe_mm_kinematics", marks=needs_kinematics)],
 )
 def lathe(request, tmp_path_factory):
-    overrides = with_clamp(request.param, tmp_path_factory.mktemp("clamp"))
+    overrides = with_clamp(request.param, tmp_path_factory.mktemp("clamp"), C_CLAMP_SHAPES="M12")
     with Machine(SIM / f"{request.param}.ini", overrides=overrides) as running:
         yield running
 

@@ -67,9 +67,3 @@ def largest_jump(moves):
 def path_length(moves):
     """Return the length of the path."""
     return sum(move.length for move in moves)
-
-
-def levels(moves):
-    """Return the distinct Z of sideways motion, from the top down."""
-    depths = {round(move.end[2], 6) + 0.0 for move in in_plane(cutting(moves))}
-    return sorted(depths, reverse=True)
