@@ -27,14 +27,14 @@ class Interpreter:
     ``begins`` is the line of the stop in front of the section, which is not among ``done``.
     """
 
-    def __init__(self, path=640, tolerance=0.0, merging=0.0, feed_mode=0, wrapped=True):
-        self.active_g_codes = [-1] * 11 + [path]
+    def __init__(self, tolerance=0.0, merging=0.0):
+        self.active_g_codes = [-1] * 11 + [640]
         self.active_settings = [0, 0, 0, tolerance, merging]
-        self.feed_mode, self.c_axis_wrapped = feed_mode, wrapped
+        self.feed_mode, self.c_axis_wrapped = 0, True
         self.call_level, self.motion_mode, self.distance_mode = 1, 0, "G91"
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
-        self.done, self.lines, self.wrapped, self.levels, self.begins = [], [], [], [], None
+        self.done, self.levels, self.begins = [], [], None
         self.current_x = self.CC_current = self.current_z = self.status = 0
         self.moving = None
 
@@ -47,8 +47,6 @@ class Interpreter:
             return 0
         self.done.append(self._read if text is None else text)
         self.current_x += self.done[-1] == self.moving
-        self.lines.append(getattr(self, "sequence_number", None))
-        self.wrapped.append(self.c_axis_wrapped)
         self.levels.append(self.call_level)
         if self.done[-1].startswith("G6"):
             self._path(self.done[-1])
@@ -68,32 +66,26 @@ class Canon:
     def __init__(self, interp):
         self.interp = interp
 
-    def _record(self, what, line):
+    def _record(self, what):
         self.interp.done.append(what)
-        self.interp.lines.append(line)
-        self.interp.wrapped.append(self.interp.c_axis_wrapped)
         self.interp.levels.append(self.interp.call_level)
 
     def SET_FEED_RATE(self, rate):  # noqa: N802
-        self._record(("F", rate), None)
+        self._record(("F", rate))
 
     def STRAIGHT_FEED(self, line, x, y, z, a, b, c, u, v, w):  # noqa: N802
         assert (y, a, b, u, v, w) == (0, 0, 0, 0, 0, 0)
-        self._record((x, c, z), line)
+        self._record((x, c, z))
 
 
-def is_move(what):
-    return what[0] == "X" or (isinstance(what, tuple) and what[0] != "F")
-
-
-def emission_of(interp, x_factor=1.0):
-    lengths = dict(blending=0.0025, initial=0.0254, machine_unit=1.0, x_factor=x_factor)
+def emission_of(interp):
+    lengths = dict(blending=0.0025, initial=0.0254, machine_unit=1.0, x_factor=1.0)
     return SectionOutput(interp, "G12.1", absolute="G90", canon=Canon(interp), **lengths)
 
 
-def handed_over(steps, interp=None, modes=MODES, exact=(), x_factor=1.0):
+def handed_over(steps, interp=None, exact=()):
     interp = interp or Interpreter()
-    assert list(emission_of(interp, x_factor).run(steps, modes, exact)) == []
+    assert list(emission_of(interp).run(steps, MODES, exact)) == []
     return interp
 
 
@@ -105,13 +97,7 @@ SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
 RELEASED = ["F100", "G90"]
 
 
-@pytest.mark.parametrize("path", [640, 610, 611])
-def test_a_move_in_front_of_the_section_is_not_blended_into_it(path):
-    interp = handed_over([run()], Interpreter(path=path))
-    assert interp.begins == 7
-
-
-def test_the_second_part_of_a_section_begins_without_a_stop():
+def test_the_section_begins_with_a_stop_and_its_second_part_does_not():
     interp = Interpreter()
     emission = emission_of(interp)
     for _ in range(2):
@@ -161,21 +147,6 @@ def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     assert done == [SMOOTH, FIRST, *NEXT, FIRST, *NEXT, STOP_HERE, OLD, *RELEASED]
     alone = handed_over([run(segments=LINE[:1], line=8)], exact={8}).done
     assert alone == ["G61.1", FIRST, OLD, *RELEASED]
-
-
-def test_c_is_not_wrapped_while_segments_go_out():
-    interp = handed_over([run()])
-    assert [on for text, on in zip(interp.done, interp.wrapped) if is_move(text)] == [False, False]
-    assert interp.c_axis_wrapped is True
-    assert handed_over([run()], Interpreter(wrapped=False)).c_axis_wrapped is False
-
-
-def test_feed_per_revolution_is_left_and_comes_back():
-    interp = Interpreter(feed_mode=2)
-    modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
-    done = handed_over([run()], interp, modes).done
-    assert done == ["G94", SMOOTH, FIRST, *NEXT, OLD, "G95F0.2", "G91"]
-    assert interp.motion_mode == 30
 
 
 def test_comments_need_no_modes():

@@ -53,12 +53,8 @@ def modes_before_face(interp: Interp) -> str:
     """Return the block that restores the modes that `ON_THE_FACE` changes."""
     active = without_line(interp.active_g_codes)
     centres = next(IJK_MODES[code] for code in active if code in IJK_MODES)
-    return f"{PLANE_CODES[interp.plane]}{centres}{adaptive_feed(interp)}"
-
-
-def adaptive_feed(interp: Interp) -> str:
-    """Return the block that restores M52."""
-    return f"M52P{int(ADAPTIVE_FEED in without_line(interp.active_m_codes))}"
+    adaptive = int(ADAPTIVE_FEED in without_line(interp.active_m_codes))
+    return f"{PLANE_CODES[interp.plane]}{centres}M52P{adaptive}"
 
 
 def accelerate(interp: Interp, share: float) -> None:
@@ -91,13 +87,6 @@ def restore_accelerations(interp: Interp) -> None:
         hal.set_p(pin, repr(acceleration))
 
 
-def limit_override(interp: Interp, machine_unit: float, most: float) -> None:
-    """Pass the highest feed override on the face to polar_xzc."""
-    if interp.task and not is_older():
-        hal.set_p(OVERRIDE_PIN, repr(most))
-        hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
-
-
 def is_older() -> bool:
     """Tell whether the module polar_xzc that is loaded cannot limit the override."""
     try:
@@ -120,7 +109,9 @@ def to_face(
     ``override`` the highest feed override.
     """
     accelerate(interp, share)
-    limit_override(interp, machine_unit, override)
+    if interp.task and not is_older():
+        hal.set_p(OVERRIDE_PIN, repr(override))
+        hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
     _request(interp, FaceRequest.OFF)  # the last request may have ended by itself

@@ -16,7 +16,7 @@ from interpreter import INTERP_ERROR, INTERP_OK
 
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
 from g12.host.interp import Interp, state_of
-from g12.host.program_lines import line_of_block, line_of_call, running_file
+from g12.host.program_lines import line_at, running_file
 
 NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
 
@@ -48,12 +48,15 @@ def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
 
     A code that refuses in the name of its sub has the line of the call.
     """
-    level = interp.call_level - (refusal.code != code_of_block(interp))
-    mdi = in_mdi(interp)
-    if mdi and level == 1:
+    own, mdi = refusal.code == code_of_block(interp), in_mdi(interp)
+    if mdi and interp.call_level == (1 if own else 2):
         return None
-    find = line_of_block if level == interp.call_level else line_of_call
-    return find(interp, in_program=not mdi)
+    if own:
+        filename, offset = interp.filename, interp.blocks[interp.remap_level].offset
+    else:
+        frame = interp.sub_context[interp.call_level - 2]
+        filename, offset = frame.filename, frame.position - 1
+    return line_at(interp, filename, offset, in_program=not mdi)
 
 
 def in_mdi(interp: Interp) -> bool:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Units, modes and spindle of the interpreter; execution of a code to its end."""
+"""Units, modes, tool and spindle of the interpreter; execution of a code to its end."""
 
 from __future__ import annotations
 
 import emccanon
 
-from g12.host.interp import Interp
+from g12.host.interp import Interp, ToolTableEntry
 from g12.lengths import MM_PER_INCH
+from g12.request.context import Tool
 from g12.section.block_rules import NO_CODE, GGroup
 
 G7 = 70
@@ -25,6 +26,15 @@ def millimetres_per_machine_unit() -> float:
 
 def millimetres_per_unit(interp: Interp) -> float:
     return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
+
+
+def tool_of_entry(interp: Interp, entry: ToolTableEntry) -> Tool:
+    return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
+
+
+def tool_in_spindle(interp: Interp) -> Tool | None:
+    entry = interp.tool_table[0]
+    return tool_of_entry(interp, entry) if entry.toolno > 0 else None
 
 
 def spindle_speed(interp: Interp) -> float:

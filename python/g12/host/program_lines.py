@@ -63,20 +63,11 @@ class LineOfFile(int):
         return f"{int(self)} of {self.file:.80}"
 
 
-def line_of_block(interp: Interp, *, in_program: bool) -> int | None:
-    """Return the line of the block being remapped; ``in_program``: a program runs, not MDI."""
-    offset = interp.blocks[interp.remap_level].offset
-    return _line_at(interp, interp.filename, offset, in_program)
+def line_at(interp: Interp, filename: str, offset: int, *, in_program: bool) -> int | None:
+    """Return the line at a byte of a file; it names the file if that is not the program's own.
 
-
-def line_of_call(interp: Interp, *, in_program: bool) -> int | None:
-    """Return the line that calls the sub of the remapped block."""
-    frame = interp.sub_context[interp.call_level - 2]
-    return _line_at(interp, frame.filename, frame.position - 1, in_program)
-
-
-def _line_at(interp: Interp, filename: str, offset: int, in_program: bool) -> int | None:
-    """Return the line at a byte; it names its file if that is not the program's own."""
+    ``in_program``: a program runs, not MDI.
+    """
     try:
         with open(filename, "rb") as file:
             line = file.read(max(0, offset)).count(b"\n") + 1

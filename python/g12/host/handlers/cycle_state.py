@@ -15,7 +15,6 @@ from g12.host.interp import (
     PLANE_CODES,
     Interp,
     ParsedBlock,
-    ToolTableEntry,
     state_of,
 )
 from g12.host.machine import MACHINE
@@ -27,6 +26,8 @@ from g12.host.modes import (
     millimetres_per_unit,
     program_units_per_machine_unit,
     spindle_speed,
+    tool_in_spindle,
+    tool_of_entry,
 )
 from g12.lengths import converts
 from g12.request.context import Context, Tool
@@ -107,15 +108,6 @@ def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
     return [interp.params[index] for index in range(1, count + 1)]
 
 
-def tool_from_entry(interp: Interp, entry: ToolTableEntry) -> Tool:
-    return Tool(entry.toolno, entry.diameter / 2 * program_units_per_machine_unit(interp))
-
-
-def tool_in_spindle(interp: Interp) -> Tool | None:
-    entry = interp.tool_table[0]
-    return tool_from_entry(interp, entry) if entry.toolno > 0 else None
-
-
 def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     """Return the tool of that number from the tool table, None if it is not there.
 
@@ -126,7 +118,7 @@ def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     for index in itertools.chain(range(1, len(table)), (0,)):
         entry = table[index]
         if entry.toolno == tool_number:
-            return tool_from_entry(interp, entry)
+            return tool_of_entry(interp, entry)
     return None
 
 

@@ -26,7 +26,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     ``words`` are the letters that the block may have.
     """
     block = interp.blocks[interp.remap_level]
-    machine_unit = modes.program_units_per_machine_unit(interp)
+    tool = modes.tool_in_spindle(interp)
     return SectionStart(
         location=BlockLocation(messages.code_of_block(interp), line),
         words=block_of(block).words,
@@ -35,14 +35,20 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         x=interp.current_x,
         c=interp.CC_current,
         z=interp.current_z,
-        machine_unit=machine_unit,
+        machine_unit=modes.program_units_per_machine_unit(interp),
         millimetre=1 / modes.millimetres_per_unit(interp),
         offsets=_offsets(interp),
         x_shift=interp.axis_offset_x,
-        modes=_modes(interp),
+        modes=SectionModes(
+            incremental=interp.distance_mode == MODE_INCREMENTAL,
+            per_revolution=interp.feed_mode == PER_REVOLUTION,
+            feed=interp.feed_rate,
+            speed=modes.spindle_speed(interp),
+            motion=interp.motion_mode,
+        ),
         spindle=modes.feed_spindle(interp),
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
-        tool_radius=_tool_radius(interp, machine_unit),
+        tool_radius=tool.radius if tool else None,
         diameter=modes.diameter_mode(interp),
         yz_plane=PLANE_CODES.get(interp.plane) == YZ,
         compensated=interp.cutter_comp_side != 0,
@@ -57,21 +63,6 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
 def is_alone(block: ParsedBlock, words: str = "") -> bool:
     others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
     return alone(block_of(block), words) and not others
-
-
-def _modes(interp: Interp) -> SectionModes:
-    return SectionModes(
-        incremental=interp.distance_mode == MODE_INCREMENTAL,
-        per_revolution=interp.feed_mode == PER_REVOLUTION,
-        feed=interp.feed_rate,
-        speed=modes.spindle_speed(interp),
-        motion=interp.motion_mode,
-    )
-
-
-def _tool_radius(interp: Interp, machine_unit: float) -> float | None:
-    entry = interp.tool_table[0]
-    return entry.diameter / 2 * machine_unit if entry.toolno > 0 else None
 
 
 def _offsets(interp: Interp) -> dict[str, float]:
