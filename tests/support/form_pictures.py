@@ -7,8 +7,6 @@ draws them anew. ngcgui shows a picture of the form's name and halves one of 320
 more. Lengths here are shares of the plan view's half width, angles degrees.
 """
 
-from __future__ import annotations
-
 from math import cos, radians, sin
 from pathlib import Path
 
@@ -56,9 +54,13 @@ def measure(axes: Axes, start: Point, end: Point, words: str, where: float = 0.5
 
 def circle(axes: Axes, radius: float, *, centre: Point = (0, 0), fill: str = "none",
            line: str = INK, dashed: bool = False, width: float = 0.8) -> None:  # fmt: skip
-    """Draw a circle."""
     style = {"ls": (0, (4, 3)) if dashed else "-", "lw": width}
     axes.add_patch(Circle(centre, radius, facecolor=fill, edgecolor=line, **style))
+
+
+def tool(axes: Axes, radius: float, centre: Point) -> None:
+    circle(axes, radius, centre=centre, fill=TOOL)
+    axes.text(*centre, "T", **WORDS)
 
 
 def turn(axes: Axes, radius: float, start: float, end: float) -> None:
@@ -93,49 +95,44 @@ def section(side: Axes, heights: dict[str, float], levels: tuple[float, ...] = (
         side.text(0.45, height, words, **{**WORDS, "ha": "left"})
 
 
-def haas(plan: Axes, side: Axes) -> None:
+def pocket(plan: Axes, rings: tuple[float, ...] = (), boss: float = 0) -> None:
+    """Draw a pocket of radius 1 with rings of the tool's centre, the tool and its turn."""
     circle(plan, 1.0, fill=CUT, width=1.2)
-    for radius in (0.4, 0.7):
+    for radius in rings:
         circle(plan, radius, dashed=True, line=FAINT)
-    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
+    circle(plan, boss, fill=STOCK, width=0.6, line=FAINT)
+    tool(plan, 0.26, at(0.74, 0))
     turn(plan, 0.74, 22, 75)
+    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
+
+
+def haas(plan: Axes, side: Axes) -> None:
+    pocket(plan, (0.4, 0.7))
     measure(plan, (0, 0), at(0.4, 140), "I", 0.55)
     measure(plan, (0, 0), at(1.0, 205), "K", 0.62)
     measure(plan, at(0.4, 290), at(0.7, 290), "Q")
     cross(plan, "X Y")
-    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
-    plan.text(*at(0.74, 0), "T", **WORDS)
     section(side, {"retract": 0.85, "Z top": 0.3, "Z depth": -0.5}, (0.033, -0.233))
     side.text(-0.54, -0.1, "L", **WORDS)
 
 
 def yasnac(plan: Axes, side: Axes) -> None:
-    circle(plan, 1.0, fill=CUT, width=1.2)
-    circle(plan, 0.62, dashed=True, line=FAINT)
-    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
-    turn(plan, 0.74, 22, 75)
+    pocket(plan, (0.62,))
     plan.plot((0, 0.36), (0, 0), color=PATH, lw=1.1, ls=(0, (3, 2)))
     measure(plan, (0, 0), at(0.62, 105), "R", 0.62)
     measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
     measure(plan, (0, 0), at(0.5, 300), "K", 0.6)
     measure(plan, at(0.5, 300), at(0.8, 300), "Q")
     cross(plan, "X Y", (-0.05, -0.14))
-    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
-    plan.text(*at(0.74, 0), "T", **WORDS)
     plan.text(0, -1.2, "I below 0: begun on the −X side", **NOTE)
     section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
 
 
 def mitsubishi(plan: Axes, side: Axes) -> None:
-    circle(plan, 1.0, fill=CUT, width=1.2)
-    circle(plan, 0.48, fill=STOCK, width=0.6, line=FAINT)
-    circle(plan, 0.26, centre=at(0.74, 0), fill=TOOL)
+    pocket(plan, boss=0.48)
     plan.add_patch(Arc((0.37, 0), 0.74, 0.74, theta1=180, theta2=360, color=PATH, lw=1.1))
-    turn(plan, 0.74, 22, 75)
     measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
     cross(plan, "X Y", (-0.02, 0.14))
-    plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
-    plan.text(*at(0.74, 0), "T", **WORDS)
     section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
 
 
@@ -144,12 +141,11 @@ def circle_mill(plan: Axes, side: Axes) -> None:
     circle(plan, 0.8, dashed=True, line=FAINT)
     for radius in (0.28, 0.56):
         circle(plan, radius, line=PATH, width=0.6)
-    circle(plan, 0.24, centre=at(0.56, -90), fill=TOOL)
+    tool(plan, 0.24, at(0.56, -90))
     measure(plan, (0, 0), at(0.88, 205), "R", 0.6)
     measure(plan, at(0.28, 60), at(0.56, 60), "J")
     plan.annotate("L", at(0.8, 20), at(1.06, 20), arrowprops={**ARROW, "arrowstyle": "->"}, **WORDS)
     cross(plan, "X Y", (0.0, 0.12))
-    plan.text(*at(0.56, -90), "T", **WORDS)
     plan.text(0, 1.12, "C  0 on, 1 left, 2 right of the circle", **NOTE)
     plan.text(0, -1.2, "D  0 CW, 1 CCW, 2 CW/CCW, 3 CCW/CW", **NOTE)
     section(side, {"O": 0.85, "W": 0.42, "Z": -0.5}, (0.1, -0.2, -0.44))
@@ -168,25 +164,34 @@ def box(axes: Axes, x: float, y: float, width: float, height: float, fill: str =
     axes.add_patch(Rectangle((x, y), width, height, facecolor=fill, edgecolor=INK, lw=edge))
 
 
-def bar_from_the_side(side: Axes) -> None:
-    """Draw a bar that sticks out of a spindle, Z0 at its end, with something cut into it."""
+def bar(side: Axes, tip: float, middle: float, word: str, where: float) -> None:
+    """Draw a bar that sticks out of a spindle, Z0 at its end, and a depth cut into it.
+
+    ``word``, at ``where``, names the distance to the tool's ``tip``.
+    """
     box(side, -0.6, -0.45, 0.65, 0.9, STOCK)
-    box(side, 0.32, 0.02, 0.5, 0.22, TOOL)
     measure(side, (-0.25, -0.62), (0.05, -0.62), "")
     side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
-    measure(side, (0.05, 0.62), (0.32, 0.62), "")
-    side.text(0.2, 0.78, "retract", bbox=PLATE, **WORDS)
+    measure(side, (0.05, 0.62), (tip, 0.62), "")
+    side.text(where, 0.78, word, bbox=PLATE, **WORDS)
     side.plot((0.05, 0.05), (-0.95, 1.0), color=WORD, lw=0.5, ls=(0, (2, 2)))
     side.text(0.05, -1.08, "Z0", **WORDS)
-    side.text(0.57, 0.13, "T", **WORDS)
+    side.text(0.57, middle, "T", **WORDS)
+
+
+def milled_bar(side: Axes, *cuts: tuple[float, float]) -> None:
+    """Draw a bar with cuts, each by its lower side and its height."""
+    bar(side, 0.32, 0.13, "retract", 0.2)
+    box(side, 0.32, 0.02, 0.5, 0.22, TOOL)
+    for low, height in cuts:
+        box(side, -0.25, low, 0.3, height)
 
 
 def polygon(plan: Axes, side: Axes) -> None:
     circle(plan, 0.95, fill=CUT, line=FAINT, dashed=True)
     corners = [at(0.56 / cos(radians(30)), angle) for angle in range(30, 390, 60)]
     plan.add_patch(Polygon(corners, closed=True, facecolor=STOCK, edgecolor=INK, lw=1.2))
-    circle(plan, 0.2, centre=at(0.76, 0), fill=TOOL)
-    plan.text(*at(0.76, 0), "T", **WORDS)
+    tool(plan, 0.2, at(0.76, 0))
     measure(plan, at(0.56, 120), at(0.56, 300), "across flats", 0.5)
     measure(plan, (-0.95, -1.08), (0.95, -1.08), "stock diameter")
     for x in (-0.95, 0.95):
@@ -194,9 +199,7 @@ def polygon(plan: Axes, side: Axes) -> None:
     plan.annotate("corner", at(0.63, 150), (-0.8, 0.85), arrowprops={**ARROW, "arrowstyle": "->"},
                   **WORDS)  # fmt: skip
     plan.text(0.05, 1.1, "angle: C of the middle of a flat", **NOTE)
-    bar_from_the_side(side)
-    box(side, -0.25, 0.24, 0.3, 0.21, CUT)
-    box(side, -0.25, -0.45, 0.3, 0.21, CUT)
+    milled_bar(side, (0.24, 0.21), (-0.45, 0.21))
 
 
 def slot(plan: Axes, side: Axes) -> None:
@@ -206,23 +209,20 @@ def slot(plan: Axes, side: Axes) -> None:
     plan.add_patch(Rectangle((-0.5, -0.24), 1.0, 0.48, facecolor=CUT, edgecolor="none"))
     for y in (-0.24, 0.24):
         plan.plot((-0.5, 0.5), (y, y), color=INK, lw=1.2)
-    circle(plan, 0.17, centre=(0.5, 0), fill=TOOL)
-    plan.text(0.5, 0, "T", **WORDS)
+    tool(plan, 0.17, (0.5, 0))
     measure(plan, (-0.74, -0.5), (0.74, -0.5), "length")
     for x in (-0.74, 0.74):
         plan.plot((x, x), (-0.55, 0), color=WORD, lw=0.4)
     measure(plan, (-0.2, -0.24), (-0.2, 0.24), "width")
     plan.text(0.05, 1.1, "angle: C of the slot's middle line", **NOTE)
-    bar_from_the_side(side)
-    box(side, -0.25, -0.11, 0.3, 0.22, CUT)
+    milled_bar(side, (-0.11, 0.22))
 
 
 def face_pocket(plan: Axes, side: Axes) -> None:
     centre = (0.36, 0.3)
     circle(plan, 0.95, fill=STOCK)
     circle(plan, 0.34, centre=centre, fill=CUT, width=1.2)
-    circle(plan, 0.15, centre=(0.55, 0.3), fill=TOOL)
-    plan.text(0.55, 0.3, "T", **WORDS)
+    tool(plan, 0.15, (0.55, 0.3))
     for x, y in ((0, 0), centre):
         plan.plot((x - 0.07, x + 0.07), (y, y), color=INK, lw=0.6)
         plan.plot((x, x), (y - 0.07, y + 0.07), color=INK, lw=0.6)
@@ -234,8 +234,7 @@ def face_pocket(plan: Axes, side: Axes) -> None:
     plan.plot((-0.35, 0), (0, 0), color=WORD, lw=0.4, ls=(0, (2, 2)))
     measure(plan, (0.02, 0.78), (0.7, 0.78), "diameter")
     plan.text(0.05, 1.1, "X is a diameter, C a length", **NOTE)
-    bar_from_the_side(side)
-    box(side, -0.25, -0.05, 0.3, 0.36, CUT)
+    milled_bar(side, (-0.05, 0.36))
 
 
 def face_holes(plan: Axes, side: Axes) -> None:
@@ -251,21 +250,9 @@ def face_holes(plan: Axes, side: Axes) -> None:
     plan.text(0.72, 0.1, "first", bbox=PLATE, **WORDS)
     measure(plan, at(0.62, 140), at(0.62, 320), "circle diameter", 0.5)
     plan.text(0.05, 1.1, "first: C of the first hole", **NOTE)
-    bar_with_hole(side)
-
-
-def bar_with_hole(side: Axes) -> None:
-    """Draw a bar with a hole from its end, and the drill at its retract height."""
-    box(side, -0.6, -0.45, 0.65, 0.9, STOCK)
-    box(side, -0.25, 0.06, 0.3, 0.16, CUT)
+    bar(side, 0.3, 0.14, "height", 0.25)
+    box(side, -0.25, 0.06, 0.3, 0.16)
     box(side, 0.3, 0.06, 0.5, 0.16, TOOL)
-    side.text(0.57, 0.14, "T", **WORDS)
-    measure(side, (-0.25, -0.62), (0.05, -0.62), "")
-    side.text(-0.1, -0.78, "depth", bbox=PLATE, **WORDS)
-    measure(side, (0.05, 0.62), (0.3, 0.62), "")
-    side.text(0.25, 0.78, "height", bbox=PLATE, **WORDS)
-    side.plot((0.05, 0.05), (-0.95, 1.0), color=WORD, lw=0.5, ls=(0, (2, 2)))
-    side.text(0.05, -1.08, "Z0", **WORDS)
 
 
 def side_holes(plan: Axes, side: Axes) -> None:
