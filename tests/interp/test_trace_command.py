@@ -134,20 +134,6 @@ def test_what_is_told_to_ignore_a_closed_terminal_ignores_it(tmp_path, start):
     assert process.returncode == 0
 
 
-def test_a_list_that_nobody_reads_to_its_end_is_no_error(tmp_path, start):
-    program = tmp_path / "part.ngc"
-    program.write_text("G21 G90 F100\n" + "G1 X1\nX2\n" * 5000 + "M2\n")
-    read, write = os.pipe()
-    command = [sys.executable, str(ROOT / "python" / "g12"), "trace", str(program)]
-    options = {"stdout": write, "stderr": subprocess.PIPE, "text": True}
-    process = start(*command, "--ini", str(INI), **options)
-    os.close(write)
-    os.read(read, 10)
-    os.close(read)
-    _, errors = process.communicate(timeout=60)
-    assert (process.returncode, errors) == (141, "")
-
-
 def test_an_error_is_told_with_what_the_package_said_when_linuxcnc_came_up(tmp_path, capsys):
     python = "[PYTHON]\nTOPLEVEL = python/top.py\nPATH_APPEND = python\n"
     ini = write_config(

@@ -4,6 +4,7 @@
 import os
 import subprocess
 import sys
+from functools import partial
 from types import SimpleNamespace
 
 import pytest
@@ -52,23 +53,21 @@ def test_help_is_plain_text_with_examples(name, capsys):
     assert "`" not in said
 
 
-@pytest.mark.parametrize(
-    ("reader", "text", "says"),
-    [
-        (arguments.number_above(0), "0", "'0' is not a number above 0"),
-        (arguments.number_above(0), "x", "'x' is not a number above 0"),
-        (arguments.number_from(0), "nan", "'nan' is not a number from 0"),
-    ],
-)
-def test_numbers_of_the_command_line(reader, text, says):
-    with pytest.raises(arguments.argparse.ArgumentTypeError, match=f"^{says}$"):
-        reader(text)
-
-
-def test_good_numbers_of_the_command_line():
-    assert arguments.number_above(0)("0.5") == 0.5
-    assert arguments.number_from(0)("0") == 0
-    assert arguments.count_from(1)("1") == 1
+def test_numbers_of_the_command_line():
+    above, least, count = (
+        arguments.number_above(0),
+        arguments.number_from(0),
+        arguments.count_from(1),
+    )
+    assert (above("0.5"), least("0"), count("1")) == (0.5, 0, 1)
+    for reader, text, rule in (
+        (above, "0", "a number above 0"),
+        (above, "x", "a number above 0"),
+        (least, "nan", "a number from 0"),
+        (count, "0", "a whole number from 1"),
+    ):
+        with pytest.raises(arguments.argparse.ArgumentTypeError, match=f"^'{text}' is not {rule}$"):
+            reader(text)
 
 
 @pytest.fixture
@@ -79,24 +78,22 @@ def files(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["run", "trace", "verify", "plot"])
-def test_wrong_files_are_reported_in_one_line(name, files, capsys):
+def test_a_wrong_file_is_reported_in_one_line(name, files, capsys):
     rest = ["-o", "x.png"] if name == "plot" else []
-    wrong = [
+    folder = f"{files.folder}: is a folder"
+    for program, ini, more, says in (
         (files.folder / "no.ngc", files.ini, (), "no.ngc: no such file"),
-        (files.folder, files.ini, (), f"{files.folder}: is a folder"),
-        (files.program, files.folder, (), f"{files.folder}: is a folder"),
+        (files.folder, files.ini, (), folder),
+        (files.program, files.folder, (), folder),
         (files.ini, files.program, (), f"{files.program}: is not a machine INI"),
         (files.program, files.ini, ("--tools", files.ini), "mill.ini: is not a tool table"),
-        (files.program, files.ini, ("--tools", files.folder), f"{files.folder}: is a folder"),
+        (files.program, files.ini, ("--tools", files.folder), folder),
         (files.program, files.ini, ("--var", files.ini), "mill.ini: is not a var file"),
-        (files.program, files.ini, ("--var", files.folder), f"{files.folder}: is a folder"),
-    ]
-    for program, ini, more, says in wrong:
+        (files.program, files.ini, ("--var", files.folder), folder),
+    ):
         code, said = ends(capsys, name, program, "--ini", ini, *more, *rest)
-        assert code == 2
-        assert said.startswith(f"g12 {name}: ")
-        assert says in said
-        assert said.count("\n") == 1
+        assert (code, said.count("\n")) == (2, 1)
+        assert said.startswith(f"g12 {name}: ") and says in said
 
 
 ANY_TABLE = ["", "; none yet\n", TOOLS, "P1 T1 D6 ; mill\nd.25 t2\n", "T3\n"]
@@ -123,37 +120,18 @@ def test_tool_tables_and_var_files(tmp_path, reader, right, wrong, says):
             reader(path)
 
 
-def test_an_axis_that_the_machine_lacks_is_explained(files):
-    said = explained_text("Bad character 'c' used", files.ini)
-    assert said == "Bad character 'c' used: this INI's machine has axes X Y Z"
-    for text in ("Bad character 'z' used", "Bad character 'q' used"):
-        assert explained_text(text, files.ini) == text
-
-
-def test_a_code_that_the_machine_lacks_points_to_what_is_set_up(files):
-    said = "Unknown g code used: of G12, G13 and G7.1 this INI has"
-    see = f"see {COMMAND} check"
-    assert explained_text("Unknown g code used", files.ini) == f"{said} none; {see}"
-    there = "G12.1 G13.1 G7.1 G12.4 G13.4"
-    lathe = SIM / "lathe_mm.ini"
-    assert explained_text("Unknown g code used", lathe) == f"{said} {there}; {see}"
-
-
-def test_a_handler_that_linuxcnc_cannot_call_points_to_check(files):
-    said = "pycall(remap.g13_haas) failed"
-    assert explained_text(said, files.ini) == f"{said}; see {COMMAND} check"
-
-
-def test_events_that_are_not_there(tmp_path, capsys):
-    assert ends(capsys, "dynapath", tmp_path / "no.dyn") == (
-        2,
-        f"g12 dynapath: {tmp_path / 'no.dyn'}: no such file\n",
-    )
-    (tmp_path / "bad.dyn").write_text("nonsense\n")
-    code, said = ends(capsys, "dynapath", tmp_path / "bad.dyn")
-    assert code == 1
-    assert said.startswith(f"g12 dynapath: {tmp_path / 'bad.dyn'}: ")
-    assert said.count("\n") == 1
+def test_errors_of_linuxcnc_are_explained(files):
+    see, unknown = f"see {COMMAND} check", "Unknown g code used"
+    has = ": of G12, G13 and G7.1 this INI has"
+    for text, ini, more in (
+        ("Bad character 'c' used", files.ini, ": this INI's machine has axes X Y Z"),
+        ("Bad character 'z' used", files.ini, ""),
+        ("Bad character 'q' used", files.ini, ""),
+        (unknown, files.ini, f"{has} none; {see}"),
+        (unknown, SIM / "lathe_mm.ini", f"{has} G12.1 G13.1 G7.1 G12.4 G13.4; {see}"),
+        ("pycall(remap.g13_haas) failed", files.ini, f"; {see}"),
+    ):
+        assert explained_text(text, ini) == text + more
 
 
 def test_a_folder_that_cannot_be_made(tmp_path, capsys):
@@ -168,15 +146,12 @@ def test_a_folder_that_cannot_be_made(tmp_path, capsys):
 def test_the_command_is_named_as_it_was_typed(tmp_path):
     """The copy that `install` makes stands in another folder."""
     (tmp_path / "my g12").symlink_to(ROOT)
+    run = partial(subprocess.run, cwd=tmp_path, capture_output=True, text=True, check=False)
     for folder, typed in (("my g12/", "'my g12/python/g12'"), (f"{ROOT}/", f"{ROOT}/python/g12")):
         command = [sys.executable, f"{folder}python/g12"]
-        said = subprocess.run(
-            [*command, "nonsense"], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
+        said = run([*command, "nonsense"])
         assert said.stderr == f"g12: no command 'nonsense' (usage: python3 {typed} --help)\n"
-        said = subprocess.run(
-            [*command, "trace", "--help"], cwd=tmp_path, capture_output=True, text=True, check=False
-        )
+        said = run([*command, "trace", "--help"])
         assert f"usage: python3 {typed} trace" in " ".join(said.stdout.split())
         assert f"\n  python3 {typed} trace pocket.ngc --ini mill.ini" in said.stdout
 
@@ -218,17 +193,13 @@ def test_a_pipe_that_breaks_elsewhere_is_reported(monkeypatch, capsys):
     assert ends(capsys, "run") == (1, "g12 run: [Errno 32] Broken pipe\n")
 
 
-@pytest.mark.parametrize(
-    ("log", "tells"),
-    [
-        (["Starting", "./c.hal:57: Pin 'iocontrol.0.lube' does not exist", "Recommend: both"], 1),
-    ],
-)
-def test_of_a_log_the_most_specific_line_is_reported(log, tells, capsys):
+def test_of_a_log_the_most_specific_line_is_reported(capsys):
+    log = ["Starting", "./c.hal:57: Pin 'iocontrol.0.lube' does not exist", "Recommend: both"]
+
     @arguments.one_line("run")
     def command(_words):
         raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))
 
     assert command([]) == 1
     said = capsys.readouterr().err
-    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {log[tells]}\n"
+    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {log[1]}\n"
