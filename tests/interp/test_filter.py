@@ -34,25 +34,32 @@ def without_progress(errors):
     return "".join(line for line in errors.splitlines(True) if line.startswith("g12 "))
 
 
+TRANSLATE = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
+
+
 @pytest.fixture(scope="module")
-def ini(tmp_path_factory):
-    """Return the INI of a mill that opens .nc files as Haas programs."""
-    sim = copy_of_machines(tmp_path_factory.mktemp("mill"))
-    command = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
-    part = sim / "parts" / "mill_inch.inc"
-    text = part.read_text().replace("[FILTER]\n", f"[FILTER]\nnc = {command}\n")
-    part.write_text(text)
-    return sim / "mill_inch.ini"
+def sim(tmp_path_factory):
+    return copy_of_machines(tmp_path_factory.mktemp("mill"))
+
+
+def mill_with(sim, command):
+    """Return the INI of a mill that opens .nc files with a filter's command."""
+    text = (sim / "parts" / "mill_inch.inc").read_text()
+    own = text.replace("[FILTER]\n", f"[FILTER]\nnc = {command}\n")
+    (sim / "parts" / "own.inc").write_text(own)
+    ini = (sim / "mill_inch.ini").read_text().replace("parts/mill_inch.inc", "parts/own.inc")
+    (sim / "own.ini").write_text(ini)
+    return sim / "own.ini"
 
 
 @pytest.fixture
-def reported(ini, tmp_path, capsys):
-    """Return a function: exit code, output and errors of a command on a program."""
+def reported(sim, tmp_path, capsys):
+    """Return a function: exit code, output and errors of a command on a filtered program."""
 
-    def tell(name, text, *words):
+    def tell(name, text, *words, command=TRANSLATE):
         program = tmp_path / "part.nc"
         program.write_text(text)
-        code = main.main([name, str(program), "--ini", str(ini), *words])
+        code = main.main([name, str(program), "--ini", str(mill_with(sim, command)), *words])
         said = capsys.readouterr()
         return code, said.out, without_progress(said.err).replace(str(program), "PROGRAM")
 
@@ -92,11 +99,11 @@ def test_a_picture_is_drawn(reported, tmp_path):
     assert (code, (tmp_path / "part.svg").exists()) == (0, True)
 
 
-def test_a_recording_has_the_users_file_and_its_lines(ini, tmp_path, capsys):
+def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):
     program, folder = tmp_path / "part.nc", tmp_path / "recordings"
     program.write_text(POCKET)
-    words = ["-d", str(folder)]
-    assert main.main(["regress", "record", str(program), "--ini", str(ini), *words]) == 0
+    words, ini = ["-d", str(folder)], str(mill_with(sim, TRANSLATE))
+    assert main.main(["regress", "record", str(program), "--ini", ini, *words]) == 0
     recorded = next(folder.glob("*.trace")).read_text()
     assert "G12 I.6 K1. Q.3 Z-.25 D02 F20." in recorded
     assert main.main(["regress", "check", *words]) == 0
@@ -124,17 +131,17 @@ def test_each_machine_opens_programs_of_its_control(capsys, machine, program):
     assert main.main(["trace", str(path), "--ini", str(ini)]) == 0, capsys.readouterr().err
 
 
-def test_a_program_without_a_filter_is_the_users_file(ini):
+def test_a_program_without_a_filter_is_the_users_file(sim):
     program = PROGRAMS / "haas" / "O60121.ngc"
-    with opened_program(program, read_ini(ini)) as opened:
+    with opened_program(program, read_ini(sim / "mill_inch.ini")) as opened:
         assert (opened.path, opened.lines) == (program, ())
         assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
 
 
-def test_any_filter_is_applied(ini, tmp_path):
-    program = tmp_path / "one.two"
+def test_any_filter_is_applied(sim, tmp_path):
+    program = tmp_path / "one.nc"
     program.write_text("G0 X1\n")
-    own = read_ini(ini).replaced({"FILTER": {"two": "sed s/X1/X2/"}})
+    own = read_ini(mill_with(sim, "sed s/X1/X2/"))
     assert filter_for(program, own) == "sed s/X1/X2/"
     with opened_program(program, own) as opened:
         assert opened.path.read_text() == "G0 X2\n"
@@ -150,64 +157,37 @@ def test_lines_that_a_filter_adds_say_theirs():
 POCKETS = "G20 G90 G0 X0 Y0\nT2 M6\nG0 Z.1\nG12 I.4 Z-.2 D2 F20\nG0 Z.1\nG12 I.1 Z-.2 D2 F20\nM2\n"
 
 
-@pytest.fixture
-def filtered(ini, tmp_path, capsys):
-    """Return a function: output and errors of a command on a program after any filter."""
-
-    def tell(name, program, command, *words):
-        part = ini.parent / "parts" / "mill_inch.inc"
-        text = part.read_text().replace("[FILTER]\n", f"[FILTER]\nown = {command}\n")
-        part.with_name("own.inc").write_text(text)
-        own = ini.with_name("own.ini")
-        own.write_text(ini.read_text().replace("parts/mill_inch.inc", "parts/own.inc"))
-        path = tmp_path / "part.own"
-        path.write_text(program)
-        main.main([name, str(path), "--ini", str(own), *words])
-        said = capsys.readouterr()
-        return said.out, without_progress(said.err).replace(str(path), "PROGRAM")
-
-    return tell
-
-
 @pytest.mark.parametrize(
-    ("command", "line"),
-    [("sed 's/I.4/I.5/'", 6), ("sed '3,4s/$/\\n(more)/'", 6), ("sed 1d", 6), ("sed 2,3d", 6)],
+    "command", ["sed 's/I.4/I.5/'", "sed '3,4s/$/\\n(more)/'", "sed 1d", "sed 2,3d"]
 )
-def test_lines_behind_any_filter_are_the_users(filtered, command, line):
-    _, errors = filtered("trace", POCKETS, command)
-    assert errors.startswith(f"g12 trace: PROGRAM:{line}: G12: I0.1 must be greater than"), errors
+def test_lines_behind_any_filter_are_the_users(reported, command):
+    _, _, errors = reported("trace", POCKETS, command=command)
+    assert errors.startswith("g12 trace: PROGRAM:6: G12: I0.1 must be greater than"), errors
     assert "[FILTER]" not in errors
 
 
-@pytest.mark.parametrize(
-    "text",
-    [
-        "both lines {} and {}:",
-        "(also in line {}, {}) 3 in",
-        "lines {} to {}",
-        "line {}, 2 mm, line {}",
-    ],
-)
-def test_each_of_several_lines_in_a_text_is_the_users(text, tmp_path):
+def test_each_of_several_lines_in_a_text_is_the_users(tmp_path):
     opened = OpenedProgram(tmp_path / "own", tmp_path / "made", (7, 8, 9))
-    assert opened.in_source(text.format(1, 3)) == text.format(7, 9)
+    several = "both lines {} and {}: (also in line {}, {}) 3 in, lines {} to {} line {}, 2 mm"
+    assert opened.in_source(several.format(*[1, 3] * 3, 1)) == several.format(*[7, 9] * 3, 7)
 
 
 WRITTEN = "G20 G90 G0 X0\n(A)\nG1 X1 F9\nG1 X2\nT2 M6\nG12 I.1 Z-.2 D2 F20\nM2\n"
+OTHER = "from nowhere\nimport nothing\n"
 
 
 @pytest.mark.parametrize("name", ["trace", "verify"])
-def test_lines_that_the_user_has_not_are_said_to_be_the_filters(filtered, tmp_path, name):
+def test_lines_that_the_user_has_not_are_said_to_be_the_filters(reported, tmp_path, name):
     made = tmp_path / "made.ngc"
     made.write_text(WRITTEN)
-    _, errors = filtered(name, "from nowhere\nimport nothing\n", f"sh -c 'cat {made}'")
+    *_, errors = reported(name, OTHER, command=f"sh -c 'cat {made}'")
     assert f"g12 {name}: PROGRAM (filtered):6: G12: I0.1 must be greater" in errors
 
 
-def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(filtered, tmp_path):
+def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(reported, tmp_path):
     made = tmp_path / "made.ngc"
     made.write_text(WRITTEN.replace("I.1", "I.5").replace("G1 X1", "G0 Z1"))
-    out, errors = filtered("verify", "from nowhere\nimport nothing\n", f"sh -c 'cat {made}'")
+    _, out, errors = reported("verify", OTHER, command=f"sh -c 'cat {made}'")
     assert "line 6  G12 (haas)" in out
     assert errors.endswith(
         "PROGRAM: lines are those of the program that the INI's [FILTER] makes of it\n"

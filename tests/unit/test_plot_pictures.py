@@ -69,39 +69,31 @@ def turned():
 # ---------------------------------------------------------------- numbers as text
 
 
-@pytest.mark.parametrize(
-    ("value", "decimals", "text"),
-    [(1.5, 3, "1.5"), (-2.0, 3, "−2"), (-0.0001, 3, "0"), (10, 0, "10"), (1234.5678, 2, "1234.57")],
-)
-def test_numbers_have_no_needless_zeros(value, decimals, text):
-    assert plain(value, decimals) == text
-
-
-@pytest.mark.parametrize(
-    ("length", "text"), [(0.0, "0"), (0.0048, "0.0048"), (0.00033, "0.00033"), (1.23456, "1.235")]
-)
-def test_small_lengths_keep_two_digits(length, text):
-    assert MM.fine(length) == text
-
-
-def test_inches_are_shown_as_inches():
-    assert UNITS["inch"].text(25.4) == "1"
-    assert UNITS["inch"].area(25.4**2 / 2) == "0.5 in²"
+def test_numbers_in_words():
+    for value, decimals, text in (
+        (1.5, 3, "1.5"),
+        (-2.0, 3, "−2"),
+        (-0.0001, 3, "0"),
+        (10, 0, "10"),
+        (1234.5678, 2, "1234.57"),
+    ):
+        assert plain(value, decimals) == text
+    fine = {0.0: "0", 0.0048: "0.0048", 0.00033: "0.00033", 1.23456: "1.235", np.inf: "∞"}
+    assert {length: MM.fine(length) for length in fine} == fine
+    assert (UNITS["inch"].text(25.4), UNITS["inch"].area(25.4**2 / 2)) == ("1", "0.5 in²")
+    times = {9.96: "10.0 s", 59.94: "59.9 s", 59.96: "1 min 0 s", 299.7: "5 min 0 s"}
+    assert {seconds: clock(seconds) for seconds in times} == times
 
 
 def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
     program = tmp_path / "a.ngc"
-    program.write_text("; SPDX-License-Identifier: X\n%\nO1 (Two flats)\n(other)\n")
-    assert heading(program) == "Two flats"
-    program.write_text("G21 (metric)\nT1 M6\n( Flange );\nG0 X1\n")
-    assert heading(program) == "Flange"
-    program.write_text("G21 (metric)\nG0 X1 (there)\n(too late)\n")
-    assert heading(program) == ""
-
-
-def test_times_are_reported_in_minutes():
-    assert (clock(9.96), clock(125.4)) == ("10.0 s", "2 min 5 s")
-    assert (clock(59.94), clock(59.96), clock(299.7)) == ("59.9 s", "1 min 0 s", "5 min 0 s")
+    for text, found in (
+        ("; SPDX-License-Identifier: X\n%\nO1 (Two flats)\n(other)\n", "Two flats"),
+        ("G21 (metric)\nT1 M6\n( Flange );\nG0 X1\n", "Flange"),
+        ("G21 (metric)\nG0 X1 (there)\n(too late)\n", ""),
+    ):
+        program.write_text(text)
+        assert heading(program) == found
 
 
 # ---------------------------------------------------------------- what is shown
@@ -134,9 +126,12 @@ def test_a_helix_on_a_lathes_face_belongs_to_its_floor():
     assert [level.z for level in levels] == pytest.approx([-3])
 
 
+def drilled():
+    return scene(Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5))
+
+
 def test_drilling_sweeps_holes():
-    hand = Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)
-    (level,) = plan_view.milled_levels(scene(hand))
+    (level,) = plan_view.milled_levels(drilled())
     assert level.area.bounds == pytest.approx((6, -3, 33, 3), abs=0.01)
     assert len(level.area.geoms) == 2
 
@@ -216,15 +211,6 @@ def test_there_and_back_again_is_drawn_once():
     assert len(plan_view.once([there, there[::-1], there + 3])) == 2
 
 
-def test_a_rapid_through_material_is_in_the_legend():
-    shown = scene(pocket().rapid(x=90))
-    path = np.array([[60.0, 0, -4], [90, 0, -4]])
-    hit = Finding("rapid-through", 1, {"path": path, "at": path[0], "to": path[1]}, path[0])
-    assert not any("material" in e.get_label() for e in plan_view.motion_entries(shown))
-    shown = replace(shown, seen=Seen((hit,)))
-    assert any("through material" in e.get_label() for e in plan_view.motion_entries(shown))
-
-
 def uncut(centre):
     """Return that a ring stands about a centre."""
     ring = Point(centre).buffer(30).difference(Point(centre).buffer(20))
@@ -249,21 +235,15 @@ def warned(shown):
     return [entry.get_label() for entry in plan_view.warning_entries(shown)]
 
 
-def test_a_rapid_that_is_seen_end_on_has_a_mark():
+@pytest.mark.parametrize("units", ["mm", "inch"])
+def test_a_rapid_that_is_seen_end_on_has_a_mark(units):
     down, through = "rapid straight down into material", "rapid through material"
     for hit, said in (
-        (rapid_through([0, 0, 5], [9, 0, 5]), [through]),
+        (rapid_through([0, 0, 5], [0.1, 0, 5]), [through]),
         (rapid_through([9, 0, 5], [9, 0, 2]), [down, through]),  # a line in the side view
     ):
-        shown = replace(scene(pocket()), seen=Seen((hit,)))
+        shown = replace(scene(pocket(), units=units), seen=Seen((hit,)))
         assert warned(shown) == said and drawn_in_red(shown) == (True, down in said)
-
-
-@pytest.mark.parametrize("units", ["mm", "inch"])
-def test_a_short_rapid_is_a_line_in_either_unit(units):
-    hit = rapid_through([9, 0, 5], [9.1, 0, 5])
-    shown = replace(scene(pocket(), units=units), seen=Seen((hit,)))
-    assert warned(shown) == ["rapid through material"] and drawn_in_red(shown) == (1, 0)
 
 
 @pytest.mark.parametrize(("surface", "shown_at"), [(20.0, 5.5), (22.0, 5.0)])
@@ -276,18 +256,9 @@ def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     assert [each.values["path"][0][0] for each in shown.seen.rapids] == [pytest.approx(shown_at)]
 
 
-def test_a_boss_is_in_the_side_view():
-    ring = Point(0, 0).buffer(30).difference(Point(0, 0).buffer(20))
-    level = plan_view.Level(-2.0, style.shades(1)[0], [], ring)
-    left, right = sorted(removed_at(level, 0.0).geoms, key=lambda part: part.bounds[0])
-    assert left.bounds == pytest.approx((-30, -2, -20, 0), abs=0.01)
-    assert right.bounds == pytest.approx((20, -2, 30, 0), abs=0.01)
-
-
 def test_uncut_material_is_in_the_legend_and_the_view():
     shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
-    reported = [entry.get_label() for entry in plan_view.warning_entries(shown)]
-    assert reported == ["uncut material"]
+    assert warned(shown) == ["uncut material"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 
@@ -295,26 +266,20 @@ def test_uncut_material_is_in_the_legend_and_the_view():
 def test_a_finding_with_a_place_has_a_sign():
     found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
     shown = replace(scene(pocket()), seen=Seen(findings=(found,)))
-    assert [e.get_label() for e in plan_view.warning_entries(shown)] == ["finding in line 3"]
+    assert warned(shown) == ["finding in line 3"]
 
 
-def test_uncut_material_is_cut_through_the_pockets_middle_in_the_side_view():
-    boxes = cut_through(uncut((50.0, 7.0)), 0.0)
-    assert [part.bounds for part in boxes.geoms] == [
-        pytest.approx((20, -4, 30, 0)),
-        pytest.approx((70, -4, 80, 0)),
-    ]
+def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view():
+    found = uncut((50.0, 7.0))
+    level = plan_view.Level(-4.0, style.shades(1)[0], [], found.values["shape"])
+    for boxes in (cut_through(found, 0.0), removed_at(level, 0.0)):
+        left, right = sorted(part.bounds for part in boxes.geoms)
+        assert left == pytest.approx((20, -4, 30, 0)) and right == pytest.approx((70, -4, 80, 0))
 
 
-@pytest.mark.parametrize(
-    ("places", "found"),
-    [
-        ([4.9, 5.0, 5.1], [4, 5, 6]),
-        ([0.0, 0.0, 9.0, 9.5], [-0.5, 0.5, 8.75, 9.75]),
-    ],
-)
-def test_texts_that_would_cover_each_other_are_spread_out(places, found):
-    assert spread_out(places, 1.0) == pytest.approx(found)
+def test_texts_that_would_cover_each_other_are_spread_out():
+    assert spread_out([4.9, 5.0, 5.1], 1.0) == pytest.approx([4, 5, 6])
+    assert spread_out([0.0, 0.0, 9.0, 9.5], 1.0) == pytest.approx([-0.5, 0.5, 8.75, 9.75])
 
 
 @pytest.mark.parametrize("count", [2, 8])
@@ -379,16 +344,12 @@ def test_the_history_begins_where_the_first_rapid_ends():
     assert history.z[-1] == -3 and not history.rapid[1:].any()
 
 
-@pytest.mark.parametrize(
-    ("hand", "left"),
-    [
-        (lambda: Hand().rapid(x=5).rapid(z=2).rapid(x=9).line(z=-1), 2),
-        (lambda: Hand().line(z=-1).rapid(z=5).line(x=3), 3),
-    ],
-)
-def test_rapids_from_nobody_knows_where_are_not_shown(hand, left):
-    shown = scene(hand())
-    assert len(shown.moves) - plan_view.first_shown(shown) == left
+def test_rapids_from_nobody_knows_where_are_not_shown():
+    for hand, first in (
+        (Hand().rapid(x=5).rapid(z=2).rapid(x=9).line(z=-1), 2),
+        (Hand().line(z=-1).rapid(z=5).line(x=3), 0),
+    ):
+        assert plan_view.first_shown(scene(hand)) == first
 
 
 def test_holes_in_an_area_stay_holes():
@@ -412,7 +373,7 @@ def test_every_text_is_on_the_page(apart):
     assert inked.y0 >= 0 and inked.y1 <= height
 
 
-@pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40), (9, 9, 0.1)])
+@pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40)])
 @pytest.mark.parametrize("window", [False, True])
 def test_nothing_leaves_the_page_or_overlaps(size, window):
     layout = Layout(np.array(size, float), 8, window)
@@ -459,8 +420,6 @@ def test_the_window_tells_the_override_and_the_contour():
     lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
     assert lines[0].endswith(" mm at 1500 % feed,")
     assert lines[1].endswith(", in X and C") and lines[2] == "off the contour: 0.0025 mm"
-    shown = replace(shown, override=100.0, contour=None)
-    assert "feed" not in "".join(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
 
 
 def test_a_cylinder_is_drawn_unrolled():
@@ -487,15 +446,13 @@ def test_a_run_on_a_cylinder_is_drawn_along_its_path():
 SCENES = {
     "mill": lambda: scene(pocket()),
     "mill by feed": lambda: scene(pocket(), feed_colours=True, units="inch"),
+    "drilling": drilled,
     "mill run": lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}),
-    "drilling": lambda: scene(Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5)),
     "turning": lambda: scene(turned(), LATHE),
-    "turning by feed": lambda: scene(turned(), LATHE, feed_colours=True),
     "turning run": lambda: with_real_motion(turned(), LATHE, {"X": 0.01}),
     "rapids only": lambda: scene(Hand().rapid(x=10).rapid(z=5)),
     "one point": lambda: scene(Hand().line(z=-1)),
     "face": lambda: scene(flats(), LATHE),
-    "face by feed": lambda: scene(flats(), LATHE, feed_colours=True),
     "face run": lambda: with_real_motion(flats(), LATHE, {"X": 0.01}),
     "surface": lambda: on_surface(scene(groove(), LATHE)),
     "surface by feed": lambda: on_surface(scene(groove(), LATHE, feed_colours=True, units="inch")),
@@ -519,13 +476,7 @@ def test_a_pdf_is_one_and_an_svg_the_same_file_every_time(tmp_path):
     assert one.read_bytes() == other.read_bytes()
 
 
-@pytest.mark.parametrize(
-    ("name", "why"),
-    [
-        *((name, r"\.png, \.svg, \.pdf") for name in ("picture", "picture.bmp", "picture.jpeg")),
-        ("nowhere/picture.png", "no such directory"),
-    ],
-)
-def test_other_suffixes_and_folders_are_refused_by_name(name, why, tmp_path):
-    with pytest.raises(UsageError, match=why):
-        style.check_format(tmp_path / name)
+def test_other_suffixes_are_refused_by_name(tmp_path):
+    for name in ("picture", "picture.bmp"):
+        with pytest.raises(UsageError, match=r"\.png, \.svg, \.pdf"):
+            style.check_format(tmp_path / name)
