@@ -221,7 +221,6 @@ def followed_program(
     machine_codes: frozenset[str] | None,
     progress: Progress,
 ) -> FollowedProgram:
-    """Return the drafts of a program, with as many copies of subprograms as it needs."""
     for _ in range(DEEPEST_CALLS):
         followed = FollowedProgram(structure, control, machine_codes, progress)
         if not _add_copies(followed):
@@ -231,7 +230,6 @@ def followed_program(
 
 
 def _add_copies(followed: FollowedProgram) -> bool:
-    """Copy programs that are called in different modes; return whether there were any."""
     structure = followed.structure
     added = False
     for number, groups in list(_differing_calls(followed)):

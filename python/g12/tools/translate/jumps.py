@@ -108,7 +108,6 @@ def find_jumps(
 def _numbered(
     blocks: Sequence[ForeignBlock], programs: Sequence[int]
 ) -> dict[tuple[int, int], list[int]]:
-    """Return the blocks that each program has with each N number."""
     found: dict[tuple[int, int], list[int]] = defaultdict(list)
     for index, block in enumerate(blocks):
         first = next((word for word in block.words if word.letter != "O"), None)

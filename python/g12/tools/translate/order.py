@@ -41,7 +41,6 @@ class WrittenOrder(NamedTuple):
 
 
 def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
-    """Return the order of the ``count`` lines of a file."""
     parts = [*_file_parts(followed.structure, count), *_copied_parts(followed.structure)]
     part_of = {number: at for at, part in enumerate(parts) for number in part.numbers}
     above: dict[int, set[int]] = {at: set() for at in range(len(parts))}

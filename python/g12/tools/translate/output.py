@@ -19,7 +19,6 @@ NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments 
 
 
 def lines_of(draft: Draft) -> list[str]:
-    """Return the lines of one block, with its comments after the first."""
     own = draft.written()
     lines = [*filter(None, [draft.head]), *draft.before, *filter(None, [own]), *draft.after]
     if draft.around:

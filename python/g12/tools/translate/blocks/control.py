@@ -176,12 +176,10 @@ class Control:
 
 
 def shipped_controls() -> list[str]:
-    """Return the names of the controls that come with the package."""
     return sorted(path.stem for path in CONTROL_FOLDER.glob("*.toml"))
 
 
 def read_control(name: str) -> Control:
-    """Return the control of a name, or of a TOML file whose path is given."""
     path = _path_of(name)
     data = _with_base(path, ())
     missing = [key for key in ("machine", "axes", "g_codes", "m_codes") if key not in data]
@@ -209,7 +207,6 @@ def _path_of(name: str) -> Path:
 
 
 def _with_base(path: Path, above: tuple[Path, ...]) -> dict:
-    """Return the data of a file over those of the control that it is based on."""
     if path.resolve() in above:
         raise ControlError(f"{path}: is based on itself")
     data = _data(path)

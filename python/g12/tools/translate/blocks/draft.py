@@ -156,7 +156,6 @@ class Draft:
 
 
 def position(axis: str) -> str:
-    """Return LinuxCNC's parameter of the tool's position, in the program's units."""
     return f"#{5419 + AXIS_NUMBERS[axis]}"
 
 
@@ -165,5 +164,4 @@ def word_of(text: str) -> ForeignWord:
 
 
 def line_as_word(text: str) -> ForeignWord:
-    """Return a whole line of LinuxCNC's in place of a word."""
     return ForeignWord(text[0], text[1:], "text")

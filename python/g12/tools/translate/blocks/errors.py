@@ -28,5 +28,4 @@ class NotSaid(NotTranslated):
 
 
 def excerpt(text: str) -> str:
-    """Return text of a program short enough for a message."""
     return text if len(text) <= LONGEST_EXCERPT else f"{text[: LONGEST_EXCERPT - 1]}…"

@@ -31,7 +31,6 @@ NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G89": "P"}
 
 
 def drilling_cycle(draft: Draft) -> None:
-    """Complete the words of a cycle, or end it; those of a lathe are moves (`turning/drilling`)."""
     if draft.control.is_lathe:
         return
     cancelled = draft.meanings.pop("cancel cycle", None)
@@ -60,7 +59,6 @@ def _cancel(draft: Draft) -> None:
 
 
 def _begin(draft: Draft, code: str) -> None:
-    """Begin a cycle with what the block says and what an earlier one was given."""
     motions = draft.take_codes(MOTIONS)
     if motions:
         draft.change(motion=motions[0])
@@ -190,7 +188,6 @@ PATTERN_WORDS = {"circle of holes": "IJL", "arc of holes": "IJKL", "row of holes
 
 
 def hole_pattern(draft: Draft) -> None:
-    """Write the positions of a pattern; the cycle's own rule completes the first of them."""
     meaning = next((name for name in PATTERN_WORDS if name in draft.meanings), "")
     if not meaning:
         return

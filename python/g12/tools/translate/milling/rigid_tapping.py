@@ -17,7 +17,6 @@ SPINDLE_OF_TAP = {"G84": "M3", "G74": "M4"}
 
 
 def rigid_tap(draft: Draft) -> None:
-    """Note M29 and its speed, and write the blocks that tap; G80 and other motion end it."""
     code = draft.meanings.pop("rigid tapping", None)
     if code:
         speed = draft.word("S")

@@ -28,7 +28,6 @@ LOCAL_OFFSETS = {"X": "#5210 * #5211", "Y": "#5210 * #5212"}  # 0 where none is 
 
 
 def follow_rotation(draft: Draft) -> None:
-    """Refuse other offsets while the program is rotated; follow G52."""
     turned = draft.state.turned
     if turned and (OWN_SYSTEMS.intersection(draft.codes()) or "numbered offset" in draft.meanings):
         raise NotTranslated("another work offset within G68: write G69 before it")
@@ -36,7 +35,6 @@ def follow_rotation(draft: Draft) -> None:
 
 
 def end_of_rotation(draft: Draft, code: ForeignWord) -> None:
-    """Write G69: the work offset itself again."""
     draft.comments.append(code.code)
     if draft.state.turned:
         draft.write([draft.sure("turned", "G69 selects the work offset again")])
@@ -64,7 +62,6 @@ def _constant_of(word: ForeignWord) -> float | str:
 
 
 def rotation(draft: Draft, word: ForeignWord) -> None:
-    """Write the rotated copy of the work offset."""
     code = word.code
     system = draft.sure("offset", f"{code} turns the work offset")
     if draft.state.turned or system not in OWN_SYSTEMS or draft.state.distance != "G90":

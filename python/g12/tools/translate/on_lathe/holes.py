@@ -29,7 +29,6 @@ def whole_cycle(draft: Draft) -> None:
 
 
 def hole_call(draft: Draft) -> None:
-    """Write a hole that a drilling cycle drills as a call."""
     cycle = draft.state.cycle
     if not is_on_lathe(draft) or cycle not in draft.codes():
         return

@@ -19,7 +19,6 @@ OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
 
 
 def is_on_lathe(draft: Draft) -> bool:
-    """Whether the control is for a mill's programs on a lathe."""
     return bool(draft.control.onto)
 
 
@@ -77,7 +76,6 @@ def _end_height(draft: Draft) -> float | None:
 
 
 def moves_by_rapid(draft: Draft) -> bool:
-    """Whether the block's moves are rapids."""
     codes = MOVES.intersection(draft.codes())
     motion = min(codes) if codes else draft.sure("motion", "X, Y or Z without G0 or G1")
     if motion == UNKNOWN:

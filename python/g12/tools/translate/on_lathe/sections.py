@@ -31,7 +31,6 @@ ARC = frozenset("IJR")
 
 
 def mill_block(draft: Draft) -> None:
-    """Put a block of a mill's program into a section, or outside of one."""
     if not is_on_lathe(draft):
         return
     draft.sure("polar", "a section has begun on one way to this block, and not on another")
@@ -57,7 +56,6 @@ def mill_block(draft: Draft) -> None:
 
 
 def milled_surface(draft: Draft) -> MilledSurface:
-    """Return where the control's programs go."""
     return SURFACES[draft.control.onto]
 
 
@@ -68,7 +66,6 @@ def before_loop(draft: Draft) -> None:
 
 
 def drills(draft: Draft) -> bool:
-    """Whether the block begins a drilling cycle or repeats one."""
     if "drilling cycle" in draft.meanings:
         return True
     moves = not (MOVES | REFERENCES).isdisjoint(draft.codes())
@@ -85,7 +82,6 @@ def _ends_here(draft: Draft) -> bool:
 
 
 def _program_begun_in(draft: Draft) -> int:
-    """Return the first block of the program that the block is in."""
     return draft.program[0][0]
 
 
@@ -117,7 +113,6 @@ def _rapid_outside(draft: Draft, across: bool) -> None:
 
 
 def _begin_section(draft: Draft) -> None:
-    """Move to where the section begins, and begin it, before the block."""
     if _ends_here(draft):
         raise NotTranslated(
             "a cut begins here beside a tool, an offset or units: write them in a block before it"

@@ -52,7 +52,6 @@ class MilledSurface(NamedTuple):
 
 
 def is_plain_number(value: str) -> bool:
-    """Whether a value is a plain number."""
     return bool(SIGNED_NUMBER.fullmatch(value))
 
 
@@ -129,12 +128,10 @@ def _converted(word: ForeignWord, letter: str, factor: float, plus: float) -> Fo
 
 
 def bracketed(letter: str, value: str) -> ForeignWord:
-    """Return a word whose value is an expression."""
     return ForeignWord(letter, f"[{value}]", "expression")
 
 
 def diameter(draft: Draft) -> float:
-    """Return the surface's diameter in the program's units."""
     value = draft.control.value("mill", "diameter", 0.0)
     if not value:
         raise NotSaid(
@@ -146,7 +143,6 @@ def diameter(draft: Draft) -> float:
 
 
 def _degrees_per_length(draft: Draft) -> float:
-    """Return degrees of C per length along Y."""
     return -degrees(2 / diameter(draft))
 
 

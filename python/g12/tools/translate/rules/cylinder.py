@@ -18,7 +18,6 @@ RADIUS_SCALES = {"R": 1, "Q": 2}  # radius and diameter
 
 
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
-    """Write the beginning and the end of a section on a cylinder."""
     if draft.control.value("cylinder", "word") == "mapped":
         radius = _mapped_radius(draft, code.code)
         draft.change(mapped=radius)

@@ -32,7 +32,6 @@ def whole_units(draft: Draft) -> None:
 
 
 def _quantity_of(draft: Draft, word: ForeignWord) -> str:
-    """Return the quantity that a word measures, "" if it counts or names something."""
     letter = word.letter
     if any(letter in COUNTING.get(name, "") for name in (*draft.meanings, draft.state.cycle)):
         return ""

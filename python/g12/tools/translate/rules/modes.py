@@ -34,7 +34,6 @@ def _only_positions(draft: Draft) -> bool:
 
 
 def follow_modes(draft: Draft) -> None:
-    """Take note of the modes that the block's codes set; the motion mode is another rule's."""
     modes: dict[str, str] = {}
     for word in draft.words:
         if word.code in GROUP_OF:
@@ -74,7 +73,6 @@ def axes_at_zero(draft: Draft) -> None:
 
 
 def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:
-    """Write G10.9 X0 and X1, X words as radii or diameters, as G8 and G7."""
     word = draft.take("X")
     modes = {"0": "G8", "1": "G7"}
     if not word or word.value.rstrip(".") not in modes or draft.axis_words():
@@ -85,7 +83,6 @@ def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:
 
 
 def refuse_leftovers(draft: Draft) -> None:
-    """Refuse a word that nothing has understood."""
     axes = draft.control.axes
     if draft.meanings:
         word = next(iter(draft.meanings.values()))

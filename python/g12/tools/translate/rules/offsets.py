@@ -36,7 +36,6 @@ TOOL_TABLE = {
 
 
 def numbered_offset(draft: Draft) -> None:
-    """Select one of the systems that are kept by number."""
     code = draft.meanings.pop("numbered offset", None)
     for own in OWN_SYSTEMS.intersection(draft.codes()):
         if code:
@@ -99,7 +98,6 @@ def _load_system(draft: Draft, number: int) -> str:
 
 
 def offset_by_program(draft: Draft, code: ForeignWord) -> None:
-    """Write G10, which sets an offset from the program."""
     kind = draft.take("L")
     number = int(kind.number) if kind and kind.kind == "number" else 0
     incremental = draft.sure("distance", "G10 sets or adds") == "G91"
@@ -181,7 +179,6 @@ class _ToolValue(NamedTuple):
 
 
 def _tool_offset(draft: Draft, is_length: bool, wear: bool, incremental: bool) -> None:
-    """G10 L10 to L13: write the tool table; wear is also kept in a parameter."""
     tool = _whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
     word = draft.take("R")
     if not word:

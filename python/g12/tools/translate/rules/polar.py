@@ -188,7 +188,6 @@ def _offset_number(draft: Draft) -> None:
 
 
 def rapid(draft: Draft) -> None:
-    """Write a rapid in polar mode as the control's file says, and the feed again after it."""
     rule = draft.control.value("polar", "rapid", "refuse")
     if rule == "feed":
         _rapid_at_feed(draft)
@@ -219,7 +218,6 @@ def _rapid_at_feed(draft: Draft) -> None:
 
 
 def feed_of_rapids(draft: Draft) -> float:
-    """Return the speed that the control's file gives to rapids in a section."""
     where = SECTION_NAMES[draft.state.polar]
     unit = UNIT.get(draft.state.units)
     if not unit:

@@ -17,7 +17,6 @@ from g12.tools.translate.blocks.positions import known_position, value_text
 
 
 def reference_point(draft: Draft) -> None:
-    """Rewrite the axes of G28 and G30."""
     code = next((code for code in draft.codes() if code in REFERENCES), "")
     if not code:
         return
@@ -69,7 +68,6 @@ def _cancel_length(draft: Draft) -> None:
 
 
 def machine_position(draft: Draft) -> None:
-    """Make G53 a rapid move."""
     if "G53" not in draft.codes():
         return
     if draft.sure("distance", "G53 is absolute") == "G91":
@@ -83,7 +81,6 @@ def machine_position(draft: Draft) -> None:
 
 
 def incremental_words(draft: Draft) -> None:
-    """Rewrite the increments of a block."""
     if not draft.control.is_lathe or draft.meanings:
         return
     found = draft.increments()

@@ -106,7 +106,6 @@ def stop_behind_a_cut(draft: Draft) -> None:
 
 
 def cuts(draft: Draft) -> bool:
-    """Whether a block moves at a feed."""
     codes, state = set(draft.codes()), draft.state
     if codes & RAPIDS or not draft.letters() & set("XYZABCIJKR"):
         return False

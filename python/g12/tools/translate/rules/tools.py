@@ -15,7 +15,6 @@ USES_D = COMPENSATION_ON | PLAIN_POCKETS
 
 
 def tool_and_offsets(draft: Draft) -> None:
-    """Rewrite tool, length and radius words as LinuxCNC has them."""
     if draft.control.is_lathe:
         _turret_word(draft)
     else:

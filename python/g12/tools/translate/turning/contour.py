@@ -180,7 +180,6 @@ def _corner_of(side: ContourMove) -> tuple[float, bool]:
 
 
 def offset_by(segments: Sequence[ContourMove], by: complex) -> list[ContourMove]:
-    """Return segments moved by a vector."""
     return [
         s._replace(
             start=s.start + by,

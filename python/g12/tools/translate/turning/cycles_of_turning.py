@@ -70,7 +70,6 @@ def no_pass_yet(draft: Draft) -> None:
 
 
 def turning_cycle(draft: Draft) -> None:
-    """Write the moves of a turning cycle."""
     _follow_chamfers(draft)
     meaning = next((name for name in draft.meanings if name in CYCLES), "")
     modal = draft.state.turn

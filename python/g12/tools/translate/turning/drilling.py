@@ -96,7 +96,6 @@ class HoleLevels(NamedTuple):
 
 
 def drilling_of_lathe(draft: Draft) -> None:
-    """Write the holes of a lathe's cycle, begin and end it."""
     if not draft.control.is_lathe:
         return
     cancelled = draft.meanings.pop("cancel cycle", None)

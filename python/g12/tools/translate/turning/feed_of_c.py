@@ -36,7 +36,6 @@ def feed_of_c(draft: Draft) -> None:
 
 
 def _is_feed(draft: Draft) -> bool:
-    """Whether the block moves at a feed, outside a section."""
     other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
     codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
     return draft.motion() != "G0" and not other and not codes

@@ -23,7 +23,6 @@ WORD_RULES_OF_CYCLES = (
 
 
 def take_number(draft: Draft, letter: str) -> float | None:
-    """Take a word out and return its number, None if there is no such word."""
     word = draft.take(letter)
     if word and word.kind != "number":
         raise NotTranslated(f"{word.text}: a turning cycle is translated from numbers only")
@@ -75,7 +74,6 @@ def stored_setting(draft: Draft, name: str) -> float:
 
 
 def start_point(draft: Draft) -> complex:
-    """Return where the tool is when the cycle begins."""
     x, z = known_position(draft.start, "X"), known_position(draft.start, "Z")
     if x is None or z is None:
         raise NotTranslated(
@@ -120,7 +118,6 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
 def read_contour(
     draft: Draft, indices: range, start: complex
 ) -> tuple[list[ContourMove], ModalState]:
-    """Return the contour of some blocks, and the modes after it."""
     found, state = contour_blocks(draft, indices)
     if state.distance != draft.state.distance:
         raise NotTranslated(

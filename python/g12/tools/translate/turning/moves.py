@@ -32,12 +32,10 @@ class CycleMove(NamedTuple):
 
 
 def rapid_to(point: complex) -> CycleMove:
-    """Return a rapid move."""
     return CycleMove("G0", point)
 
 
 def feed_to(point: complex) -> CycleMove:
-    """Return a cut."""
     return CycleMove("G1", point)
 
 
@@ -71,7 +69,6 @@ def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
 
 
 def differs(one: float, other: float) -> bool:
-    """Whether a word is needed."""
     return abs(one - other) > DIGITS
 
 
@@ -89,7 +86,6 @@ MOST_CYCLE_PASSES = 5000
 
 
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
-    """Return the moves of a finishing cut."""
     return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
 
 
@@ -147,7 +143,6 @@ class Pecking(NamedTuple):
 
 
 def pecks(start: complex, given: Pecking) -> list[CycleMove]:
-    """Return the moves of a pecking cycle."""
     depth, offsets = _offsets(given.end - start, given)
     if not depth:
         raise NotTranslated("the cycle cuts nothing: it ends at the tool's position")

@@ -77,7 +77,6 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
 
 
 def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
-    """Drop the rapids after the last cut."""
     cuts = [number for number, segment in enumerate(contour) if segment.motion != "G0"]
     return contour[: cuts[-1] + 1] if cuts else contour
 
@@ -108,7 +107,6 @@ class Monotone(NamedTuple):
 
 
 def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
-    """Return the monotone portions of a segment."""
     points = [view.local(p) for p in _turning_points(segment)]
     line, centre = segment.block.line, segment.centre
     if centre is None:
@@ -181,7 +179,6 @@ def _level(
     given: RoughCuts,
     view: CutView,
 ) -> list[CycleMove]:
-    """Return the cuts of one level."""
     moves: list[CycleMove] = []
     for begin, end in _gaps_at(portions, level, at.real):
         is_open = begin == at.real
