@@ -6,8 +6,8 @@
 3. off at 45 degrees by the retract, back by rapid; pockets are entered straight down at the feed
 4. at last along the contour with its allowance, then back to the start point
 
-The contour may go up and down across the cuts (type II), but never back along them. The cuts have
-coordinates of their own, (along, depth): they run to smaller ``along``, levels go down.
+The contour may go up and down across the cuts (type II), but never back along them. It is turned
+into the coordinates of the cuts, along + depth * 1j: they run to smaller ``along``, levels go down.
 """
 
 from cmath import phase, rect
@@ -47,10 +47,23 @@ class CutView(NamedTuple):
         turned = complex(point.imag, point.real) if self.along_x else point
         return complex(self.along * turned.real, self.depth * turned.imag)
 
-    def real(self, along: float, depth: float) -> complex:
-        """Return the point of the program."""
-        point = complex(self.along * along, self.depth * depth)
-        return complex(point.imag, point.real) if self.along_x else point
+    def segment(self, segment: ContourMove) -> ContourMove:
+        """Return a segment in these coordinates."""
+        start, end = self.local(segment.start), self.local(segment.end)
+        if segment.centre is None:
+            return segment._replace(start=start, end=end)
+        mirrored = self.along * self.depth * (-1 if self.along_x else 1)
+        return segment._replace(
+            start=start,
+            end=end,
+            centre=self.local(segment.centre),
+            sense=segment.sense * mirrored,
+        )
+
+    def real(self, move: CycleMove) -> CycleMove:
+        """Return a move as the program has it."""
+        point = complex(self.along * move.end.real, self.depth * move.end.imag)
+        return move._replace(end=complex(point.imag, point.real) if self.along_x else point)
 
 
 def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> list[CycleMove]:
@@ -59,21 +72,25 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
     view = _view_of(start, contour, given)
     allowed = offset_by(contour, given.allowance)
     allowed[0] = allowed[0]._replace(start=start)
-    portions = [portion for segment in allowed[1:] for portion in _portions(segment, view)]
-    _check_direction(portions, view)
-    at = view.local(start)
-    top = max(at.imag, *(p.imag for portion in portions for p in portion.ends))
-    lowest = min(p.imag for portion in portions for p in portion.ends)
-    count = floor((at.imag - lowest) / given.depth - SAME)
+    portions = [portion for s in allowed[1:] for portion in _portions(view.segment(s))]
+    for portion in portions:
+        if portion.ends[1].real > portion.ends[0].real + SAME:
+            axis = "X" if view.along_x else "Z"
+            raise NotTranslated(
+                f"line {portion.line}: the contour goes back in {axis}: a cut cannot follow it"
+            )
+    at, depths = view.local(start), [end.imag for portion in portions for end in portion.ends]
+    top = max(at.imag, *depths)
+    count = floor((at.imag - min(depths)) / given.depth - SAME)
     if count > MOST_LEVELS:
         raise NotTranslated(f"{count} cuts: the depth of cut is too small")
-    moves: list[CycleMove] = []
+    cuts: list[CycleMove] = []
     for number in range(1, count + 1):
-        level = at.imag - number * given.depth
-        moves += _level(portions, level, at, top, given, view)
+        cuts += _level(portions, at.imag - number * given.depth, at, top, given)
     end = view.local(allowed[-1].end)
-    back = [view.real(end.real, top), view.real(at.real, top), start]
-    return [*moves, rapid_to(start), *moves_along(allowed), *map(rapid_to, back)]
+    back = [rapid_to(complex(along, top)) for along in (end.real, at.real)]
+    moves = [view.real(move) for move in cuts], [view.real(move) for move in back]
+    return [*moves[0], rapid_to(start), *moves_along(allowed), *moves[1], rapid_to(start)]
 
 
 def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
@@ -83,15 +100,14 @@ def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
 
 def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
     plain = CutView(1, 1, given.along_x)
-    first, last = (plain.local(contour[n].end) - plain.local(start) for n in (0, -1))
-    depth = plain.local(start).imag - plain.local(contour[0].end).imag
+    first, last = (plain.local(contour[n].end - start) for n in (0, -1))
     axes = "XZ" if given.along_x else "ZX"
-    if abs(depth) < SAME or len(contour) < 2:
+    if abs(first.imag) < SAME or len(contour) < 2:
         raise NotTranslated(f"the block of P must move in {axes[1]}, from the start to the part")
     along = last.real - first.real
     if abs(along) < SAME:
         raise NotTranslated(f"the contour goes nowhere in {axes[0]}")
-    view = CutView(-1 if along > 0 else 1, 1 if depth > 0 else -1, given.along_x)
+    view = CutView(-1 if along > 0 else 1, 1 if first.imag < 0 else -1, given.along_x)
     allowance = view.local(given.allowance)
     if allowance.imag < 0 or allowance.real < 0:
         raise NotTranslated("the allowance U or W has the sign that would cut into the contour")
@@ -99,27 +115,23 @@ def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -
 
 
 class Monotone(NamedTuple):
-    """A portion of a segment along which neither coordinate turns back, as the cuts see it."""
+    """A portion of a segment along which neither coordinate turns back."""
 
     ends: tuple[complex, complex]
     at_depth: Callable[[float], float]
     line: int
 
 
-def _portions(segment: ContourMove, view: CutView) -> list[Monotone]:
-    points = [view.local(p) for p in _turning_points(segment)]
-    line, centre = segment.block.line, segment.centre
-    if centre is None:
-        return [Monotone((a, b), _on_line(a, b), line) for a, b in zip(points, points[1:])]
-    middle, radius = view.local(centre), abs(segment.start - centre)
+def _portions(segment: ContourMove) -> list[Monotone]:
+    points = _turning_points(segment)
     return [
-        Monotone((a, b), _on_arc(middle, radius, (a + b).real / 2), line)
+        Monotone((a, b), _along_at(a, b, segment), segment.block.line)
         for a, b in zip(points, points[1:])
     ]
 
 
 def _turning_points(segment: ContourMove) -> list[complex]:
-    """Return a segment's ends, and where an arc reverses in Z or X."""
+    """Return a segment's ends, and where an arc reverses in a coordinate."""
     if segment.centre is None:
         return [segment.start, segment.end]
     centre, sense = segment.centre, segment.sense
@@ -129,30 +141,17 @@ def _turning_points(segment: ContourMove) -> list[complex]:
     quarters = [(quarter * pi / 2 - begin) * sense % (2 * pi) for quarter in range(4)]
     radius = abs(segment.start - centre)
     between = sorted(angle for angle in quarters if SAME < angle < sweep - SAME)
-    return [
-        segment.start,
-        *(centre + rect(radius, begin + sense * angle) for angle in between),
-        segment.end,
-    ]
+    points = (centre + rect(radius, begin + sense * angle) for angle in between)
+    return [segment.start, *points, segment.end]
 
 
-def _on_line(a: complex, b: complex) -> Callable[[float], float]:
-    rise = b.imag - a.imag
-    return lambda depth: a.real + (b.real - a.real) * (depth - a.imag) / rise
-
-
-def _on_arc(middle: complex, radius: float, near: float) -> Callable[[float], float]:
-    side = 1 if near > middle.real else -1
-    return lambda depth: middle.real + side * sqrt(max(0.0, radius**2 - (depth - middle.imag) ** 2))
-
-
-def _check_direction(portions: Sequence[Monotone], view: CutView) -> None:
-    for portion in portions:
-        if portion.ends[1].real > portion.ends[0].real + SAME:
-            axis = "X" if view.along_x else "Z"
-            raise NotTranslated(
-                f"line {portion.line}: the contour goes back in {axis}: a cut cannot follow it"
-            )
+def _along_at(a: complex, b: complex, segment: ContourMove) -> Callable[[float], float]:
+    """Return along as a function of depth between two points of a segment."""
+    if segment.centre is None:
+        return lambda depth: a.real + (b.real - a.real) * (depth - a.imag) / (b.imag - a.imag)
+    middle, square = segment.centre, abs(segment.start - segment.centre) ** 2
+    side = 1 if (a + b).real / 2 > middle.real else -1
+    return lambda depth: middle.real + side * sqrt(max(0.0, square - (depth - middle.imag) ** 2))
 
 
 def _gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[tuple[float, float]]:
@@ -172,27 +171,21 @@ def _gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[t
 
 
 def _level(
-    portions: Sequence[Monotone],
-    level: float,
-    at: complex,
-    top: float,
-    given: RoughCuts,
-    view: CutView,
+    portions: Sequence[Monotone], level: float, at: complex, top: float, given: RoughCuts
 ) -> list[CycleMove]:
     moves: list[CycleMove] = []
     for begin, end in _gaps_at(portions, level, at.real):
         is_open = begin == at.real
         off = given.retract if is_open else min(given.retract, (begin - end) / 2)
-        lifted = view.real(min(begin, end + off), level + off)
+        lifted = complex(min(begin, end + off), level + off)
+        cut = [feed_to(complex(end, level)), rapid_to(lifted)]
         if is_open:
-            moves += [CycleMove(given.approach, view.real(begin, level))]
-            moves += [feed_to(view.real(end, level)), rapid_to(lifted)]
-            moves.append(rapid_to(view.real(begin, level + off)))
+            moves.append(CycleMove(given.approach, complex(begin, level)))
+            moves += [*cut, rapid_to(complex(begin, level + off))]
         else:
             near = min(top, level + given.depth + given.retract)
-            up = view.real(view.local(lifted).real, top)
             points = [(at.real, top), (begin, top), (begin, near)]
-            moves += [rapid_to(view.real(*point)) for point in points]
-            moves += [feed_to(view.real(begin, level)), feed_to(view.real(end, level))]
-            moves += [rapid_to(lifted), rapid_to(up), rapid_to(view.real(at.real, top))]
+            moves += [rapid_to(complex(*point)) for point in points]
+            moves += [feed_to(complex(begin, level)), *cut]
+            moves += [rapid_to(complex(along, top)) for along in (lifted.real, at.real)]
     return moves
