@@ -94,8 +94,10 @@ class Draft:
         codes = (code for code in self.codes() if code in MOVES)
         return next(codes, self.state.motion)
 
-    def drop(self, words: Container[ForeignWord]) -> None:
-        self.words = [word for word in self.words if word not in words]
+    def drop(self, words: Iterable[ForeignWord]) -> None:
+        """Take out these words themselves, not equal ones."""
+        dropped = {id(word) for word in words}
+        self.words = [word for word in self.words if id(word) not in dropped]
 
     def write(self, lines: Iterable[str]) -> None:
         """Write lines after the block's words; the first is its own where no words remain."""
@@ -136,7 +138,7 @@ class Draft:
         offset = "H" if "G43" in self.codes() else ""
         return [w for w in self.words if w.letter in PARTNERS and w.letter != offset]
 
-    def sure(self, group: str, why: str) -> str:
+    def sure(self, group: str, why: str) -> Any:
         """Return a mode that must be the same on every way to the block."""
         value = getattr(self.state, group)
         if value == UNSURE:

@@ -5,8 +5,6 @@ The mill's X and Y lie on the bar's face, its Z is along the spindle (``onto`` f
 the bar, Y round it and Z out of it (``onto`` round). Points are in the mill's own axes here.
 """
 
-from typing import Any
-
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, UNKNOWN, ModalState
@@ -51,8 +49,7 @@ def safe_height(draft: Draft) -> float:
 
 def waiting_point(draft: Draft) -> dict[str, str]:
     """Return the values of X and Y to which rapids lead that are not written yet."""
-    waiting: Any = draft.sure("waiting", "where X and Y go depends on the way to this block")
-    return dict(waiting)
+    return dict(draft.sure("waiting", "where X and Y go depends on the way to this block"))
 
 
 def point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:

@@ -21,7 +21,7 @@ def keep_as_comments(draft: Draft) -> None:
         if meaning != "comment" or word.code in (draft.machine_codes or ()):
             continue
         own = [w for w in draft.words if w.letter in letters]
-        draft.words = [w for w in draft.words if w is not word and w not in own]
+        draft.drop([word, *own])
         draft.comments.append(" ".join([word.code, *(w.text for w in own)]))
 
 
@@ -45,7 +45,7 @@ def _speed_by_p(draft: Draft) -> list[ForeignWord]:
     word = next((w for w in draft.words if "S=P" in meanings.get(w.text, "")), None)
     if not word or word.text in (draft.machine_codes or ()):
         return []
-    draft.words = [other for other in draft.words if other is not word]
+    draft.drop([word])
     speed = draft.take("P")
     return _own_words(meanings[word.text].replace("S=P", f"S{speed.value}" if speed else ""))
 
@@ -60,7 +60,7 @@ def _part_builders_codes(draft: Draft) -> None:
     found = [w for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
     for word in found[:-1]:
         draft.before += [one.text for one in mapped(draft, word)]
-        draft.words = [other for other in draft.words if other is not word]
+        draft.drop([word])
 
 
 def is_own(draft: Draft, word: ForeignWord) -> bool:

@@ -23,12 +23,11 @@ UNIT = {"G20": "inch", "G21": "mm"}
 def whole_units(draft: Draft) -> None:
     """Write every length, angle and feed with the value that it has on the control."""
     for at, word in enumerate(draft.words):
-        if word.lacks_point:
-            kind = _quantity_of(draft, word)
-            if kind:
-                draft.words[at] = in_units(draft, word, kind)
-                if word.letter == "F":
-                    draft.change(feed=draft.words[at].value)
+        kind = _quantity_of(draft, word) if word.lacks_point else ""
+        if kind:
+            draft.words[at] = in_units(draft, word, kind)
+            if word.letter == "F":
+                draft.change(feed=draft.words[at].value)
 
 
 def _quantity_of(draft: Draft, word: ForeignWord) -> str:
@@ -39,7 +38,9 @@ def _quantity_of(draft: Draft, word: ForeignWord) -> str:
         return ""  # the type of a Haas's contour
     if letter == "F":
         return "feed_rev" if draft.state.feed_mode == "G95" else "feed"
-    if letter in "IJK" and _is_cycle(draft) and not _is_arc(draft):
+    cycles = {"drilling cycle", *HOLE_MEANINGS}
+    is_cycle = bool(draft.state.cycle) or not cycles.isdisjoint(draft.meanings)
+    if letter in "IJK" and is_cycle and {"G2", "G3"}.isdisjoint(draft.codes()):
         return ""  # K counts there, the others are refused
     if letter == "H" and "G43" in draft.codes():
         return ""
@@ -48,14 +49,6 @@ def _quantity_of(draft: Draft, word: ForeignWord) -> str:
     if letter in ANGLE_WORDS:
         return "angle"
     return "length" if letter in LENGTH_WORDS else ""
-
-
-def _is_arc(draft: Draft) -> bool:
-    return not {"G2", "G3"}.isdisjoint(draft.codes())
-
-
-def _is_cycle(draft: Draft) -> bool:
-    return bool({"drilling cycle", *HOLE_MEANINGS} & set(draft.meanings)) or bool(draft.state.cycle)
 
 
 def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
@@ -79,8 +72,8 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
         )
     if not least:
         raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
-    value = Decimal(word.value) * Decimal(str(least))
-    return word._replace(value=f"{value:f}" if "." in f"{value:f}" else f"{value:f}.")
+    text = f"{Decimal(word.value) * Decimal(str(least)):f}"
+    return word._replace(value=text if "." in text else f"{text}.")
 
 
 def least_increment(draft: Draft, kind: str) -> float:
@@ -115,33 +108,21 @@ def dwell(draft: Draft, code: ForeignWord) -> None:
 
 def time_in_seconds(draft: Draft, word: ForeignWord, thousandths: bool) -> ForeignWord:
     """Return the P word of a time."""
-    if word.kind == "number" and word.number < 0:
+    is_number, decimals = word.kind == "number", draft.control.decimals
+    if is_number and word.number < 0:
         raise NotTranslated(f"{word.text}: a time below 0")
+    if thousandths and is_number and not word.lacks_point:
+        thousandths = False
+        if draft.control.value("dwell", "with_point", "refuse") != "seconds":
+            raise NotTranslated(f"{word.text}: milliseconds have no decimal point on this control")
+    elif not thousandths and word.lacks_point and word.number:
+        thousandths = decimals == "least"
+        if not decimals:
+            raise NotTranslated(
+                f"{word.text} has no decimal point: thousandths or seconds? set decimals "
+                "(--decimals)"
+            )
+    value = word.value
     if thousandths:
-        if "." in word.value and word.kind == "number":
-            return with_point(draft, word)
-        return _in_seconds(word)
-    if word.lacks_point and word.number:
-        return _without_point(draft, word)
-    return word._replace(letter="P")
-
-
-def with_point(draft: Draft, word: ForeignWord) -> ForeignWord:
-    """Return milliseconds that are written with a decimal point."""
-    if draft.control.value("dwell", "with_point", "refuse") != "seconds":
-        raise NotTranslated(f"{word.text}: milliseconds have no decimal point on this control")
-    return word._replace(letter="P")
-
-
-def _without_point(draft: Draft, word: ForeignWord) -> ForeignWord:
-    if not draft.control.decimals:
-        raise NotTranslated(
-            f"{word.text} has no decimal point: thousandths or seconds? set decimals (--decimals)"
-        )
-    return _in_seconds(word) if draft.control.decimals == "least" else word._replace(letter="P")
-
-
-def _in_seconds(word: ForeignWord) -> ForeignWord:
-    if word.kind == "expression":
-        return word._replace(letter="P", value=f"[[{word.value}] / 1000]")
-    return word._replace(letter="P", value=f"{Decimal(word.value) / 1000:f}")
+        value = f"{Decimal(value) / 1000:f}" if is_number else f"[[{value}] / 1000]"
+    return word._replace(letter="P", value=value)

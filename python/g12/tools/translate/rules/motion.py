@@ -5,6 +5,8 @@ Most blocks of a long program are lines and arcs that are the same on LinuxCNC: 
 them, which saves most of the time.
 """
 
+import re
+
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
 from g12.tools.translate.blocks.errors import NotSure, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
@@ -107,9 +109,8 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
         draft.after.append("G4 P0")
 
 
-PLAIN_LETTERS = frozenset("NXYZABCIJKRF")
-SETTLED = (UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
-ROTARY_LETTERS = frozenset("ABC")  # beside a slide they can need another feed
+PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point
+SETTLED = ("", UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
 
 
 def is_plain(draft: Draft) -> bool:
@@ -117,37 +118,25 @@ def is_plain(draft: Draft) -> bool:
 
     So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
     """
-    state, control = draft.state, draft.control
-    if state.turn or control.onto:
+    state, control, words = draft.state, draft.control, draft.words
+    own = (state.own_motion, state.own_distance, state.own_feed)
+    letters = {word.letter for word in words}
+    if (
+        (control.onto, state.turn, state.cycle, state.polar, *own) != SETTLED
+        or len(letters) < len(words)
+        or not all(word.kind == "number" and PLAIN.fullmatch(word.text) for word in words)
+        or not letters.isdisjoint(AXIS_NUMBERS.keys() - set(control.axes))
+    ):
         return False
-    at = (state.cycle, state.polar, state.own_motion, state.own_distance, state.own_feed)
-    if at != SETTLED:
+    motion = next(iter(draft.codes()), state.motion)
+    # A line's R, and I and K on a lathe, are a corner; C beside a slide can need another feed.
+    others = "" if motion in ("G2", "G3") else "IKR" if control.is_lathe else "R"
+    others += "" if motion == "G0" else "ABC"
+    if motion not in MOVES or control.meanings.get(motion) != "same" or letters & set(others):
         return False
-    modes: dict[str, float | str] = {}
-    letters = set()
-    for letter, value, kind, _ in draft.words:
-        if kind != "number" or letter in letters:
-            return False
-        letters.add(letter)
-        if letter == "G":
-            modes["motion"] = f"G{value.lstrip('0') or '0'}"
-        elif (
-            letter not in PLAIN_LETTERS
-            or (letter in AXIS_NUMBERS and letter not in control.axes)
-            or (letter != "N" and "." not in value and value != "0")
-        ):
-            return False
-        elif letter == "F":
-            modes["feed"] = value
-    motion = modes.get("motion", state.motion)
-    arc = motion in ("G2", "G3") or letters.isdisjoint("IKR" if control.is_lathe else "R")
-    if not arc or motion not in MOVES or control.meanings.get(motion) != "same":
-        return False
-    if motion != "G0" and not ROTARY_LETTERS.isdisjoint(letters):
-        return False
-    modes.update(
-        (FIELDS[w.letter], end_of_word(state, w)) for w in draft.words if w.letter in FIELDS
-    )
-    if any(getattr(state, mode) != value for mode, value in modes.items()):
-        draft.change(**modes)
+    modes: dict[str, float | str | None] = {"motion": motion}
+    if feed := draft.word("F"):
+        modes["feed"] = feed.value
+    modes |= {FIELDS[w.letter]: end_of_word(state, w) for w in words if w.letter in FIELDS}
+    draft.change(**modes)
     return True

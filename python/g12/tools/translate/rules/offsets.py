@@ -19,6 +19,7 @@ from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 
 SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99
+SYSTEM_CODES = range(110, 130)  # G codes of the first of them
 FIRST_PARAMETER = 4001
 LENGTH_WEAR, DIAMETER_WEAR = 3000, 3200  # and the tool's number
 TOOLS = 100
@@ -43,7 +44,8 @@ def numbered_offset(draft: Draft) -> None:
         draft.change(offset=own)
     if not code:
         return
-    number = _system_number(draft, code)
+    named = code.number in SYSTEM_CODES
+    number = SYSTEM_CODES.index(int(code.number)) + 1 if named else _system_number(draft, code.code)
     draft.comments.insert(0, f"G154 P{number} overwrites {SLOT}")
     draft.before += [*_unset_lines(draft, number), _load_system(draft, number)]
     draft.change(offset=f"P{number}")
@@ -51,8 +53,7 @@ def numbered_offset(draft: Draft) -> None:
 
 def _unset_lines(draft: Draft, number: int) -> list[str]:
     """Return lines that report a system that was never set; LinuxCNC then reads 0."""
-    known = draft.state.known_offsets
-    known = () if known == UNSURE else known
+    known = () if draft.state.known_offsets == UNSURE else draft.state.known_offsets
     if number in known:
         return []
     draft.change(known_offsets=(*known, number))
@@ -65,21 +66,17 @@ def _unset_lines(draft: Draft, number: int) -> list[str]:
     ]
 
 
-def _system_number(draft: Draft, code: ForeignWord) -> int:
-    whole = int(code.number)
-    if 110 <= whole <= 129:
-        return whole - 109
-    return _whole_number_of(draft, "P", range(1, SYSTEMS + 1), code.code)
+def _system_number(draft: Draft, code: str) -> int:
+    return _take_number(draft, range(1, SYSTEMS + 1), code)
 
 
-def _whole_number_of(draft: Draft, letter: str, numbers: range, code: str) -> int:
-    word = draft.take(letter)
+def _take_number(draft: Draft, numbers: range, code: str) -> int:
+    """Take P out, the number of an offset or a tool."""
+    word = draft.take("P")
     if not word or word.kind != "number" or not word.number.is_integer():
-        raise NotTranslated(f"{code} needs {letter} and a whole number")
+        raise NotTranslated(f"{code} needs P and a whole number")
     if int(word.number) not in numbers:
-        raise NotTranslated(
-            f"{code} {letter}{word.number:g} must be from {numbers[0]} to {numbers[-1]}"
-        )
+        raise NotTranslated(f"{code} P{word.number:g} must be from {numbers[0]} to {numbers[-1]}")
     return int(word.number)
 
 
@@ -89,7 +86,6 @@ def _parameter_of(draft: Draft, number: int, axis: str) -> int:
 
 
 def _load_system(draft: Draft, number: int) -> str:
-    """Return the block that copies a numbered system into G59.3 and selects it."""
     copies = (
         f"#{SLOT_PARAMETER + AXIS_NUMBERS[axis] - 1}=#{_parameter_of(draft, number, axis)}"
         for axis in draft.control.axes
@@ -128,7 +124,7 @@ def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
 
 def _work_offset(draft: Draft, incremental: bool) -> None:
     """G10 L2: G54 to G59, or G52."""
-    number = _whole_number_of(draft, "P", range(7), "G10 L2")
+    number = _take_number(draft, range(7), "G10 L2")
     words = _axis_values(draft, "G10 L2")
     first = G54_PARAMETER + 20 * (number - 1) if number else G52_PARAMETER
     if incremental:
@@ -143,8 +139,7 @@ def _work_offset(draft: Draft, incremental: bool) -> None:
 
 
 def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
-    """G10 L20: a system that is kept by number."""
-    number = _whole_number_of(draft, "P", range(1, SYSTEMS + 1), "G10 L20")
+    number = _system_number(draft, "G10 L20")
     draft.after.append(SET_SCALE)
     values = []
     for word in _axis_values(draft, "G10 L20"):
@@ -152,8 +147,8 @@ def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
         old = f"{parameter} + " if incremental else ""
         values.append(f"{parameter}=[{old}{word.value} * {SCALE}]")
     draft.after.append(" ".join(values))
-    if draft.sure("offset", "G10 L20 changes a work offset") in (f"P{number}", UNKNOWN):
-        draft.after += [_load_system(draft, number)] if draft.state.offset else []
+    if draft.sure("offset", "G10 L20 changes a work offset") == f"P{number}":
+        draft.after.append(_load_system(draft, number))
 
 
 class _ToolValue(NamedTuple):
@@ -179,7 +174,7 @@ class _ToolValue(NamedTuple):
 
 
 def _tool_offset(draft: Draft, is_length: bool, wear: bool, incremental: bool) -> None:
-    tool = _whole_number_of(draft, "P", range(1, TOOLS + 1), "G10")
+    tool = _take_number(draft, range(1, TOOLS + 1), "G10")
     word = draft.take("R")
     if not word:
         raise NotTranslated("G10 needs R, the tool's value")

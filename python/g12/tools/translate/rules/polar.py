@@ -6,8 +6,6 @@ or G8 is written before the section, and the other after it. Y is C and V is H. 
 defines a rapid in polar mode.
 """
 
-from typing import Any
-
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ALL_PLANES, ForeignWord
@@ -67,12 +65,11 @@ def turn_on(draft: Draft, code: ForeignWord) -> None:
     outside, inside = _x_modes(draft)
     lines = [*own_feed_ended(draft), *([inside] if inside != outside else [])]
     own_block(draft, code.code, [*lines, draft.control.polar_codes[0]])
-    kept = _slides_kept(draft, X_OF[inside] / X_OF[outside])
-    draft.change(polar="on", own_motion=UNSURE, at_c=0.0, **kept)
+    draft.change(polar="on", own_motion=UNSURE, at_c=0.0)
+    _keep_slides(draft, X_OF[inside] / X_OF[outside])
 
 
 def _x_modes(draft: Draft) -> tuple[str, str]:
-    """Return G7 or G8 for X words outside of polar mode, and in it."""
     outside = draft.sure("x_words", "polar mode") or "G8"
     return outside, MODES_OF_X.get(draft.control.value("polar", "x"), outside)
 
@@ -80,23 +77,23 @@ def _x_modes(draft: Draft) -> tuple[str, str]:
 def turn_off(draft: Draft, code: ForeignWord) -> None:
     """Write G13.1, which means nothing outside of polar mode."""
     outside, inside = _x_modes(draft)
-    back = draft.state.polar != "off" and outside != inside
-    own_block(draft, code.code, [draft.control.polar_codes[1], *([outside] if back else [])])
-    if draft.state.polar != "off":
-        if draft.state.delayed:
-            raise NotTranslated(
-                f"G40 is after the last move of the section: write a move in X or C with it "
-                f"before {code.code}"
-            )
-        kept = _slides_kept(draft, X_OF[outside] / X_OF[inside])
-        draft.change(polar="off", own_motion=UNSURE, **kept)
+    is_on = draft.state.polar != "off"
+    back = [outside] if is_on and outside != inside else []
+    own_block(draft, code.code, [draft.control.polar_codes[1], *back])
+    if is_on and draft.state.delayed:
+        raise NotTranslated(
+            f"G40 is after the last move of the section: write a move in X or C with it "
+            f"before {code.code}"
+        )
+    if is_on:
+        draft.change(polar="off", own_motion=UNSURE)
+        _keep_slides(draft, X_OF[outside] / X_OF[inside])
 
 
-def _slides_kept(draft: Draft, scale: float) -> dict[str, float]:
-    """Return X and Z after the switch; ``scale`` multiplies X."""
+def _keep_slides(draft: Draft, scale: float) -> None:
+    """Keep the positions of X and Z over the switch; ``scale`` multiplies X."""
     x, z = known_position(draft.start, "X"), known_position(draft.start, "Z")
-    found = {"at_x": None if x is None else x * scale, "at_z": z}
-    return {name: value for name, value in found.items() if value is not None}
+    draft.change(at_x=None if x is None else x * scale, at_z=z)
 
 
 def own_block(draft: Draft, code: str, lines: list[str]) -> None:
@@ -112,38 +109,29 @@ def inside_polar(draft: Draft) -> None:
         draft.sure("polar", "polar mode or a cylinder is on")
     if draft.state.polar == "off":
         return
-    if draft.state.polar == "on":
-        draft.words = [
-            word._replace(letter=IN_POLAR.get(word.letter, word.letter)) for word in draft.words
-        ]
+    is_polar = draft.state.polar == "on"
+    if is_polar:
+        draft.words = [w._replace(letter=IN_POLAR.get(w.letter, w.letter)) for w in draft.words]
     for letter in "CH":
         if sum(word.letter == letter for word in draft.words) > 1:
             raise NotTranslated(f"{letter} and its other name in one block")
     _offset_number(draft)
-    if draft.state.polar == "on":
-        _lengths_of_c(draft)
-        _unmoved_depth(draft)
+    if is_polar:
+        if draft.control.value("polar", "c") == "diameter":
+            draft.words = [_halved(w) if w.letter in "CH" else w for w in draft.words]
+        if draft.letters() & IN_PLANE and _is_unmoved(draft, "Z"):
+            draft.comment_out("Z")
         _delay_compensation(draft)
     rapid(draft)
 
 
-def _lengths_of_c(draft: Draft) -> None:
-    if draft.control.value("polar", "c") == "diameter":
-        draft.words = [
-            ForeignWord(w.letter, f"[{w.value} / 2]", "expression") if w.letter in "CH" else w
-            for w in draft.words
-        ]
+def _halved(word: ForeignWord) -> ForeignWord:
+    return ForeignWord(word.letter, f"[{word.value} / 2]", "expression")
 
 
-def _unmoved_depth(draft: Draft) -> None:
-    """Drop a Z beside X or C that does not move."""
-    start = known_position(draft.start, "Z")
-    if (
-        start is not None
-        and draft.letters() & IN_PLANE
-        and start == known_position(draft.state, "Z")
-    ):
-        draft.comments += [word.text for word in (draft.take("Z"),) if word]
+def _is_unmoved(draft: Draft, axis: str) -> bool:
+    start = known_position(draft.start, axis)
+    return start is not None and start == known_position(draft.state, axis)
 
 
 def _delay_compensation(draft: Draft) -> None:
@@ -154,7 +142,9 @@ def _delay_compensation(draft: Draft) -> None:
         return
     if code == UNSURE:
         draft.sure("delayed", "G40 or G41 is before it")
-    if draft.letters() & IN_PLANE and not _is_unmoved(draft):
+    axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
+    is_arc = bool(draft.letters() & set("IJKR"))
+    if axes and (is_arc or not all(_is_unmoved(draft, axis) for axis in axes)):
         if code not in own:
             draft.put_first(code)
         draft.change(delayed=UNKNOWN)
@@ -164,17 +154,6 @@ def _delay_compensation(draft: Draft) -> None:
     draft.words = [word for word in draft.words if word.letter not in IN_PLANE]
     draft.comments += [f"{code}{'' if needless else ' with the next move'}"] if own else []
     draft.change(delayed=UNKNOWN if needless else code)
-
-
-def _is_unmoved(draft: Draft) -> bool:
-    """Whether a straight block moves neither X nor C."""
-    if draft.letters() & set("IJKR"):
-        return False
-    axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
-    starts = [
-        (known_position(draft.start, axis), known_position(draft.state, axis)) for axis in axes
-    ]
-    return all(start is not None and start == end for start, end in starts)
 
 
 def _offset_number(draft: Draft) -> None:
@@ -189,32 +168,27 @@ def _offset_number(draft: Draft) -> None:
 
 def rapid(draft: Draft) -> None:
     rule = draft.control.value("polar", "rapid", "refuse")
-    if rule == "feed":
-        _rapid_at_feed(draft)
-    elif rule == "refuse" and _is_rapid(draft):
+    if rule == "keep" or not _is_rapid(draft):
+        return
+    if rule == "refuse":
         where = SECTION_NAMES[draft.state.polar]
         raise NotSaid(
             f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
             "polar",
             'rapid = "feed"',
         )
+    feed = feed_of_rapids(draft)
+    draft.take_codes({"G0"})
+    draft.take("F")  # of later blocks
+    draft.words += map(word_of, ("G1", "G94", f"F{feed:g}"))
+    draft.change(motion="G0", own_motion="G1", own_feed="other")
+    draft.has_motion = draft.has_feed = True
 
 
 def _is_rapid(draft: Draft) -> bool:
     codes = MOVES.intersection(draft.codes())
     moves = draft.letters() & set("XYZCUWH")
     return "G0" in codes or (bool(moves) and not codes and draft.state.motion == "G0")
-
-
-def _rapid_at_feed(draft: Draft) -> None:
-    """Write a rapid as G1 at the control's rapid feed; its own F is for later blocks."""
-    if _is_rapid(draft):
-        feed = feed_of_rapids(draft)
-        draft.take_codes({"G0"})
-        draft.take("F")
-        draft.words += [word_of("G1"), word_of("G94"), word_of(f"F{feed:g}")]
-        draft.change(motion="G0", own_motion="G1", own_feed="other")
-        draft.has_motion = draft.has_feed = True
 
 
 def feed_of_rapids(draft: Draft) -> float:
@@ -231,20 +205,15 @@ def feed_of_rapids(draft: Draft) -> float:
 
 def feed_again(draft: Draft) -> None:
     """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
-    if draft.has_feed or draft.state.own_feed == AS_PROGRAMMED or not draft.letters() & MOVING:
-        return
-    if _goes_by_rapid(draft):
+    needless = draft.has_feed or draft.state.own_feed == AS_PROGRAMMED
+    if needless or not draft.letters() & MOVING or _goes_by_rapid(draft):
         return
     if draft.state.held:
         draft.before += own_feed_ended(draft)
         draft.change(own_motion="G1")
     else:
-        letters, codes = draft.letters(), draft.codes()
-        draft.words += [
-            word_of(text)
-            for text in _programs_feed(draft)
-            if text not in codes and not (text[0] == "F" and "F" in letters)
-        ]
+        own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
+        draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
     draft.change(own_feed=AS_PROGRAMMED, held=())
 
 
@@ -267,10 +236,9 @@ def own_feed_ended(draft: Draft) -> list[str]:
     """Return the line that gives LinuxCNC the control's feed, if it has another."""
     if draft.state.own_feed == AS_PROGRAMMED:
         return []
-    motion = ["G1"] if draft.state.held else []
-    line = " ".join([*motion, *_held_slides(draft), *_programs_feed(draft)])
+    words = [*_held_slides(draft), *_programs_feed(draft)]
     draft.change(own_feed=AS_PROGRAMMED, held=())
-    return [line]
+    return [" ".join(words)]
 
 
 def _programs_feed(draft: Draft) -> list[str]:
@@ -284,12 +252,13 @@ def _programs_feed(draft: Draft) -> list[str]:
 def _held_slides(draft: Draft) -> list[str]:
     """Return the words of slides that were held back (`turning/feed_of_c`)."""
     why = "a slide of LinuxCNC's is behind the program's"
-    held: Any = draft.sure("held", why)
-    points = {axis: known_position(draft.start, axis) for axis, _ in held}
-    for axis, point in points.items():
+    words = []
+    for axis, _ in draft.sure("held", why):
+        point = known_position(draft.start, axis)
         if point is None:
             raise NotTranslated(
                 f"{why}, and the position of {axis} is not known here: beside C let it move by at "
                 "least 0.001 mm, or not at all"
             )
-    return [f"{axis}{value_text(point)}" for axis, point in points.items()]
+        words.append(f"{axis}{value_text(point)}")
+    return ["G1", *words] if words else []

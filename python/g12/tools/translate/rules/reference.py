@@ -38,12 +38,11 @@ def _from_here(draft: Draft, code: str) -> None:
         if axis in draft.letters():
             raise NotTranslated(f"{word.text} beside {axis} in {code}")
         incremental = draft.sure("distance", f"{code} with {word.letter}") == "G91"
-        draft.replace(
-            word, word._replace(letter=axis) if incremental else place_of_increment(draft, word)
-        )
+        own = word._replace(letter=axis) if incremental else _absolute(draft, word)
+        draft.replace(word, own)
 
 
-def place_of_increment(draft: Draft, word: ForeignWord) -> ForeignWord:
+def _absolute(draft: Draft, word: ForeignWord) -> ForeignWord:
     """Return the absolute word for an increment from where the tool is."""
     if draft.sure("compensation", f"{word.text} is an increment") != "G40":
         raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")
@@ -90,26 +89,26 @@ def incremental_words(draft: Draft) -> None:
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
             _depth_in_section(draft, found[0])
             return
-    if not found:
-        return
     for word in found:
         if PARTNERS[word.letter] in draft.letters():
             raise NotTranslated(f"{word.text} and {PARTNERS[word.letter]} in one block")
-    alone = len(found) == len(draft.axis_words()) + len(found)
-    if draft.sure("distance", f"{found[0].text} is an increment") == "G91":
-        _rename(draft)
-    elif alone:
-        _rename(draft)
+    if not found:
+        return
+    incremental = draft.sure("distance", f"{found[0].text} is an increment") == "G91"
+    if not incremental and draft.axis_words():
+        for word in found:
+            draft.replace(word, _absolute(draft, word))
+        return
+    for word in draft.increments():
+        draft.replace(word, word._replace(letter=PARTNERS[word.letter]))
+    if not incremental:
         draft.change(own_distance="G91")
         draft.put_first("G91")
-    else:
-        for word in found:
-            draft.replace(word, place_of_increment(draft, word))
 
 
 def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
     """Write W beside X and C of a section as Z, which is not in the section's plane."""
-    if word.letter != "W" or {"Z"} & draft.letters():
+    if word.letter != "W" or "Z" in draft.letters():
         raise NotTranslated(f"{word.text} beside other axes in a section")
     depth = known_position(draft.state, "Z")
     if draft.sure("distance", f"{word.text} is an increment") == "G91":
@@ -119,8 +118,3 @@ def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
         draft.replace(word, ForeignWord("Z", value, "expression"))
     else:
         draft.replace(word, ForeignWord("Z", value_text(depth)))
-
-
-def _rename(draft: Draft) -> None:
-    for word in draft.increments():
-        draft.replace(word, word._replace(letter=PARTNERS[word.letter]))

@@ -4,10 +4,10 @@
 G50 S and G92 S are the limit, which LinuxCNC takes as D beside G96; with axes the origin.
 """
 
-from g12.tools.translate.blocks.draft import Draft, line_as_word, word_of
+from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import REFERENCES, UNKNOWN
+from g12.tools.translate.blocks.modal import MOTIONS, REFERENCES, UNKNOWN
 
 LONGEST_WAIT = "Q30"  # s, then LinuxCNC reports a spindle that is not oriented
 STOP_CODES = frozenset(("M5", "M9"))
@@ -26,8 +26,7 @@ def speed_limit(draft: Draft) -> None:
         _limit_or_origin(draft, code.code)
     if "G96" in draft.codes() and not code:
         limit = draft.sure("limit", "G96 needs the speed limit")
-        if limit != UNKNOWN:
-            draft.words.append(word_of(f"D{limit}"))
+        draft.words += [word_of(f"D{limit}")] if limit else []
 
 
 def _limit_or_origin(draft: Draft, code: str) -> None:
@@ -36,19 +35,16 @@ def _limit_or_origin(draft: Draft, code: str) -> None:
     if limit:
         draft.change(limit=limit.value)
         draft.comments.append(f"{code} {limit.text}")
-        if draft.sure("spindle_mode", f"{code} S limits G96") == "G96":
-            _limit_now(draft, code, limit.value)
+    if limit and draft.sure("spindle_mode", f"{code} S limits G96") == "G96":
+        why = f"{code} S within G96"
+        surface = draft.sure("surface", why)
+        if surface == UNKNOWN:
+            raise NotTranslated(f"{why}, and the S of G96 is not known: write it before")
+        draft.write([f"G96 S{surface} D{limit.value}"])
     if draft.axis_words():
         draft.put_first("G92")
     elif not limit or draft.letters() & set("UVWH"):
         raise NotTranslated(f"{code} needs S, a speed limit, or X and Z, an origin")
-
-
-def _limit_now(draft: Draft, code: str, limit: str) -> None:
-    surface = draft.sure("surface", f"{code} S within G96")
-    if surface == UNKNOWN:
-        raise NotTranslated(f"{code} S within G96, and the S of G96 is not known: write it before")
-    draft.write([f"G96 S{surface} D{limit}"])
 
 
 def live_tool(draft: Draft) -> None:
@@ -92,7 +88,7 @@ def orientation(draft: Draft, code: ForeignWord) -> None:
     draft.change(spindle=UNKNOWN)  # M19 stops it
     line = " ".join(["M19", *(f"R{word.value}" for word in angles), LONGEST_WAIT])
     if draft.is_empty():
-        draft.words.append(line_as_word(line))
+        draft.write([line])
     else:
         draft.before.append(line)
 
@@ -107,6 +103,5 @@ def stop_behind_a_cut(draft: Draft) -> None:
 
 def cuts(draft: Draft) -> bool:
     codes, state = set(draft.codes()), draft.state
-    if codes & RAPIDS or not draft.letters() & set("XYZABCIJKR"):
-        return False
-    return bool(codes & POCKET_CODES or state.cycle or state.motion in ("G1", "G2", "G3", "G33"))
+    feeds = codes & POCKET_CODES or state.cycle or state.motion in MOTIONS - {"G0"}
+    return bool(feeds and draft.letters() & set("XYZABCIJKR")) and not codes & RAPIDS

@@ -42,13 +42,17 @@ def _subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
     if start and "P" in draft.letters():
         raise NotTranslated(f"{code} P with {start.text}: a program is called from its beginning")
     number = _called_number(draft, code, start or draft.take("P"))
-    repeats = draft.take("L")
-    count = repeats.value if repeats else ""
+    count = _repeats(draft)
     if local or start:
-        return SubprogramCall(LOCAL_BLOCKS + number, "sub", count)
-    if not count:
+        number += LOCAL_BLOCKS
+    elif not count:
         number, count = called_program(number, draft.control, draft.programs)
     return SubprogramCall(number, "sub", count)
+
+
+def _repeats(draft: Draft) -> str:
+    word = draft.take("L")
+    return word.value if word else ""
 
 
 def called_program(number: int, control: Control, programs: Container[int]) -> tuple[int, str]:
@@ -60,9 +64,7 @@ def called_program(number: int, control: Control, programs: Container[int]) -> t
 
 
 def _macro_call(draft: Draft) -> SubprogramCall:
-    """Return the call of G65; all other words are arguments."""
-    number = _called_number(draft, "G65", draft.take("P"))
-    repeats = draft.take("L")
+    number, count = _called_number(draft, "G65", draft.take("P")), _repeats(draft)
     arguments: dict[int, str] = {}
     for word in draft.words:
         if word.letter == "N":
@@ -71,18 +73,12 @@ def _macro_call(draft: Draft) -> SubprogramCall:
             raise NotTranslated(f"{word.text} cannot be an argument of G65")
         if ARGUMENTS[word.letter] in arguments:
             raise NotTranslated(f"{word.letter} is given twice: LinuxCNC has one variable for it")
-        _check_point(draft, word)
+        plain = word.lacks_point and word.number and word.letter not in "DHMST"
+        if plain and draft.control.decimals != "whole":
+            raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. in G65")
         arguments[ARGUMENTS[word.letter]] = word.value
     draft.words = [word for word in draft.words if word.letter == "N"]
-    return SubprogramCall(
-        number, "macro", repeats.value if repeats else "", tuple(sorted(arguments.items()))
-    )
-
-
-def _check_point(draft: Draft, word: ForeignWord) -> None:
-    plain = word.lacks_point and word.number
-    if plain and word.letter not in "DHMST" and draft.control.decimals != "whole":
-        raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. as an argument")
+    return SubprogramCall(number, "macro", count, tuple(sorted(arguments.items())))
 
 
 def finish_call(draft: Draft) -> None:

@@ -20,18 +20,12 @@ def tool_and_offsets(draft: Draft) -> None:
     else:
         _length_offset(draft)
         _radius_offset(draft)
-        _follow_tool(draft)
+        if word := draft.word("T"):
+            draft.change(next_tool=word.value.lstrip("0") or "0")
+        if "M6" in draft.m_codes():
+            draft.change(tool=draft.state.next_tool)
     if draft.start.compensation != "G40":
         _compensated_again(draft)
-
-
-def _follow_tool(draft: Draft) -> None:
-    """T is the next tool until M6."""
-    word = draft.word("T")
-    if word:
-        draft.change(next_tool=word.value.lstrip("0") or "0")
-    if "M6" in draft.m_codes():
-        draft.change(tool=draft.state.next_tool)
 
 
 def _turret_word(draft: Draft) -> None:
@@ -44,24 +38,15 @@ def _turret_word(draft: Draft) -> None:
     draft.comments += [change.text] if change else []
     tool, offset = _parts_of(draft, word)
     loaded = not tool or draft.state.tool == str(tool)
-    words = [] if loaded else [word_of(f"T{tool}"), word_of("M6")]
+    texts = [] if loaded else [f"T{tool}", "M6"]
     if offset >= 0:
-        words += [word_of("G43"), word_of(f"H{offset}")] if offset else [word_of("G49")]
-    draft.replace(word, *words)
-    if not loaded:
-        _spindle_goes_on(draft)
+        texts += ["G43", f"H{offset}"] if offset else ["G49"]
+    draft.replace(word, *map(word_of, texts))
+    if not loaded and SPINDLE_M_CODES.isdisjoint(draft.m_codes()) and not draft.state.live:
+        why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
+        draft.words += map(word_of, filter(None, [draft.sure("spindle", why)]))
     draft.comments += [word.text] if loaded else []
     draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
-
-
-def _spindle_goes_on(draft: Draft) -> None:
-    """Restart the spindle that turns during the tool change: LinuxCNC's M6 stops it."""
-    if SPINDLE_M_CODES.intersection(draft.m_codes()) or draft.state.live:
-        return
-    why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
-    turning = draft.sure("spindle", why)
-    if turning:
-        draft.words.append(word_of(turning))
 
 
 def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
@@ -77,8 +62,7 @@ def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     if not patterns:
         raise NotTranslated(f"{word.text}: [tools] patterns does not say what its digits are")
     pattern = next((p for p in patterns if len(p) >= len(word.value)), None)
-    least = len(patterns[0]) - 1
-    if not pattern or len(word.value) < least:
+    if not pattern or len(word.value) < len(patterns[0]) - 1:
         raise NotSaid(
             f"{word.text} has {len(word.value)} digits: tool and offset are "
             f"{' or '.join(patterns)}; say another pattern under [tools]",
@@ -93,19 +77,17 @@ def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
 
 
 def _length_offset(draft: Draft) -> None:
-    """G43 needs H; H0 is no offset."""
-    codes = draft.codes()
+    codes, word = draft.codes(), draft.word("H")
     if "G49" in codes:
         draft.change(length="0")
-    if "G43" not in codes:
-        if "H" in draft.letters():
-            raise NotTranslated("H without G43 in its block: write G43 before it")
-        return
-    word = draft.word("H")
-    if not word:
+    if word and "G43" not in codes:
+        raise NotTranslated("H without G43 in its block: write G43 before it")
+    if "G43" in codes and not word:
         raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
+    if not word:
+        return
     if word.is_zero:
-        draft.words = [w for w in draft.words if w is not word and w.text != "G43"]
+        draft.drop([word])
         draft.take_codes({"G43"})
         draft.words.append(word_of("G49"))
     draft.change(length=word.value.lstrip("0") or "0")
@@ -118,11 +100,11 @@ def _radius_offset(draft: Draft) -> None:
     if word:
         draft.change(radius=word.value)
         if not USES_D.intersection(codes):
-            draft.take("D")
-            draft.comments.append(word.text)
+            draft.comment_out("D")
+    takes_last = draft.control.value("tools", "pocket") == "last"
     if COMPENSATION_ON.intersection(codes):
-        compensation(draft, word)
-    elif not word and PLAIN_POCKETS.intersection(codes) and _takes_last(draft):
+        _compensation(draft, word)
+    elif not word and PLAIN_POCKETS.intersection(codes) and takes_last:
         value = draft.sure("radius", "a pocket without D takes the last one")
         draft.words += [ForeignWord("D", value)] if value else []
 
@@ -132,28 +114,25 @@ def _compensated_again(draft: Draft) -> None:
 
     Where it is on in one way to the block only, as in a loop, the program tests LinuxCNC's mode.
     """
-    on = [word for word in draft.words if word.code[:3] in COMPENSATION_ON]
-    if not on or draft.start.polar != "off" or draft.control.onto:
+    on = next((word for word in draft.words if word.code[:3] in COMPENSATION_ON), None)
+    before = draft.start
+    if not on or before.polar != "off" or draft.control.onto:
         return
-    if draft.start.compensation not in (on[0].code[:3], UNSURE):
+    if before.compensation not in (on.code[:3], UNSURE):
         return
-    words = [*on, *(w for w in draft.words if w.letter == "D")]
+    words = [on, *(w for w in draft.words if w.letter == "D")]
     draft.drop(words)
-    if draft.start.compensation != UNSURE:
-        if draft.start.radius != draft.state.radius:
-            raise NotTranslated(f"{on[0].code} with another D than it is on with: G40 before it")
-        draft.comments += [on[0].code]
-        return
-    name, code = f"o<compensation_{draft.index}>", f"{on[0].code[1:3]}0"
-    text = " ".join(word.text for word in words)
-    draft.before += [f"{name} if [#<_ccomp> NE {code}]", text, f"{name} endif"]
+    if before.compensation == UNSURE:
+        name, code = f"o<compensation_{draft.index}>", f"{on.code[1:3]}0"
+        text = " ".join(word.text for word in words)
+        draft.before += [f"{name} if [#<_ccomp> NE {code}]", text, f"{name} endif"]
+    elif before.radius == draft.state.radius:
+        draft.comments.append(on.code)
+    else:
+        raise NotTranslated(f"{on.code} with another D than it is on with: G40 before it")
 
 
-def _takes_last(draft: Draft) -> bool:
-    return draft.control.value("tools", "pocket") == "last"
-
-
-def compensation(draft: Draft, word: ForeignWord | None) -> None:
+def _compensation(draft: Draft, word: ForeignWord | None) -> None:
     """Give G41 and G42 the D in force; D0 is a radius of 0, whatever tool is loaded."""
     if draft.state.plane == "G19":
         raise NotTranslated(

@@ -134,9 +134,7 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     code = draft.meanings.pop(meaning, None)
     kept: dict[str, Any] = {}
     if draft.state.cycle == meaning:
-        stored: Any = draft.sure(
-            "cycle_words", "a drilling cycle takes the words of the block before"
-        )
+        stored = draft.sure("cycle_words", "a drilling cycle takes the words of the block before")
         kept = dict(stored)
     cycle = lathe_cycle(meaning)
     side = _is_side_hole(draft, kept) if cycle.side is None else cycle.side
