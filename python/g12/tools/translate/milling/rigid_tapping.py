@@ -69,8 +69,5 @@ def _write_hole(draft: Draft, values: dict[str, str], pitch: str) -> None:
         if not isinstance(top, float):
             raise NotTranslated("a tap under G98 needs Z as a number before its cycle: G0 Z…")
         lines.append(f"G0 Z{value_text(top)}")
-    if draft.before:
-        draft.after += lines
-    else:
-        draft.write(lines)
+    draft.write(lines)
     draft.change(own_motion=UNSURE, at_z=None)

@@ -6,7 +6,7 @@ The tool goes back to where it stood before each hole, as after G98: G99 costs a
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import UNSURE
 from g12.tools.translate.on_lathe.mill_words import (
     is_on_lathe,
     point_value,
@@ -41,9 +41,7 @@ def hole_call(draft: Draft) -> None:
     draft.take_codes({cycle, "G90", "G94"})
     after, draft.after = draft.after, []
     draft.write([milled_surface(draft).call(draft, _hole_from_cycle(draft, cycle, given)), *after])
-    level = start_height(draft)
-    at_z = UNKNOWN if level is None else level
-    draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=at_z)
+    draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=start_height(draft))
 
 
 def _hole_from_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledHole:

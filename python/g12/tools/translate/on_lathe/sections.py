@@ -11,7 +11,7 @@
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.positions import known_position
+from g12.tools.translate.blocks.positions import SHIFTING, known_position
 from g12.tools.translate.on_lathe.mill_words import (
     check_rapid,
     is_on_lathe,
@@ -23,10 +23,11 @@ from g12.tools.translate.on_lathe.mill_words import (
     waiting_point,
 )
 from g12.tools.translate.on_lathe.surfaces import FACE, ROUND, MilledSurface
+from g12.tools.translate.rules.modes import MACHINES_OWN
 from g12.tools.translate.rules.polar import feed_of_rapids
 
 SURFACES = {"face": FACE, "round": ROUND}
-ENDING = REFERENCES | {"G43", "G49", "G53"} | {f"G{number}" for number in range(54, 60)}
+ENDING = MACHINES_OWN | SHIFTING
 ARC = frozenset("IJR")
 
 
@@ -73,12 +74,14 @@ def drills(draft: Draft) -> bool:
 
 
 def _ends_here(draft: Draft) -> bool:
-    codes = set(draft.codes())
-    changed = draft.start.units != draft.state.units
-    tools = "T" in draft.letters() or draft.ends or "M6" in draft.m_codes()
     returns = draft.returns and draft.state.section == _program_begun_in(draft)
-    other = codes & ENDING or changed
-    return bool(tools or returns or other or drills(draft))
+    changes = (
+        "T" in draft.letters()
+        or "M6" in draft.m_codes()
+        or not ENDING.isdisjoint(draft.codes())
+        or draft.start.units != draft.state.units
+    )
+    return changes or draft.ends or returns or drills(draft)
 
 
 def _program_begun_in(draft: Draft) -> int:
@@ -102,12 +105,9 @@ def _rapid_outside(draft: Draft, across: bool) -> None:
         check_rapid(draft, across and start_height(draft) is not None)
     if across and draft.state.distance != "G90":
         raise NotTranslated("a rapid in X or Y under G91 before the first cut: write it under G90")
-    waiting = waiting_point(draft)
-    for letter in ("X", "Y"):
-        word = draft.take(letter)
-        if word:
-            waiting[letter] = word.value
-            draft.comments.append(f"{word.text} with the next cut")
+    waiting = waiting_point(draft) | {w.letter: w.value for w in draft.words if w.letter in "XY"}
+    for letter in "XY":
+        draft.comment_out(letter, " with the next cut")
     draft.change(waiting=tuple(sorted(waiting.items())))
     milled_surface(draft).outside(draft)
 
@@ -130,14 +130,13 @@ def _begin_section(draft: Draft) -> None:
     lines = milled_surface(draft).begin(draft, (x, y), feed)
     absolute = draft.start.distance == "G90"
     draft.before += lines if absolute else [f"G90 {lines[0]}", *lines[1:], "G91"]
-    at_y = known_position(draft.state, "Y")
     draft.change(
         polar=milled_surface(draft).section,
         section=_program_begun_in(draft),
         waiting=(),
         own_motion="G1",
         own_feed="other",
-        at_c=UNKNOWN if at_y is None else at_y,
+        at_c=known_position(draft.state, "Y"),
     )
 
 
@@ -147,18 +146,12 @@ def _end_section(draft: Draft) -> None:
     draft.before += milled_surface(draft).end(draft)
     own = drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
     y = known_position(draft.state, "Y" if own else milled_surface(draft).y_in)
-    draft.change(
-        polar="off",
-        section=UNKNOWN,
-        own_motion=UNSURE,
-        at_y=UNKNOWN if y is None else y,
-        at_c=UNKNOWN,
-    )
+    draft.change(polar="off", section=UNKNOWN, own_motion=UNSURE, at_y=y, at_c=None)
 
 
 def _go_home(draft: Draft) -> None:
     """Write G28, G30 and G53 in the lathe's axes: the mill's machine zero has no meaning there."""
-    codes = (REFERENCES | {"G53"}).intersection(draft.codes())
+    codes = MACHINES_OWN.intersection(draft.codes())
     if not codes:
         return
     if codes == {"G53"}:
@@ -173,10 +166,11 @@ def _go_home(draft: Draft) -> None:
 def _machine_zero(draft: Draft) -> None:
     """Write G53 as G28 away from the part if it has Z, as a comment if not."""
     motions = draft.take_codes({"G0", "G1"})
-    dropped = [word for word in draft.words if word.letter in "XYZ"]
-    draft.drop(dropped)
-    draft.comments += [*draft.take_codes({"G53"}), *(word.text for word in dropped)]
-    if any(word.letter == "Z" for word in dropped):
+    goes_home = "Z" in draft.letters()
+    draft.comments += draft.take_codes({"G53"})
+    for word in [word for word in draft.words if word.letter in "XYZ"]:
+        draft.comment_out(word.letter)
+    if goes_home:
         absolute = [] if draft.state.distance == "G91" else ["G90"]
         draft.after += [f"G91 G28 {milled_surface(draft).home}0", *absolute]
     if motions:

@@ -68,8 +68,7 @@ LEAST_SURFACE_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spin
 
 
 def _without_y(draft: Draft) -> None:
-    word = draft.take("Y")
-    draft.comments += [f"{word.text}: no Y here"] if word else []
+    draft.comment_out("Y", ": no Y here")
 
 
 def _same_words(draft: Draft) -> None:
@@ -103,8 +102,8 @@ FACE = MilledSurface(
 def _slides_alone(draft: Draft) -> None:
     """Write Z as the X slide's diameter, X as Z, and drop Y."""
     _words_round(draft)
-    word = draft.take("C")
-    draft.comments += ["Y: no such slide here"] if word else []
+    if draft.take("C"):
+        draft.comments.append("Y: no such slide here")
 
 
 def _words_round(draft: Draft) -> None:
@@ -116,18 +115,15 @@ def _words_round(draft: Draft) -> None:
         "I": ("K", 1.0, 0.0),
         "J": ("J", -1.0, 0.0),
     }
-    draft.words = [
-        _converted(word, *changed[word.letter]) if word.letter in changed else word
-        for word in draft.words
-    ]
+    for at, word in enumerate(draft.words):
+        if word.letter in changed:
+            letter, factor, added = changed[word.letter]
+            draft.words[at] = _word(letter, times(word.value, factor, added))
 
 
-def _converted(word: ForeignWord, letter: str, factor: float, plus: float) -> ForeignWord:
-    value = times(word.value, factor, plus)
-    return ForeignWord(letter, value) if is_plain_number(value) else bracketed(letter, value)
-
-
-def bracketed(letter: str, value: str) -> ForeignWord:
+def _word(letter: str, value: str) -> ForeignWord:
+    if is_plain_number(value):
+        return ForeignWord(letter, value)
     return ForeignWord(letter, f"[{value}]", "expression")
 
 
@@ -150,8 +146,8 @@ def _begin_round(draft: Draft, point: tuple[str, str], feed: float) -> list[str]
     x, y = point
     code, word = draft.control.cylinder_code
     size = diameter(draft) if word == "diameter" else diameter(draft) / 2
-    c = times(y, _degrees_per_length(draft))
-    return [f"G0 Z{x} C{c if is_plain_number(c) else f'[{c}]'}", f"{code} C{size:g}"]
+    c = _word("C", times(y, _degrees_per_length(draft)))
+    return [f"G0 Z{x} {c.text}", f"{code} C{size:g}"]
 
 
 def _end_round(draft: Draft) -> list[str]:

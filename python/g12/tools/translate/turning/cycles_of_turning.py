@@ -81,12 +81,15 @@ def turning_cycle(draft: Draft) -> None:
             meaning = draft.sure("turn", "X and Z may repeat a turning cycle")
     if not meaning:
         return
-    _check_turning_modes(draft)
+    if draft.state.polar != "off":
+        raise NotTranslated("a turning cycle in a section: end the section before it")
+    if draft.state.plane not in ("G18", UNKNOWN):
+        raise NotTranslated("a turning cycle needs the plane of X and Z: write G18 before it")
     if draft.sure("x_words", "X of a turning cycle is a diameter") != "G7":
         raise NotTranslated("a turning cycle where X words are radii: write G10.9 X1 before it")
     if meaning != modal:
         draft.change(turn=UNKNOWN)
-    CYCLES[meaning](draft)
+    CYCLES[meaning](draft, meaning)
     draft.meanings.pop(meaning, None)
 
 
@@ -99,31 +102,21 @@ def _has_own_words(draft: Draft) -> bool:
 def _follow_chamfers(draft: Draft) -> None:
     """M23 and M24 of a Haas: whether threads end with a chamfer."""
     for name, value in (("thread chamfer", True), ("no thread chamfer", False)):
-        code = draft.meanings.pop(name, None)
-        if code:
+        if code := draft.meanings.pop(name, None):
             draft.comments.append(code.code)
             draft.change(chamfers=value)
-
-
-def _check_turning_modes(draft: Draft) -> None:
-    if draft.state.polar != "off":
-        raise NotTranslated("a turning cycle in a section: end the section before it")
-    if draft.state.plane not in ("G18", UNKNOWN):
-        raise NotTranslated("a turning cycle needs the plane of X and Z: write G18 before it")
 
 
 def _write_moves(draft: Draft, moves: Sequence[CycleMove], start: complex, **modes: Any) -> None:
     """Write moves after the block's other words; they end at the start point."""
     _refuse_strange(draft, "in the block of a turning cycle")
-    state = draft.state
+    own = AS_PROGRAMMED if draft.state.motion == "G0" else "G0"
     draft.before += own_feed_ended(draft)
-    lines = list(lines_of_moves(moves, start))
-    lines[:0] = ["G90"] if needs_g90(draft) else []
-    draft.after += lines
+    draft.after += ["G90"] if needs_g90(draft) else []
+    draft.after += lines_of_moves(moves, start)
     draft.comments += [word.text for word in draft.meanings.values()]
-    own = AS_PROGRAMMED if state.motion == "G0" else "G0"
-    places = {"at_x": 2 * start.imag, "at_z": start.real}
-    draft.change(**{"own_motion": own, **places, **modes})
+    draft.change(own_motion=own, at_x=2 * start.imag, at_z=start.real)
+    draft.change(**modes)
 
 
 def _refuse_strange(draft: Draft, where: str) -> None:
@@ -137,11 +130,10 @@ def keep(draft: Draft, meaning: str, **values: float | None) -> None:
     """Store the values of a cycle's first block for its second."""
     code = draft.meanings[meaning].code
     _refuse_strange(draft, f"in the first block of {code}")
-    kept = dict(draft.state.kept)
     stored = {name: value for name, value in values.items() if value is not None}
-    kept.update({f"{meaning} {name}": value for name, value in stored.items()})
-    places = {name: getattr(draft.start, name) for name in FIELDS.values()}
-    draft.change(kept=tuple(sorted(kept.items())), **places)
+    kept = {**dict(draft.state.kept), **{f"{meaning} {n}": v for n, v in stored.items()}}
+    positions = {name: getattr(draft.start, name) for name in FIELDS.values()}
+    draft.change(kept=tuple(sorted(kept.items())), **positions)
     draft.comments.append(", ".join([code, *(f"{n} {v:g}" for n, v in stored.items())]))
 
 
@@ -153,35 +145,28 @@ def _kept_value(draft: Draft, meaning: str, name: str) -> float:
     return stored_setting(draft, name) if kept is None else kept
 
 
-def _is_first(draft: Draft, letters: str) -> bool:
-    """Whether a block is the first of a cycle's two: it has none of the letters."""
-    return not draft.letters() & set(letters)
-
-
 # ---------------------------------------------------------------- along a contour
 
 
-def roughing(draft: Draft, meaning: str, along_x: bool) -> None:
+def roughing(draft: Draft, meaning: str) -> None:
     """G71 and G72."""
+    along_x = meaning.endswith("X")
     depth_word = "W" if along_x else "U"
-    if _is_first(draft, "PQ"):
+    if draft.letters().isdisjoint("PQ"):
         keep(draft, meaning, depth=take_number(draft, depth_word), retract=take_number(draft, "R"))
         return
     start, (indices, follows) = start_point(draft), _contour_named(draft)
     depth = take_increments(draft, "D") or _kept_value(draft, meaning, "depth")
     take_whole(draft, "R")  # Haas: 1 for type II, which the contour itself shows
-    given = RoughCuts(
-        depth, _kept_value(draft, meaning, "retract"), _take_allowance(draft), along_x
-    )
-    if given.depth <= 0:
+    retract, allowance = _kept_value(draft, meaning, "retract"), _take_allowance(draft)
+    if depth <= 0:
         code = draft.meanings[meaning].code
         raise NotTranslated(
             f"{code} needs a depth of cut above 0: {depth_word} in its first block, or D"
         )
     segments, _ = read_contour(draft, indices, start)
-    given = given._replace(approach=segments[0].motion)
-    moves = rough(start, segments, given)
-    _write_uncompensated(draft, moves, start)
+    given = RoughCuts(depth, retract, allowance, along_x, segments[0].motion)
+    _write_uncompensated(draft, rough(start, segments, given), start)
     draft.follows = follows
 
 
@@ -206,16 +191,16 @@ def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: comple
         draft.after = ["G40", *draft.after, on]
 
 
-def _pattern_repeating(draft: Draft) -> None:
+def _pattern_repeating(draft: Draft, meaning: str) -> None:
     """G73: two blocks, or one with I, K and D."""
-    if _is_first(draft, "PQ"):
+    if draft.letters().isdisjoint("PQ"):
         relief = {"x": take_number(draft, "U"), "z": take_number(draft, "W")}
-        keep(draft, "pattern repeating", **relief, passes=take_whole(draft, "R"))
+        keep(draft, meaning, **relief, passes=take_whole(draft, "R"))
         return
     start, (indices, follows) = start_point(draft), _contour_named(draft)
     own = (take_number(draft, "I"), take_number(draft, "K"), take_whole(draft, "D"))
     x, z, passes = (
-        _kept_value(draft, "pattern repeating", name) if value is None else value
+        _kept_value(draft, meaning, name) if value is None else value
         for name, value in zip(("x", "z", "passes"), own)
     )
     segments, _ = read_contour(draft, indices, start)
@@ -224,7 +209,7 @@ def _pattern_repeating(draft: Draft) -> None:
     draft.follows = follows
 
 
-def finishing(draft: Draft) -> None:
+def finishing(draft: Draft, meaning: str) -> None:
     """G70: the contour with its own feeds, speeds and compensation."""
     start, (indices, follows) = start_point(draft), _contour_named(draft)
     needless = [word.text for letter in "UWD" if (word := draft.take(letter))]
@@ -232,12 +217,9 @@ def finishing(draft: Draft) -> None:
     before = draft.sure("compensation", "finishing takes over")
     segments, state = read_contour(draft, indices, start)
     moves = finishing_cut(start, segments)
-    if state.compensation != before and state.compensation != "G40":
+    if state.compensation not in (before, "G40"):
         back = len(segments)  # the first move after the contour
-        moves[back:] = [
-            *(m._replace(others=("G40",)) for m in moves[back:][:1]),
-            *moves[back + 1 :],
-        ]
+        moves[back : back + 1] = [m._replace(others=("G40",)) for m in moves[back : back + 1]]
         state = state._replace(compensation="G40")
     kept = {n: getattr(state, n) for n in ("feed", "feed_mode", "compensation", "spindle_mode")}
     _write_moves(draft, moves, start, **kept, motion=UNSURE, own_motion=UNSURE)
@@ -247,9 +229,9 @@ def finishing(draft: Draft) -> None:
 # ---------------------------------------------------------------- pecks, passes, threads
 
 
-def pecking(draft: Draft, meaning: str, along_x: bool) -> None:
+def pecking(draft: Draft, meaning: str) -> None:
     """G74 and G75: two blocks, or Haas's one with I and K."""
-    if _is_first(draft, "XZUW"):
+    if draft.letters().isdisjoint("XZUW"):
         keep(draft, meaning, retract=take_number(draft, "R"))
         return
     start = start_point(draft)
@@ -257,23 +239,26 @@ def pecking(draft: Draft, meaning: str, along_x: bool) -> None:
     x_step = take_number(draft, "I") or take_increments(draft, "P") or 0.0
     z_step = take_number(draft, "K") or take_increments(draft, "Q") or 0.0
     shift = take_number(draft, "R") or take_increments(draft, "D") or 0.0
+    along_x = meaning.endswith("X")
     peck, step = (x_step, z_step) if along_x else (z_step, x_step)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
-    given = Pecking(
-        there, abs(peck), abs(step), _kept_value(draft, meaning, "retract"), shift, along_x
-    )
+    retract = _kept_value(draft, meaning, "retract")
+    given = Pecking(there, abs(peck), abs(step), retract, shift, along_x)
     _write_moves(draft, pecks(start, given), start)
 
 
-def _single_pass(draft: Draft, meaning: str, moves_of_pass: Callable) -> None:
+def _single_pass(draft: Draft, meaning: str) -> None:
     """G90 and G94 of system A."""
-    start, end, taper = pass_words(draft, meaning)
-    _write_moves(draft, moves_of_pass(start, end, taper), start, turn=meaning)
+    start, end, taper = _pass_words(draft, meaning)
+    moves = (turning_pass if meaning == "turning pass" else facing_pass)(start, end, taper)
+    _write_moves(draft, moves, start, turn=meaning)
 
 
-def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
+def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     """Return start, end and taper of a modal cycle; missing words are those of the block before."""
-    _refuse_other_meanings(draft, meaning)
+    code = draft.meanings.get(meaning)
+    if code and (set(draft.codes()) & MOTIONS or draft.letters().isdisjoint("XZUW")):
+        raise NotTranslated(_other_meaning(code.code, meaning))
     start = start_point(draft)
     again = draft.start.turn == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
@@ -292,31 +277,24 @@ def pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
 
 
-def _refuse_other_meanings(draft: Draft, meaning: str) -> None:
-    """Refuse a single pass whose code is perhaps a mode of another G code system."""
-    code = draft.meanings.get(meaning)
-    if code and (set(draft.codes()) & MOTIONS or not draft.letters() & set("XZUW")):
-        raise NotTranslated(_other_meaning(code.code, meaning))
-
-
 def _other_meaning(code: str, meaning: str) -> str:
+    """Return why a single pass is refused whose code is a mode in other G code systems."""
     return (
         f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
         "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
     )
 
 
-def _one_thread_pass(draft: Draft) -> None:
+def _one_thread_pass(draft: Draft, meaning: str) -> None:
     """G92 of system A."""
     turn = take_turn(draft)
-    start, end, taper = pass_words(draft, "thread pass")
+    start, end, taper = _pass_words(draft, meaning)
     thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft), turn)
-    _write_moves(draft, thread_pass(start, thread), start, turn="thread pass")
+    _write_moves(draft, thread_pass(start, thread), start, turn=meaning)
 
 
 def _lead_of(draft: Draft) -> float:
-    missing = "a thread needs F, its lead, as a number"
-    return number_of_feed(draft, "a thread takes F as its lead", missing)
+    return number_of_feed(draft, "a thread needs F, its lead, as a number")
 
 
 def _chamfer_of(draft: Draft) -> float:
@@ -326,9 +304,9 @@ def _chamfer_of(draft: Draft) -> float:
     return float(draft.control.value("turning", "thread_chamfer", 0.0)) * _lead_of(draft)
 
 
-def threading(draft: Draft) -> None:
+def threading(draft: Draft, meaning: str) -> None:
     """G76: Fanuc's two blocks, or Haas's one with K and D."""
-    if _is_first(draft, "XZUW"):
+    if draft.letters().isdisjoint("XZUW"):
         _keep_thread(draft)
         return
     start = start_point(draft)
@@ -374,7 +352,7 @@ def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
     return infeed, _chamfer_of(draft), turn
 
 
-def _thread_move(draft: Draft) -> None:
+def _thread_move(draft: Draft, meaning: str) -> None:
     """G32: G33 with the lead as the travel along its path."""
     start = start_point(draft)
     end = take_end(draft, start)
@@ -390,19 +368,19 @@ def _thread_move(draft: Draft) -> None:
     in_absolute_words(draft)
     draft.has_motion = True
     draft.change(
-        turn="thread", motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real
+        turn=meaning, motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real
     )
 
 
-CYCLES: dict[str, Callable[[Draft], None]] = {
-    "roughing along Z": lambda draft: roughing(draft, "roughing along Z", False),
-    "roughing along X": lambda draft: roughing(draft, "roughing along X", True),
+CYCLES: dict[str, Callable[[Draft, str], None]] = {
+    "roughing along Z": roughing,
+    "roughing along X": roughing,
     "pattern repeating": _pattern_repeating,
     "finishing": finishing,
-    "pecking along Z": lambda draft: pecking(draft, "pecking along Z", False),
-    "pecking along X": lambda draft: pecking(draft, "pecking along X", True),
-    "turning pass": lambda draft: _single_pass(draft, "turning pass", turning_pass),
-    "facing pass": lambda draft: _single_pass(draft, "facing pass", facing_pass),
+    "pecking along Z": pecking,
+    "pecking along X": pecking,
+    "turning pass": _single_pass,
+    "facing pass": _single_pass,
     "thread pass": _one_thread_pass,
     "threading": threading,
     "thread": _thread_move,

@@ -18,7 +18,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import HOLE_MEANINGS
-from g12.tools.translate.blocks.draft import PARTNERS, Draft, line_as_word
+from g12.tools.translate.blocks.draft import PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
@@ -91,7 +91,6 @@ class HoleLevels(NamedTuple):
         yield f"G1 {self.word(self.end)}"
 
     def word(self, level: float) -> str:
-        """Return the word that goes to a level."""
         return f"{self.axis}{value_text(level)}"
 
 
@@ -106,7 +105,6 @@ def drilling_of_lathe(draft: Draft) -> None:
     if not meaning and draft.state.cycle:
         meaning = _repeated_cycle(draft)
     if meaning:
-        _check_drilling_modes(draft)
         _drill_hole(draft, meaning)
 
 
@@ -122,29 +120,25 @@ def _repeated_cycle(draft: Draft) -> str:
     return ""
 
 
-def _check_drilling_modes(draft: Draft) -> None:
+def _drill_hole(draft: Draft, meaning: str) -> None:
     if draft.state.polar != "off":
         raise NotTranslated("a drilling cycle in a section: end the section before it")
     if draft.sure("distance", "a drilling cycle") != "G90":
         raise NotTranslated("a drilling cycle of a lathe is translated under G90, with U W H")
-
-
-def _drill_hole(draft: Draft, meaning: str) -> None:
-    begins = meaning in draft.meanings
     code = draft.meanings.pop(meaning, None)
-    kept: dict[str, Any] = {}
+    kept: dict[str, Any] = {"dwell": "0", "peck": 0.0}
     if draft.state.cycle == meaning:
-        stored = draft.sure("cycle_words", "a drilling cycle takes the words of the block before")
-        kept = dict(stored)
+        kept |= draft.sure("cycle_words", "a drilling cycle takes the words of the block before")
     cycle = lathe_cycle(meaning)
     side = _is_side_hole(draft, kept) if cycle.side is None else cycle.side
-    times = _holes_in_block(draft)
-    clamp, first = _clamp_of(draft), [*_spindle_on(draft, cycle), STOP] if begins else []
+    times = int(repeats_of(draft) or 1)
+    if times > MOST_REPEATS:
+        raise NotTranslated(f"{times} holes in one block: at most {MOST_REPEATS}")
+    clamp, first = _clamp_of(draft), [*_spindle_on(draft, cycle), STOP] if code else []
     seconds_of_dwell(draft)
-    dwell = draft.take("P")
-    depth = _peck_of(draft)
-    kept["dwell"] = dwell.value if dwell else kept.get("dwell", "")
-    kept["peck"] = kept.get("peck", 0.0) if depth is None else depth
+    if dwell := draft.take("P"):
+        kept["dwell"] = dwell.value
+    _take_peck(draft, kept)
     levels = _hole_levels(draft, "X" if side else "Z", kept)
     bottom = _down_and_out(draft, levels, cycle, kept)
     other, ends = "Z" if side else "X", _positions_after(draft, times)
@@ -157,20 +151,13 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
     if not times and (there or on):
         raise NotTranslated("K0 or L0 only stores the cycle: go to X and C in another block")
     lines = [*first, *there, *on, *hole, *[*on, *hole] * (times - 1)] if times else first
-    _put_lines(draft, lines)
-    kept |= {"top": levels.top, "r": levels.r, "end": levels.end, "side": side}
-    ends[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
-    draft.change(cycle=meaning, cycle_words=tuple(sorted(kept.items())), own_motion=UNSURE, **ends)
-
-
-def _put_lines(draft: Draft, lines: list[str]) -> None:
     if draft.state.own_distance == "G91":
         lines = ["G90", *lines]
         draft.change(own_distance=AS_PROGRAMMED)
-    if draft.is_empty() and lines and not draft.before:
-        draft.words.append(line_as_word(lines[0]))
-        lines = lines[1:]
-    draft.after += lines
+    draft.write(lines)
+    kept |= {"top": levels.top, "r": levels.r, "end": levels.end, "side": side}
+    ends[FIELDS[levels.axis]] = top if times else getattr(draft.start, FIELDS[levels.axis])
+    draft.change(cycle=meaning, cycle_words=tuple(sorted(kept.items())), own_motion=UNSURE, **ends)
 
 
 def _is_side_hole(draft: Draft, kept: dict) -> bool:
@@ -184,19 +171,12 @@ def _is_side_hole(draft: Draft, kept: dict) -> bool:
     return shifts[0].letter == "I" if shifts else kept["side"]
 
 
-def _holes_in_block(draft: Draft) -> int:
-    times = int(repeats_of(draft) or 1)
-    if times > MOST_REPEATS:
-        raise NotTranslated(f"{times} holes in one block: at most {MOST_REPEATS}")
-    return times
-
-
 def _clamp_of(draft: Draft) -> list[str]:
     """Take the code of C's clamp; return the lines that close and open it."""
     codes = str(draft.control.value("holes", "clamp")).split()
     for word in [w for w in draft.words if w.code[:1] == "M"]:
         if word.code in codes[:1]:
-            draft.words = [other for other in draft.words if other is not word]
+            draft.drop([word])
             pair = (mapped(draft, ForeignWord("M", code[1:])) for code in codes)
             return [" ".join(one.text for one in words) for words in pair]
         if word.code not in OWN_M_CODES and is_own(draft, word):
@@ -229,15 +209,15 @@ def _tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
     return [f"${number}"] if number and (cycle.live or not cycle.start) else []
 
 
-def _peck_of(draft: Draft) -> float | None:
+def _take_peck(draft: Draft, kept: dict) -> None:
     letter = str(draft.control.value("holes", "peck_word", "Q"))
     word = draft.word(letter)
     if word is None:
-        return None
+        return
     lengths = draft.control.value("holes", "q") != "increments"
     if lengths and word.lacks_point:
         draft.replace(word, in_units(draft, word, "length"))
-    return abs((take_number if lengths else take_increments)(draft, letter))
+    kept["peck"] = abs((take_number if lengths else take_increments)(draft, letter))
 
 
 def _hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
@@ -285,16 +265,16 @@ def _down_and_out(draft: Draft, levels: HoleLevels, cycle: LatheCycle, kept: dic
     clear = stored_setting(draft, "retract") or kept["peck"] / 2
     lines = list(levels.pecked(kept["peck"] if cycle.kind == DRILL else 0.0, clear, full))
     out = f"{'G1' if cycle.kind == BORE else 'G0'} {levels.word(levels.r)}"
-    return [*lines, f"G4 P{kept['dwell'] or 0}", out]
+    return [*lines, f"G4 P{kept['dwell']}", out]
 
 
 def _tap_pitch(draft: Draft) -> float:
     """Return the pitch of a tap: F per revolution, or F over the S of its block."""
-    speed = next((w.value for w in draft.words if w.letter == "S"), "")
-    per_turn = draft.sure("feed_mode", "the pitch of a tap depends on F") == "G95"
+    why, word = "the pitch of a tap depends on F", draft.word("S")
+    speed = word.value if word else ""
+    per_turn = draft.sure("feed_mode", why) == "G95"
     try:
-        pitch = float(draft.sure("feed", "the pitch of a tap depends on F"))
-        return pitch if per_turn else pitch / float(speed)
+        return float(draft.sure("feed", why)) / (1 if per_turn else float(speed))
     except (ValueError, ZeroDivisionError):
         raise NotTranslated(
             "a tap needs its pitch as a number: F per revolution (G99), or F and S in its block"
@@ -312,16 +292,17 @@ def _lines_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
     return [" ".join(["G0", *there])] if there else [], step_lines
 
 
-def _positions_after(draft: Draft, times: int) -> dict[str, float | str]:
+def _positions_after(draft: Draft, times: int) -> dict[str, Any]:
     """Return X, Z and C after a block, by the names of their modes."""
     found = {field: getattr(draft.start, field) for field in FIELDS.values()}
     for word in draft.words:
+        number = word.number if word.kind == "number" else None
         if word.letter in ("X", "Z", "C"):
-            found[FIELDS[word.letter]] = word.number if word.kind == "number" else UNKNOWN
+            found[FIELDS[word.letter]] = number
         elif word.letter in PARTNERS:
             axis = PARTNERS[word.letter]
-            at, is_number = known_position(draft.start, axis), word.kind == "number"
-            found[FIELDS[axis]] = at + times * word.number if at is not None and is_number else ""
+            at = known_position(draft.start, axis)
+            found[FIELDS[axis]] = None if None in (at, number) else at + times * number
     return found
 
 

@@ -31,8 +31,7 @@ def feed_of_c(draft: Draft) -> None:
         _check_rule(draft, rule)
         path = turned if rule == "degrees" else hypot(turned, along)
         missing = "C beside a slide at a feed: F must be a number here: write it"
-        feed = number_of_feed(draft, "C beside a slide", missing)
-        _write_inverse_time(draft, axes, path / feed)
+        _write_inverse_time(draft, axes, path / number_of_feed(draft, missing))
 
 
 def _is_feed(draft: Draft) -> bool:
@@ -77,10 +76,10 @@ def _check_rule(draft: Draft, rule: str) -> None:
         raise NotTranslated("C beside an arc: write the arc as lines, or in polar mode")
 
 
-def number_of_feed(draft: Draft, user: str, missing: str) -> float:
-    """Return F, which ``user`` needs as a number above 0; refuse another as ``missing``."""
+def number_of_feed(draft: Draft, missing: str) -> float:
+    """Return F; it must be a number above 0, else it is refused as ``missing``."""
     try:
-        feed = float(draft.sure("feed", user))
+        feed = float(draft.sure("feed", missing))
     except ValueError:
         feed = 0.0
     if feed <= 0:
