@@ -8,9 +8,9 @@ program reads them from #5420, #<_x> or #<_feed>.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import radians
 from operator import attrgetter, itemgetter
-from typing import NamedTuple
 
 import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
@@ -34,28 +34,9 @@ MOST_FEED = 1e9  # program units per minute
 WORD_ATTRIBUTES = [
     (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRKFSPQLE"
 ]
-plain_words = attrgetter(
-    "f_flag",
-    "f_number",
-    "motion_to_be",
-    *(name for word in WORD_ATTRIBUTES[:6] for name in word[1:]),
-)
-
-
-class MoveWords(NamedTuple):
-    """The values of a move's words as programmed, None for a word that is absent.
-
-    ``relative`` are the axes whose value is an increment in any mode: of U, W, H.
-    """
-
-    x: float | None
-    c: float | None
-    z: float | None
-    i: float | None
-    j: float | None
-    r: float | None
-    k: float | None = None
-    relative: str = ""
+PLAIN_LETTERS = "XCZIJR"
+PLAIN_FLAGS_AND_VALUES = [name for word in WORD_ATTRIBUTES[:6] for name in word[1:]]
+plain_words = attrgetter("f_flag", "f_number", "motion_to_be", *PLAIN_FLAGS_AND_VALUES)
 
 
 def block_of(parsed: ParsedBlock) -> SectionBlock:
@@ -81,20 +62,10 @@ class SectionReader:
         self._to_plane = itemgetter(*("XCZ".index(axis) for axis in known.plane))
         self._to_axes = itemgetter(*(known.plane.index(axis) for axis in "XCZ"))
         self._own_c = not known.c_is_length
-        self.contour = self._contour(start, rules)
-        self.exact_lines: set[int] = set()  # of G9
-        self._moved = 0  # the line of the last move
-        self._saved: dict[int, SectionModes] = {}  # by M70 and M73, at each call level
-        self._restored_on_return: set[int] = set()
-        self.remember_machine()
-
-    def _contour(self, start: SectionStart, rules: WordRules) -> Contour:
-        """Return the empty contour that begins at the machine's position."""
-        known = rules.words
         angle = start.c if self._own_c else 0.0
         x, c, z = self._to_plane((start.x, angle * rules.c_scale, start.z))
         first, second, third = tuple(known.plane)
-        return Contour(
+        self.contour = Contour(
             x,
             z,
             c,
@@ -105,6 +76,11 @@ class SectionReader:
             start=Start(start.x, radians(angle), start.z),
             beside=rules.beside,
         )
+        self.exact_lines: set[int] = set()  # of G9
+        self._moved = 0  # the line of the last move
+        self._saved: dict[int, SectionModes] = {}  # by M70 and M73, at each call level
+        self._restored_on_return: set[int] = set()
+        self.remember_machine()
 
     @property
     def programmed(self) -> tuple[float, float, float]:
@@ -159,23 +135,15 @@ class SectionReader:
     def plain_line(self, raw: str) -> None:
         """Take a line of nothing but numbers after G1 to G3, F and the words of a move."""
         self.program.parse(raw)
-        has_f, f, motion, has_x, x, has_c, c, has_z, z, has_i, i, has_j, j, has_r, r = plain_words(
-            self.parsed
-        )
+        has_f, f, motion, *rest = plain_words(self.parsed)
         modes = self.modes
         if has_f or (motion != modes.motion and motion != NO_CODE):
             motion = modes.motion if motion == NO_CODE else motion
             self.set_modes(modes._replace(feed=f if has_f else modes.feed, motion=motion))
-        if has_x or has_c or has_z or has_i or has_j or has_r:
+        flagged = zip(PLAIN_LETTERS, rest[::2], rest[1::2])
+        words = {letter: value for letter, has, value in flagged if has}
+        if words:
             self._separate()
-            words = MoveWords(
-                x if has_x else None,
-                c if has_c else None,
-                z if has_z else None,
-                i if has_i else None,
-                j if has_j else None,
-                r if has_r else None,
-            )
             self._move(motion, words)
 
     def with_spindle(self, line: TextLine) -> TextLine:
@@ -235,8 +203,7 @@ class SectionReader:
         if block.g[GGroup.COMPENSATION] != NO_CODE:
             self._compensate(block.g[GGroup.COMPENSATION] // 10)
         if block.moves:
-            x, c, z, i, j, r, k = map(block.words.get, "XCZIJRK")
-            self._move(block.motion, MoveWords(x, c, z, i, j, r, k, line.relative))
+            self._move(block.motion, block.words, line.relative)
         self._mark(section_modes.stop_text(block))
 
     def comment(self, line: TextLine) -> None:
@@ -275,10 +242,13 @@ class SectionReader:
         except RuntimeError:
             return None
 
-    def _move(self, motion: int, words: MoveWords) -> None:
-        """Add a line or an arc to the contour, with its words converted to the plane."""
+    def _move(self, motion: int, words: Mapping[str, float], relative: str = "") -> None:
+        """Add a line or an arc to the contour, with its words converted to the plane.
+
+        ``relative`` are the axes whose value is an increment in any mode: of U, W, H.
+        """
         contour, modes = self.contour, self.modes
-        x, c, z, i, j, r, k, relative = words
+        x, c, z, i, j, r, k = map(words.get, "XCZIJRK")
         if motion not in SECTION_MOTIONS:
             code = f"G{motion / 10:g}"
             raise self.location.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
@@ -289,8 +259,9 @@ class SectionReader:
         x, c, z = self._to_plane((x, c, z))
         if self._own_c:
             i, j = (i if j is None else j), k
-        if z is not None:
-            self._check_third(x, c, i, j)
+        alone = self.rules.third_with_others or all(word is None for word in (x, c, i, j))
+        if z is not None and not alone:
+            raise self.location.refuse(self.rules.words.own_block)
         if modes.incremental or relative:
             x, c, z = self._absolute(x, c, z, "XCZ" if modes.incremental else relative)
         line = self.program.shown_line
@@ -314,10 +285,6 @@ class SectionReader:
         if line == self._moved:
             self._queue(Action(line, BLOCK_END, None))
         self._moved = line
-
-    def _check_third(self, *others: float | None) -> None:
-        if not self.rules.third_with_others and any(other is not None for other in others):
-            raise self.location.refuse(self.rules.words.own_block)
 
     def _feed(self) -> float:
         """Return the feed along the path in program units per minute."""
