@@ -35,6 +35,9 @@ class Straight(NamedTuple):
     def turned(self, by):
         return Straight(self.start * by, self.end * by)
 
+    def moved(self, by):
+        return Straight(self.start + by, self.end + by)
+
     def headings(self):
         """Return the direction at both ends, radians."""
         angle = phase(self.end - self.start)
@@ -79,6 +82,9 @@ class Round(NamedTuple):
 
     def turned(self, by):
         return Round(self.start * by, self.centre * by, self.sweep)
+
+    def moved(self, by):
+        return Round(self.start + by, self.centre + by, self.sweep)
 
     def headings(self):
         """Return the direction at both ends, radians."""

@@ -86,9 +86,9 @@ def polygon(corners):
     return [Straight(*pair) for pair in zip(ends, ends[1:])]
 
 
-def star(draw, count):
+def star(draw, count, reach):
     """Return corners about a centre at random distances, counterclockwise."""
-    radii = [draw.uniform(4.0, 25.0) for _ in range(count)]
+    radii = [draw.uniform(4.0, reach) for _ in range(count)]
     angles = sorted(draw.uniform(0.0, 2 * math.pi) for _ in range(count))
     centre = complex(draw.uniform(-20, 20), draw.uniform(-20, 20))
     return [centre + cmath.rect(r, a) for r, a in zip(radii, angles)]
@@ -113,9 +113,9 @@ def rounded(draw, shapes):
     return [*made, ahead]
 
 
-def drawn(draw, crossing=False):
+def drawn(draw, crossing=False, reach=25.0):
     """Return a closed contour and its tool, or None; ``crossing``: it mostly crosses itself."""
-    corners = star(draw, draw.randint(3, 9))
+    corners = star(draw, draw.randint(3, 9), reach)
     if crossing:
         draw.shuffle(corners)
     shapes = polygon(corners)
