@@ -17,8 +17,12 @@ SAGITTA = 2e-4  # of the chords that stand for a segment
 
 
 def programmed(shapes, *, feed=250.0, by_radius=False):
-    """Return the contour of a program that cuts the shapes, which begin on the positive X axis."""
-    contour = Contour(shapes[0].start.real, 0.0)
+    """Return the contour of a program that cuts the shapes, which begin where the tool stands.
+
+    That is on the positive X axis, or beside it.
+    """
+    start = shapes[0].start
+    contour = Contour(start.real, 0.0, beside=start.imag)
     for line, shape in enumerate(shapes, 1):
         add(contour, shape, line=line, feed=feed, by_radius=by_radius)
     return contour
@@ -41,7 +45,8 @@ def add(contour, shape, *, line, feed, by_radius=False):
 class Cut(NamedTuple):
     """One segment as the machine makes it: radius, angle in radians and Z at its ends, seconds.
 
-    ``run`` counts the runs of the plan.
+    ``run`` counts the runs of the plan. The radius is the slide's position, with the tool
+    ``beside`` it.
     """
 
     run: int
@@ -50,6 +55,7 @@ class Cut(NamedTuple):
     angle: tuple
     z: tuple
     seconds: float
+    beside: float
 
     @property
     def points(self):
@@ -59,7 +65,7 @@ class Cut(NamedTuple):
         part = np.linspace(0.0, 1.0, 2 * count + 1)
         radius = self.radius[0] + (self.radius[1] - self.radius[0]) * part
         angle = self.angle[0] + (self.angle[1] - self.angle[0]) * part
-        return radius * np.exp(1j * angle)
+        return (radius + 1j * self.beside) * np.exp(1j * angle)
 
     @property
     def length(self):
@@ -80,7 +86,7 @@ def seconds(dx, dz, degrees, feed):
     return 60.0 * (math.hypot(dx, dz) or abs(degrees)) / feed
 
 
-def cuts(contour, plan, c=0.0):
+def cuts(contour, plan, c=0.0, beside=0.0):
     """Return the segments of a plan whose plane has its zero angle at ``c`` degrees."""
     x, angle, z = contour.start
     degrees, made = c + math.degrees(angle), []
@@ -90,7 +96,7 @@ def cuts(contour, plan, c=0.0):
             assert "Z" in run.axes or to_z == z
             ends = (math.radians(degrees - c), math.radians(to_c - c))
             time = seconds(to_x - x, to_z - z, to_c - degrees, feed)
-            made.append(Cut(count, run.line, (x, to_x), ends, (z, to_z), time))
+            made.append(Cut(count, run.line, (x, to_x), ends, (z, to_z), time, beside))
             x, degrees, z = to_x, to_c, to_z
     return made
 
