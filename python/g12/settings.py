@@ -10,11 +10,11 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from g12.errors import Refusal, number
 from g12.ini_sections import entries_of, with_included
@@ -25,127 +25,90 @@ M_CODE = re.compile(r"M\d{1,3}")
 TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002  # defaults of POLAR_TOLERANCE
 
 
-@dataclass(frozen=True)
-class Choice:
-    """A setting that is one of a few words."""
+class ValueRule(NamedTuple):
+    """The legal values of a setting, as a text, and what reads one or raises ValueError."""
 
-    words: tuple[str, ...]
-
-    def read(self, text: str) -> str:
-        """Return the word in lower case, or raise ValueError."""
-        if text.lower() not in self.words:
-            raise ValueError(text)
-        return text.lower()
-
-    @property
-    def legal(self) -> str:
-        """The legal values, for the start-up error."""
-        return " or ".join(self.words)
+    legal: str
+    read: Callable[[str], Any]
 
 
-@dataclass(frozen=True)
-class Number:
-    """A setting that is a finite number, from ``least`` on (-inf: any); without one, above zero.
+def words(*known: str) -> ValueRule:
+    """Return the rule of one of a few words, without regard to case."""
+    return ValueRule(" or ".join(known), lambda text: known[known.index(text.lower())])
 
-    ``most`` is the greatest that is legal, if there is one.
-    """
 
-    least: float | None = None
-    most: float = math.inf
+def number_rule(least: float | None = None, most: float = math.inf) -> ValueRule:
+    """Return the rule of a finite number up to ``most``, from ``least`` on (None: above zero)."""
 
-    def read(self, text: str) -> float:
-        """Return the number, or raise ValueError."""
+    def read(text: str) -> float:
         value = float(text.replace("_", " "))  # Python alone would take 1_0 for 10
-        enough = value > 0 if self.least is None else value >= self.least
-        if not (enough and math.isfinite(value) and value <= self.most):
+        enough = value > 0 if least is None else value >= least
+        if not (enough and math.isfinite(value) and value <= most):
             raise ValueError(text)
         return value
 
-    @property
-    def legal(self) -> str:
-        """The legal values, for the start-up error."""
-        if self.least == -math.inf:
-            return "a number"
-        above = "a number above 0" if self.least is None else f"a number from {number(self.least)}"
-        return above if math.isinf(self.most) else f"{above}, {number(self.most)} at most"
+    legal = "a number above 0" if least is None else f"a number from {number(least)}"
+    if least == -math.inf:
+        legal = "a number"
+    return ValueRule(legal if math.isinf(most) else f"{legal}, {number(most)} at most", read)
 
 
-@dataclass(frozen=True)
-class MachineCodes:
-    """A setting of some M codes, as many as its ``example`` has; none by default."""
+def m_codes(example: str) -> ValueRule:
+    """Return the rule of as many M codes as the example has; they are read as their numbers."""
 
-    example: str
-
-    @property
-    def legal(self) -> str:
-        """The legal values, for the start-up error."""
-        return f"{'two M codes' if ' ' in self.example else 'an M code'} such as {self.example}"
-
-    def read(self, text: str) -> tuple[int, ...]:
-        """Return the numbers of the codes, or raise ValueError."""
-        words = text.upper().split()
-        known = all(M_CODE.fullmatch(word) for word in words)
-        if not known or len(words) != len(self.example.split()):
+    def read(text: str) -> tuple[int, ...]:
+        codes = text.upper().split()
+        if len(codes) != len(example.split()) or not all(map(M_CODE.fullmatch, codes)):
             raise ValueError(text)
-        return tuple(int(word[1:]) for word in words)
+        return tuple(int(code[1:]) for code in codes)
+
+    return ValueRule(f"{'two M codes' if ' ' in example else 'an M code'} such as {example}", read)
 
 
-TABLE: dict[str, Choice | Number | MachineCodes] = {
-    "CLEARING": Choice(("rings", "spiral")),
-    "ENTRY": Choice(("plunge", "helix")),
-    "ENTRY_ANGLE": Number(most=45.0),
-    "PLUNGE_FEED": Number(most=100.0),
-    "YASNAC_TRAVERSE": Number(least=0.0),
-    "POLAR_X": Choice(("inherit", "diameter", "radius")),
-    "POLAR_Z": Choice(("refuse", "allow")),
-    "POLAR_G0": Choice(("refuse", "feed")),
-    "POLAR_G0_FEED": Number(),
-    "POLAR_TOLERANCE": Number(least=0.00001),  # below the resolution of any machine
-    "POLAR_POLE": Choice(("rotate", "refuse")),
-    "POLAR_KINEMATICS": Choice(("0", "1")),
-    "POLAR_SWITCH_TIME": Number(most=3600.0),
-    "POLAR_TOOL_OFFSET": Number(least=-math.inf),
-    "CYLINDER_WORD": Choice(("radius", "diameter")),
-    "CYLINDER_X": Choice(("refuse", "allow")),
-    "C_CLAMP": MachineCodes("M10 M11"),
-    "C_CLAMP_SHAPES": MachineCodes("M12"),
-    "LIVE_SPINDLE": Choice(tuple("01234567")),
-}
+def setting(default: Any, rule: ValueRule) -> Any:
+    return field(default=default, metadata={"rule": rule})
 
 
 @dataclass(frozen=True)
 class Settings:
-    """The settings of section ``[G12]``.
+    """The settings of section ``[G12]``; their keys there are in capitals.
 
     Lengths and feeds are in machine units (per minute), ``entry_angle`` in degrees,
     ``plunge_feed`` in per cent of F, ``polar_switch_time`` in seconds. ``None`` means that the
     default depends on the machine: a tolerance of 0.005 mm or 0.0002 in.
     """
 
-    clearing: str = "rings"
-    entry: str = "plunge"
-    entry_angle: float = 3.0
-    plunge_feed: float = 100.0
-    yasnac_traverse: float = 0.0
-    polar_x: str = "inherit"
-    polar_z: str = "refuse"
-    polar_g0: str = "refuse"
-    polar_g0_feed: float | None = None
-    polar_tolerance: float | None = None
-    polar_pole: str = "rotate"
-    polar_kinematics: str = "0"
-    polar_switch_time: float = 10.0
-    polar_tool_offset: float = 0.0
-    cylinder_word: str = "radius"
-    cylinder_x: str = "refuse"
-    c_clamp: tuple[int, ...] = ()
-    c_clamp_shapes: tuple[int, ...] = ()
-    live_spindle: str = ""
+    clearing: str = setting("rings", words("rings", "spiral"))
+    entry: str = setting("plunge", words("plunge", "helix"))
+    entry_angle: float = setting(3.0, number_rule(most=45.0))
+    plunge_feed: float = setting(100.0, number_rule(most=100.0))
+    yasnac_traverse: float = setting(0.0, number_rule(least=0.0))
+    polar_x: str = setting("inherit", words("inherit", "diameter", "radius"))
+    polar_z: str = setting("refuse", words("refuse", "allow"))
+    polar_g0: str = setting("refuse", words("refuse", "feed"))
+    polar_g0_feed: float | None = setting(None, number_rule())
+    polar_tolerance: float | None = setting(
+        None, number_rule(least=0.00001)
+    )  # below any resolution
+    polar_pole: str = setting("rotate", words("rotate", "refuse"))
+    polar_kinematics: str = setting("0", words("0", "1"))
+    polar_switch_time: float = setting(10.0, number_rule(most=3600.0))
+    polar_tool_offset: float = setting(0.0, number_rule(least=-math.inf))
+    cylinder_word: str = setting("radius", words("radius", "diameter"))
+    cylinder_x: str = setting("refuse", words("refuse", "allow"))
+    c_clamp: tuple[int, ...] = setting((), m_codes("M10 M11"))
+    c_clamp_shapes: tuple[int, ...] = setting((), m_codes("M12"))
+    live_spindle: str = setting("", words(*"01234567"))
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""
         usual = TOLERANCE_INCH if is_inch(millimetres) else TOLERANCE_MM / millimetres
         return self.polar_tolerance or usual
+
+
+TABLE: dict[str, ValueRule] = {
+    each.name.upper(): each.metadata["rule"] for each in fields(Settings)
+}
 
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
