@@ -79,7 +79,6 @@ class Remap:
 
     @property
     def handlers(self) -> list[str]:
-        """The Python functions the line names."""
         return [self.keywords[word] for word in HANDLERS if word in self.keywords]
 
     def like(self, model: Remap) -> str:
@@ -166,7 +165,6 @@ def number_in(find: Find, section: str, key: str, default: float) -> float:
 
 
 def remap_lines(find_all: FindAll) -> list[Remap]:
-    """Return the REMAP lines in the INI's order."""
     return [remap_from_value(value) for value in find_all("RS274NGC", "REMAP")]
 
 

@@ -25,7 +25,6 @@ exit code: 0 good, 1 something found, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(
         prog="g12 check",
         description="Check whether and how the package is set up in a machine config.",
@@ -38,7 +37,6 @@ def command_parser() -> Parser:
 
 @one_line("check")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = command_parser().parse_args(arguments)
     config, found = check_config(read_config_text(options.ini))
     report = check_report(config, found)

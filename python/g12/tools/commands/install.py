@@ -33,7 +33,6 @@ exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     listed = "\n".join(f"  {name:24} {meaning}" for name, meaning in features.MEANING.items())
     parser = Parser(
         prog="g12 install",
@@ -70,7 +69,6 @@ def wrong_words(ini: Path | None, requested: Sequence[str]) -> str:
 
 @one_line("install")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     parser = command_parser()
     options = parser.parse_args(arguments)
     ini, requested = ini_and_features(options.ini, options.features)

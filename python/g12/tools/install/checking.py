@@ -13,10 +13,10 @@ from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding
 from g12.tools.install.config.forms import shown
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, codes_of, load_config, remaps_in
+from g12.tools.install.config.loaded import Config, load_config
 from g12.tools.install.rules import findings_of, translating_filters
 from g12.tools.machine.files import existing
-from g12.tools.machine.ini import Overrides
+from g12.tools.machine.ini import Ini
 
 INTERPRETER_LIKE = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
 
@@ -36,27 +36,15 @@ def read_config_text(ini: Path) -> IniText:
     return text
 
 
-def check_config(
-    text: IniText, overlay: Overrides | None = None
-) -> tuple[Config, list[ConfigFinding]]:
-    """Return the config of an INI and the findings about it.
-
-    ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
-    """
-    codes = {code.remap.code for code in codes_of(remaps_in(text))}
-    config = load_config(text, codes, overlay)
+def check_config(text: IniText, ini: Ini | None = None) -> tuple[Config, list[ConfigFinding]]:
+    """Return the config of an INI and the findings about it, as `load_config` loads it."""
+    config = load_config(text, ini)
     return config, findings_of(config)
 
 
-def settings_of(config: Config) -> dict[str, str]:
-    """Return the settings that section [G12] changes."""
-    entries = entries_of(config.ini.lines, INI_SECTION)
-    return {key: value for _, key, value in entries if key in TABLE}
-
-
 def check_report(config: Config, found: list[ConfigFinding]) -> dict:
-    """Return the whole report of `check` as data."""
     own = {code.line for code in config.codes}
+    settings = entries_of(config.ini.lines, INI_SECTION)
     others = [remap for line, remap in config.remaps if line not in own]
     return {
         "ini": str(config.text.path),
@@ -71,13 +59,12 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
         "programs": {suffix: control for suffix, control, _ in translating_filters(config)},
         "forms": shown(config),
         "other_remaps": {remap.code: remap.text for remap in others},
-        "settings": settings_of(config),
+        "settings": {key: value for _, key, value in settings if key in TABLE},
         "findings": [asdict(finding) for finding in found],
     }
 
 
 def lines_of_check(report: dict) -> Iterator[str]:
-    """Yield the report as text."""
     loads = "loads" if report["loads"] else "does not load"
     python = "" if report["python_loads"] else " without its [PYTHON]"
     axes = " ".join(report["axes"])

@@ -2,33 +2,28 @@
 """The installation in a machine config: tried out, shown, then written."""
 
 import shutil
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
-from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
 from g12.tools.install.config.loaded import Config, load_config
 from g12.tools.install.lathe.spindle_c import Pins
-from g12.tools.install.plan import FILTER_SUFFIX, InstallPlan, make_plan, names_copy, refuse
+from g12.tools.install.plan import MODULE_MARK, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 
 MOST_MISSING_NAMED = 3  # missing files are named
-PREVENTING = {
-    "no-linuxcnc",
-    "python-fails",
-    "does-not-load",
-}  # kinds of findings, of a config that cannot be read
+PREVENTING = {"no-linuxcnc", "python-fails", "does-not-load"}  # kinds: the config is unreadable
 
 
 def install(
     text: IniText, requested: Sequence[str], dry_run: bool, pins: Pins | None = None
 ) -> Iterator[str]:
-    """Install features in a machine config; yield the lines to show."""
     missing = missing_files(text)
     if missing:
         more = " …" if len(missing) > MOST_MISSING_NAMED else ""
@@ -64,47 +59,26 @@ def install(
 
 
 def size_of_package() -> str:
-    """Return a text for the size of the copy."""
     sizes = [len(content) for content in package_copy.package_files().values()]
     return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
 
 
 def next_steps(ini: Path, installed: Sequence[str]) -> Iterator[str]:
-    """Yield the next steps: a first test without motion, and the command that uninstalls."""
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
-    for feature in installed:
-        block = features.harmless(feature)
-        if block:
-            yield f"  {block:6} does nothing, and is no error"
-        elif feature == features.POLAR_SHAPES:
-            yield "  o<polar_polygon> call is answered with what it needs; nothing moves"
-        elif feature == features.SPINDLE_AS_C:
-            yield "  home, M254: the spindle turns to its index and to C; M255 gives it back"
-        elif feature in features.REMAP_FILES:
-            code = features.remaps_of(feature)[0].code
-            yield f"  {code:6} is answered with what it needs; nothing moves"
-        elif feature == features.KINEMATICS:
-            yield "  home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back"
-        elif feature == features.FORMS:
-            yield "  fill in a form on its page, Create Feature, Finalize: the program is open"
-        else:
-            yield f"  open a .{FILTER_SUFFIX} program of {features.CONTROLS[feature]}"
+    yield from (f"  {features.first_step(feature)}" for feature in installed)
     yield f"to take it out again: {COMMAND} uninstall {ini}"
 
 
 def readable_config(text: IniText) -> Config:
     """Return the present config; refuse one that LinuxCNC cannot load."""
-    config = load_config(text, set())
+    config = load_config(text)
     refuse_problems([finding for finding in findings_of(config) if finding.kind in PREVENTING])
     return config
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:
-    """Yield texts for features that exclude each other."""
-    for group in features.EXCLUSIVE:
-        chosen = [name for name in group if name in names]
-        if len(chosen) > 1:
-            yield " and ".join(chosen)
+    chosen = ([name for name in group if name in names] for group in features.EXCLUSIVE)
+    yield from (" and ".join(group) for group in chosen if len(group) > 1)
 
 
 def missing_files(text: IniText) -> list[str]:
@@ -127,20 +101,15 @@ def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
                 backups[path] = back_up(path)
         write_all(changes)
     except BaseException:
-        roll_back(backups, copy if new_copy else None)
+        for path in backups:
+            drop_backup(path)
+        if new_copy:
+            shutil.rmtree(copy, ignore_errors=True)
         raise
     for path in changes:
         before = f"; as it was: {backups[path].name}" if path in backups else ""
         done.append(f"{path}: changed{before}")
     return done
-
-
-def roll_back(changed: Iterable[Path], copy: Path | None) -> None:
-    """Remove the files of a failed installation: the backups of files, a new copy."""
-    for path in changed:
-        drop_backup(path)
-    if copy and copy.exists():
-        shutil.rmtree(copy)
 
 
 def bring_copy_up_to_date(copy: Path) -> list[str]:
@@ -164,4 +133,4 @@ def out_of_date(copy: Path) -> bool:
 
 def has_own_lines(path: Path) -> bool:
     """Return whether a file has lines of an earlier installation, and so a backup."""
-    return b"by g12 install" in path.read_bytes() or b">>> g12 install" in path.read_bytes()
+    return any(mark.encode() in path.read_bytes() for mark in (MODULE_MARK, BEGIN_MARK))

@@ -6,6 +6,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterable
+from itertools import chain, count
 from pathlib import Path
 
 from g12.tools.errors import UsageError
@@ -47,13 +48,15 @@ def package_files() -> dict[str, bytes]:
 
 
 def digest(content: bytes) -> str:
-    """Return a file's SHA-256 in hexadecimal."""
     return hashlib.sha256(content).hexdigest()
 
 
 def digest_of(path: Path) -> str:
     """Return the SHA-256 of a file in hexadecimal, "" if it is missing."""
     return digest(path.read_bytes()) if path.is_file() else ""
+
+
+LOST_DIGESTS = ("", digest(b""))  # of a missing file, and of one that a crash left empty
 
 
 def is_package(folder: Path) -> bool:
@@ -102,7 +105,7 @@ def missing(folder: Path) -> list[str]:
 def is_damaged(path: Path, value: str) -> bool:
     """Return whether a file is missing, or empty with another digest in the list."""
     found = digest_of(path)
-    return not found or found == digest(b"") != value
+    return not found or (found in LOST_DIGESTS and found != value)
 
 
 def stale(folder: Path) -> list[str]:
@@ -117,13 +120,11 @@ def stale(folder: Path) -> list[str]:
 
 def leftovers(folder: Path) -> list[str]:
     """Return the files of a folder if all are of the kinds that `uninstall` leaves, else none."""
-    names = files_below(folder)
-    known = package_files()
+    names, known = files_below(folder), package_files()
     return names if all(name.partition(EDITED_SUFFIX)[0] in known for name in names) else []
 
 
 def files_below(folder: Path) -> list[str]:
-    """Return the names of all files below a folder."""
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
 
 
@@ -162,17 +163,16 @@ def abandoned(folder: Path) -> list[Path]:
 def update_copy(folder: Path) -> list[str]:
     """Update a copy; return the new names of edited files."""
     files, old, outdated = package_files(), listed(folder), stale(folder)
+    new = {name: digest(content) for name, content in files.items()}
     obsolete = [name for name in old if name not in files]
-    digests = {name: digest(files[name]) for name in outdated}
-    users = [
-        name
-        for name in (*outdated, *obsolete)
-        if not is_damaged(folder / name, old.get(name, ""))
-        and digest_of(folder / name) not in (old.get(name), digests.get(name))
+    present = {name: digest_of(folder / name) for name in (*outdated, *obsolete)}
+    renamed = [
+        rename_edited(folder, name)
+        for name, found in present.items()
+        if found not in (*LOST_DIGESTS, old.get(name), new.get(name))
     ]
-    renamed = [rename_edited(folder, name) for name in users]
     write_files(folder, {name: files[name] for name in outdated})
-    lines = [f"{digest(content)}  {name}\n" for name, content in files.items()]
+    lines = [f"{value}  {name}\n" for name, value in new.items()]
     write_files(folder, {MANIFEST: "".join(lines).encode()})
     remove_files(folder, obsolete)
     return renamed
@@ -180,27 +180,22 @@ def update_copy(folder: Path) -> list[str]:
 
 def rename_edited(folder: Path, name: str) -> str:
     """Rename an edited file to a free name; return that."""
-    number, free = 1, f"{name}{EDITED_SUFFIX}"
-    while (folder / free).exists():
-        number += 1
-        free = f"{name}{EDITED_SUFFIX}.{number}"
+    first = f"{name}{EDITED_SUFFIX}"
+    names = chain([first], (f"{first}.{number}" for number in count(2)))
+    free = next(name for name in names if not (folder / name).exists())
     (folder / name).rename(folder / free)
     return free
 
 
 def write_files(folder: Path, files: dict[str, bytes]) -> None:
-    """Write files below a folder, each atomically."""
+    """Write files below a folder, each atomically, in folders with the owner of those above."""
     for name, content in files.items():
-        make_folder((folder / name).parent, folder.parent)
-        write(folder / name, content)
-
-
-def make_folder(folder: Path, above: Path) -> None:
-    """Create a folder and its parents, with the owner of the config's folder."""
-    below = [path for path in (folder, *folder.parents) if above in path.parents]
-    for path in reversed([path for path in below if not path.exists()]):
-        path.mkdir()
-        take_owner(path)
+        path = folder / name
+        for parent in reversed(path.parents):
+            if not parent.exists():
+                parent.mkdir()
+                take_owner(parent)
+        write(path, content)
 
 
 def remove_files(folder: Path, names: Iterable[str]) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from g12.settings import INI_SECTION as SETTINGS
 from g12.tools.install import package_copy
 from g12.tools.install.config import features, forms
+from g12.tools.install.config.features import FILTER_SUFFIX
 from g12.tools.install.config.findings import problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
@@ -29,8 +30,8 @@ from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.kinematics_rules import uses_face_kinematics
 from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
-from g12.tools.install.rules import installed_programs, odd_folder
-from g12.tools.translate.blocks.control import read_control
+from g12.tools.install.rules import IMPORT_HANDLERS, installed_programs, odd_folder
+from g12.tools.translate.blocks.control import Control, read_control
 
 BEGIN_LINE = f"{BEGIN_MARK} (g12 uninstall takes these lines out again)"
 BLOCK_NOTE = "# also by g12 install: "
@@ -40,9 +41,7 @@ MODULE_MARK = "  # by g12 install"
 NAMES_COPY = re.compile(
     rf"\s*(#INCLUDE\s+|[^\s#;].*[=:\s])(\./|{forms.HERE}/)?{package_copy.NAME}/"
 )
-IMPORT_HANDLERS = "from g12.remap import *"
 IMPORT_REMAP = "import remap"
-FILTER_SUFFIX = "nc"  # the suffix of other controls' programs
 
 
 class Refused(Exception):
@@ -60,14 +59,28 @@ class InstallPlan:
 
     ``text`` is the edited INI with its includes, ``modules`` are the user's own Python modules with
     the lines added. ``prefix`` is the package's folder as the INI names it; ``copied``: it is the
-    copy that `install` makes.
+    copy that `install` makes. ``added`` are the lines for each section.
     """
 
+    config: Config
+    requested: Sequence[str]
     text: IniText
     prefix: str
     copied: bool
     modules: dict[Path, list[str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    added: dict[str, list[str]] = field(default_factory=lambda: {"RS274NGC": []})
+
+    @property
+    def codes(self) -> list[str]:
+        return [feature for feature in self.requested if feature in features.REMAP_FILES]
+
+    def add(self, section: str, *lines: str) -> None:
+        self.added.setdefault(section, []).extend(lines)
+
+    def is_ours(self, line: IniLine) -> bool:
+        """Return whether an earlier installation wrote a line of the INI."""
+        return any(line in block for block in self.text.blocks())
 
     def changes(self) -> dict[Path, bytes]:
         """Return the user's files that change and their new content, the INI last."""
@@ -92,50 +105,33 @@ def marked(path: Path, statement: str) -> bool:
 def make_plan(
     config: Config, requested: Sequence[str], pins: spindle_c.Pins | None = None
 ) -> InstallPlan:
-    """Return the plan to install features in a config."""
     prefix, copied = package_folder(config)
-    plan = InstallPlan(IniText(config.text.path), prefix, copied)
-    update_remaps(plan.text, config)
-    codes = [feature for feature in requested if feature in features.REMAP_FILES]
-    python = python_lines(plan, config, codes) if codes else []
-    subs = subroutine_lines(plan, config, codes)
-    remaps = [f"REMAP = {remap.text}" for remap in new_remaps(config, codes)]
-    filters = filter_lines(plan, config, requested)
-    added = face_lines(plan, config, requested)
-    spindle = spindle_lines(plan, config, requested, pins)
-    point = plan.text.end_of_section("RS274NGC")
+    plan = InstallPlan(config, requested, IniText(config.text.path), prefix, copied)
+    update_remaps(plan)
+    if plan.codes:
+        add_python(plan)
+        add_subroutines(plan)
+        plan.add("RS274NGC", *(f"REMAP = {remap.text}" for remap in new_remaps(plan)))
+    add_filter(plan)
+    add_kinematics(plan)
+    add_spindle(plan, pins)
+    add_forms(plan)
+    add_geometry(plan)
     noted = {line.text for block in plan.text.blocks() for line in block}
-    put_block(
-        plan.text,
-        point,
-        [
-            *(note for note in plan.notes if note not in noted),
-            *subs,
-            *remaps,
-            *added.pop("RS274NGC", []),
-        ],
-    )
-    put_section(plan.text, "PYTHON", point, python)
-    put_section(plan.text, "FILTER", point, filters)
-    alone = {
-        "DISPLAY": geometry_lines(plan, config, requested),
-        SETTINGS: program_settings(config, requested),
-    }
-    for lines_of in (form_lines(plan, config, requested), alone, added, spindle):
-        for section, lines in lines_of.items():
-            put_section(plan.text, section, point, lines)
+    plan.added["RS274NGC"][:0] = [note for note in plan.notes if note not in noted]
+    for section, lines in plan.added.items():
+        put_section(plan.text, section, lines)
     for path in plan.changes():
         require_inside(config, path)
     return plan
 
 
-def update_remaps(text: IniText, config: Config) -> None:
+def update_remaps(plan: InstallPlan) -> None:
     """Update the REMAP lines of an older `install`."""
-    ours = {line for block in text.blocks() for line in block}
-    for line, remap in config.remaps:
-        found = features.model_of(remap) if line in ours else None
+    for line, remap in plan.config.remaps:
+        found = features.model_of(remap) if plan.is_ours(line) else None
         if found and found[1].keywords != remap.keywords:
-            text.replace(line, remap.like(found[1]))
+            plan.text.replace(line, remap.like(found[1]))
 
 
 def names_copy(text: IniText) -> list[IniLine]:
@@ -149,27 +145,21 @@ def names_copy(text: IniText) -> list[IniLine]:
     return found
 
 
-def put_block(text: IniText, point: InsertionPoint, lines: Sequence[str]) -> None:
-    """Insert lines between the markers."""
-    if lines:
-        text.insert(point, [BEGIN_LINE, *lines, END_MARK])
-
-
-def put_section(
-    text: IniText, section: str, interpreter: InsertionPoint, lines: Sequence[str]
-) -> None:
-    """Insert lines into a section; a new section goes into the file of [RS274NGC].
+def put_section(text: IniText, section: str, lines: Sequence[str]) -> None:
+    """Insert lines into a section, between the markers; a new one goes into [RS274NGC]'s file.
 
     In an included file that is before a header, where it divides no other section.
     """
+    if not lines:
+        return
     point = text.end_of_section(section)
-    if point:
-        put_block(text, point, lines)
-    elif lines and interpreter.file == text.path:
-        put_block(text, text.end_of_file(), [f"[{section}]", *lines])
-    elif lines:
-        header = text.headers("RS274NGC")[0]
-        put_block(text, InsertionPoint(header.file, header.row), [f"[{section}]", *lines])
+    if not point:
+        lines = [f"[{section}]", *lines]
+        point = InsertionPoint(text.path, len(text.files[text.path]))
+        if text.end_of_section("RS274NGC").file != text.path:
+            header = text.headers("RS274NGC")[0]
+            point = InsertionPoint(header.file, header.row)
+    text.insert(point, [BEGIN_LINE, *lines, END_MARK])
 
 
 def package_folder(config: Config) -> tuple[str, bool]:
@@ -202,112 +192,108 @@ def name_in_ini(config: Config, folder: Path) -> str:
     return folder.relative_to(here).as_posix() if folder.is_relative_to(here) else str(folder)
 
 
-def new_remaps(config: Config, requested: Sequence[str]) -> list[features.Remap]:
-    """Return the REMAP lines that the config does not have yet."""
-    present = [remap for _, remap in config.remaps]
+def new_remaps(plan: InstallPlan) -> list[features.Remap]:
+    present = [(remap.number, features.own_names(remap)) for _, remap in plan.config.remaps]
     return [
         remap
-        for feature in requested
+        for feature in plan.codes
         for remap in features.remaps_of(feature)
         if not any(
-            other.number == remap.number and features.own_names(other) & features.own_names(remap)
-            for other in present
+            number == remap.number and names & features.own_names(remap)
+            for number, names in present
         )
     ]
 
 
-def subroutine_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
-    """Return the SUBROUTINE_PATH line to insert; an existing one is extended instead."""
-    name = f"{plan.prefix}/ngc"
-    if not any(features.names_of(feature) for feature in requested):
-        return []
-    for finding in odd_folder(folder_from_ini(config.ini, name)):
+def add_subroutines(plan: InstallPlan) -> None:
+    """Add the package's folder to SUBROUTINE_PATH, or that line."""
+    name, ini = f"{plan.prefix}/ngc", plan.config.ini
+    if not any(features.names_of(feature) for feature in plan.codes):
+        return
+    for finding in odd_folder(folder_from_ini(ini, name)):
         raise Refused(finding)
     entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
     if not entries:
-        return [f"SUBROUTINE_PATH = {name}"]
+        plan.add("RS274NGC", f"SUBROUTINE_PATH = {name}")
+        return
     line, value = entries[0]
-    folders = {folder_from_ini(config.ini, folder) for folder in value.split(":") if folder}
-    missing = folder_from_ini(config.ini, name) not in folders
+    folders = {folder_from_ini(ini, folder) for folder in value.split(":") if folder}
+    missing = folder_from_ini(ini, name) not in folders
     if missing:
         plan.text.append_to_value(line, f":{name}")
-    ours = any(line in block for block in plan.text.blocks())
-    if missing or (line.file != plan.text.path and not ours):
+    if missing or (line.file != plan.text.path and not plan.is_ours(line)):
         # in an included file the entry may come from another INI's installation
         plan.notes.append(f"{BLOCK_NOTE}{name}{PATH_NOTE}")
-    return []
 
 
-def filter_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
-    """Return the lines for [FILTER] that open .nc files as programs of another control."""
-    names = [features.CONTROLS[name] for name in requested if name in features.CONTROLS]
-    if not names:
-        return []
-    control, present = names[0], config.ini.get("FILTER", FILTER_SUFFIX)
-    if present and control in installed_programs(config):
-        return []
-    if present:
-        raise refuse(
-            "filter",
-            f"[FILTER] {FILTER_SUFFIX} = {present} is there already",
-            "take that line out, or give your programs another suffix and add the line by hand "
-            "(python/g12/tools/translate/README.md)",
-        )
-    return [
-        f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {control}",
-        f"{FILTER_SUFFIX} = python3 {plan.prefix}/python/g12 translate --control {control}",
-    ]
+def add_filter(plan: InstallPlan) -> None:
+    """Add the lines that open .nc files as another control's programs, and their settings."""
+    names = [features.CONTROLS[name] for name in plan.requested if name in features.CONTROLS]
+    present = plan.config.ini.get("FILTER", FILTER_SUFFIX)
+    for name in names:
+        add_settings(plan, read_control(name))
+        if present and name not in installed_programs(plan.config):
+            raise refuse(
+                "filter",
+                f"[FILTER] {FILTER_SUFFIX} = {present} is there already",
+                "take that line out, or give your programs another suffix and add the line by hand "
+                "(python/g12/tools/translate/README.md)",
+            )
+        if not present:
+            command = f"python3 {plan.prefix}/python/g12 translate --control {name}"
+            plan.add(
+                "FILTER",
+                f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {name}",
+                f"{FILTER_SUFFIX} = {command}",
+            )
 
 
-def program_settings(config: Config, requested: Sequence[str]) -> list[str]:
-    """Return the settings that a lathe's programs need, but for those of the user."""
-    names = [features.CONTROLS[name] for name in requested if name in features.CONTROLS]
-    controls = [control for name in names if (control := read_control(name)).turns_c]
-    if not controls:
-        return []
-    depth = "CYLINDER_X" if controls[0].onto == "round" else "POLAR_Z"
-    several = config.ini.number("TRAJ", "SPINDLES", 1) > 1
-    needed = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
-    unset = (key for key in needed if not config.ini.get(SETTINGS, key))
-    return [f"{key} = {needed[key]}" for key in unset]
+def add_settings(plan: InstallPlan, control: Control) -> None:
+    """Add the settings that a lathe's programs need, but for those of the user."""
+    if control.turns_c:
+        depth = "CYLINDER_X" if control.onto == "round" else "POLAR_Z"
+        several = plan.config.ini.number("TRAJ", "SPINDLES", 1) > 1
+        needed = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
+        unset = (key for key in needed if not plan.config.ini.get(SETTINGS, key))
+        plan.add(SETTINGS, *(f"{key} = {needed[key]}" for key in unset))
 
 
-def form_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> dict[str, list[str]]:
-    """Return the lines, by section, that show the forms of present and new codes."""
-    if features.FORMS not in requested:
-        return {}
-    if not forms.screen_of(config):
-        raise refuse(
-            "forms", "[DISPLAY] DISPLAY is missing: no screen could show a form", "name the screen"
-        )
-    codes = dict.fromkeys([*config.features, *requested])
-    if not forms.files_of(config, codes):
-        raise refuse(
-            "forms", "no code here has a form", "install a code with them: --with haas forms"
-        )
-    return forms.lines_for(config, list(codes), plan.prefix)
+def add_forms(plan: InstallPlan) -> None:
+    """Add the lines that show the forms of present and new codes."""
+    if features.FORMS not in plan.requested:
+        return
+    if not forms.screen_of(plan.config):
+        text = "[DISPLAY] DISPLAY is missing: no screen could show a form"
+        raise refuse("forms", text, "name the screen")
+    codes = [*dict.fromkeys([*plan.config.features, *plan.requested])]
+    if not forms.files_of(plan.config, codes):
+        cure = "install a code with them: --with haas forms"
+        raise refuse("forms", "no code here has a form", cure)
+    for section, lines in forms.lines_for(plan.config, codes, plan.prefix).items():
+        plan.add(section, *lines)
 
 
-def geometry_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
-    """Return the GEOMETRY that rotates the part on a lathe's screen, if the user has none."""
-    on_face = features.KINEMATICS in requested or uses_face_kinematics(config)
-    lathe = set(ON_A_LATHE).intersection(requested) or on_face
+def add_geometry(plan: InstallPlan) -> None:
+    """Add the GEOMETRY that rotates the part on a lathe's screen, if the user has none."""
+    config = plan.config
+    on_face = features.KINEMATICS in plan.requested or uses_face_kinematics(config)
+    lathe = set(ON_A_LATHE).intersection(plan.requested) or on_face
     axes = config.ini.axes
     if not lathe or "C" not in axes or ("Y" in axes and not on_face):
-        return []
+        return
     line_text = f"GEOMETRY = {geometry_for('XYZ' if on_face else axes)}"
-    for line, _ in plan.text.entries("DISPLAY", "GEOMETRY")[:1]:
-        if any(line in block for block in plan.text.blocks()):
-            plan.text.replace(line, line_text)
-        return []
-    return [line_text] if config.ini.get("DISPLAY", "DISPLAY") else []
+    present = plan.text.entries("DISPLAY", "GEOMETRY")
+    if present and plan.is_ours(present[0][0]):
+        plan.text.replace(present[0][0], line_text)
+    elif not present and config.ini.get("DISPLAY", "DISPLAY"):
+        plan.add("DISPLAY", line_text)
 
 
-def face_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> dict[str, list[str]]:
-    """Change the entries for the face's kinematics; return the lines to add."""
-    if features.KINEMATICS not in requested or uses_face_kinematics(config):
-        return {}
-    reasons = list(kinematics_lines.obstacles(config, plan.text, requested))
+def add_kinematics(plan: InstallPlan) -> None:
+    config = plan.config
+    if features.KINEMATICS not in plan.requested or uses_face_kinematics(config):
+        return
+    reasons = list(kinematics_lines.obstacles(config, plan.text, plan.requested))
     if reasons:
         raise Refused(*reasons)
     for section, key, value in kinematics_lines.in_place(config):
@@ -315,48 +301,42 @@ def face_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> d
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
     for key, signal in spindle_c.shared_with_kinematics().items():
         for line, _ in plan.text.entries("SPINDLE_C", key):
-            if any(line in block for block in plan.text.blocks()):
+            if plan.is_ours(line):
                 plan.text.replace(line, f"{key} = {signal}")
-    return kinematics_lines.added(config, requested, plan.prefix)
+    for section, lines in kinematics_lines.added(config, plan.requested, plan.prefix).items():
+        plan.add(section, *lines)
 
 
-def spindle_lines(
-    plan: InstallPlan, config: Config, requested: Sequence[str], pins: spindle_c.Pins | None
-) -> dict[str, list[str]]:
-    """Return the lines of each section for a spindle that becomes C."""
+def add_spindle(plan: InstallPlan, pins: spindle_c.Pins | None) -> None:
+    config, requested = plan.config, plan.requested
     if features.SPINDLE_AS_C not in requested or config.ini.get("SPINDLE_C", "JOINT"):
-        return {}
+        return
     reasons = list(spindle_c.spindle_obstacles(config, pins))
     if reasons:
         raise Refused(*reasons)
-    return spindle_c.spindle_sections(config, requested, pins, plan.prefix)
+    for section, lines in spindle_c.spindle_sections(config, requested, pins, plan.prefix).items():
+        plan.add(section, *lines)
 
 
-def python_lines(plan: InstallPlan, config: Config, requested: Sequence[str]) -> list[str]:
-    """Return the lines for [PYTHON], and plan those for the user's own modules."""
-    folder = f"{plan.prefix}/python"
+def add_python(plan: InstallPlan) -> None:
+    """Add the lines for [PYTHON], or those for the user's own modules."""
+    folder, config = f"{plan.prefix}/python", plan.config
     if not config.ini.get("PYTHON", "TOPLEVEL"):
-        return [f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}"]
+        plan.add("PYTHON", f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}")
+        return
     with_path = "" if config.python.package else f'import sys; sys.path.append("{folder}"); '
-    for path, statement, is_missing in own_modules(config, requested):
+    for path, statement, is_missing in own_modules(config, plan.codes):
         installed = marked(path, statement)
         if is_missing and not installed:
             require_inside(config, path)
             plan.modules[path] = [f"{with_path}{statement}{MODULE_MARK}"]
         if is_missing or installed:
             plan.notes.append(f"{BLOCK_NOTE}{MODULE_NOTE}{name_in_ini(config, path)}")
-    return []
 
 
 def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, str, bool]]:
     """Return the user's TOPLEVEL and module remap, with the imports, and if they are missing."""
     python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
-    if not toplevel.is_file():
-        raise refuse(
-            "no-toplevel",
-            f"[PYTHON] TOPLEVEL = {toplevel}: there is no such file",
-            "name the machine's own toplevel.py, or take the line out",
-        )
     if python.remap and not python.remap_file:
         raise refuse(
             "remap-module",
@@ -364,7 +344,7 @@ def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, st
             f"add {IMPORT_HANDLERS} where your handlers are, by hand",
         )
     refuse_own_names(config)
-    ours = {name for name, module in python.remap.items() if is_ours(module)}
+    ours = python.remap.keys() - python.users
     needed = {name for feature in requested for name in features.functions_of(feature)}
     remap = config.folder / python.remap_file if python.remap_file else remap_on_path(config)
     modules = [(toplevel, IMPORT_REMAP, not python.remap_file)]
@@ -373,26 +353,19 @@ def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, st
 
 
 def is_package_module(path: Path) -> bool:
-    """Return whether a module is the package's own toplevel.py or remap.py."""
     own = features.ROOT / "python" / path.name
     return own.is_file() and own.read_bytes() == path.read_bytes()
-
-
-def is_ours(module: str | None) -> bool:
-    """Return whether a function's module belongs to the package."""
-    return (module or "").split(".")[0] == "g12"
 
 
 def refuse_own_names(config: Config) -> None:
     """Refuse if the import would replace functions of the user's own."""
     handlers = {name for feature in features.REMAP_FILES for name in features.functions_of(feature)}
-    for name in sorted(handlers & set(config.python.remap)):
-        if not is_ours(config.python.remap[name]):
-            raise refuse(
-                "hidden",
-                f"{config.python.remap_file} has a function {name}, and so has the package",
-                "give your function another name",
-            )
+    for name in sorted(handlers & set(config.python.users)):
+        raise refuse(
+            "hidden",
+            f"{config.python.remap_file} has a function {name}, and so has the package",
+            "give your function another name",
+        )
 
 
 def remap_on_path(config: Config) -> Path | None:
@@ -407,7 +380,6 @@ def remap_on_path(config: Config) -> Path | None:
 
 
 def require_inside(config: Config, path: Path) -> None:
-    """Refuse to change a file that is outside the config's folder."""
     if not path.resolve().is_relative_to(config.folder.resolve()):
         raise refuse(
             "outside",

@@ -18,7 +18,6 @@ from g12.tools.install.config.ini_edit import (
     WAS,
     IniLine,
     IniText,
-    is_entry,
     lines_with_ends,
     other_inis,
     to_bytes,
@@ -36,7 +35,8 @@ OWN_ENDS = {
     "PATH_PREPEND": "/python",
     "PATH_APPEND": "/python",
 }
-HEADERS = {f"[{section}]": section for section in ("PYTHON", "FILTER", "HAL", "G12", "AXIS_Y")}
+HEADERS = ("[PYTHON]", "[FILTER]", "[HAL]", "[G12]", "[AXIS_Y]")
+OWN, HEADER, EDITED, USERS = "own", "header", "edited", "user's"  # what a line of a block is
 EDITED_NOTE = "# before uninstall: "
 OF_PROGRAMS = re.compile(
     r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
@@ -53,7 +53,6 @@ OWN_LINES = (
 
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
-    """Remove the package from a machine config; yield the lines to show."""
     blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
     package_copy.listed(copy)  # raises for a damaged list before anything is written
     notes = remove_blocks(text, blocks)
@@ -69,7 +68,8 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     for path, content in changes.items():
         yield from difference(path, content)
     yield from notes
-    needing = sorted({line.location: line for line in lines_needing_package(text)}.values())
+    own = (code.line for code in codes_of(remaps_in(text)))
+    needing = sorted({line.location: line for line in (*names_copy(text), *own)}.values())
     for line in needing:
         yield f"{line.location}: still needs the package: {line.text.strip()}"
     if dry_run:
@@ -88,63 +88,48 @@ def remove_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
     An entry whose value the user changed becomes a comment, because the entry before `install` is
     restored.
     """
-    doomed = [line for block in blocks for line in own_lines(block)]
-    was = [line for block in blocks for line in block if line.text.startswith(WAS)]
-    edited = [line for block in blocks for line in edited_lines(block)]
-    headers = [line for block in blocks for line in block if line.text in HEADERS]
-    for header in headers:
-        section = text.section(HEADERS[header.text])
-        others = (line for line in section if line not in (*doomed, *headers, *edited))
-        if not any(is_entry(line.text) for line in others):
-            doomed.append(header)
-    handled = (*doomed, *headers, *was, *edited)
-    stay = [line for block in blocks for line in block if line not in handled]
-    for line in was:
+    lines: dict[str, list[IniLine]] = {OWN: [], WAS: [], HEADER: [], EDITED: [], USERS: []}
+    for block in blocks:
+        for line, kind in kinds_of(block):
+            lines[kind].append(line)
+    removed, edited = lines[OWN], lines[EDITED]
+    for header in lines[HEADER]:
+        known = (*removed, *lines[HEADER], *edited)
+        others = (line for line in text.section(header.text[1:-1]) if line not in known)
+        if not any(key_and_value(line.text)[0] for line in others):
+            removed.append(header)
+    for line in lines[WAS]:
         text.replace(line, line.text[len(WAS) :])
     for line in edited:
         text.replace(line, EDITED_NOTE + line.text)
-    text.remove(doomed)
+    text.remove(removed)
+    changed = "you changed it, it stays as a comment"
     return [
-        *(
-            f"{line.location}: you changed it, it stays as a comment: {line.text}"
-            for line in edited
-        ),
-        *(f"{line.location}: stays, it is not by install: {line.text}" for line in stay),
+        *(f"{line.location}: {changed}: {line.text}" for line in edited),
+        *(f"{line.location}: stays, it is not by install: {line.text}" for line in lines[USERS]),
     ]
 
 
-def own_lines(block: list[IniLine]) -> Iterator[IniLine]:
-    """Yield the lines of a block by `install`; they may replace another."""
-    edited = edited_lines(block)
-    replaced = replaced_keys(block)
-    for line in block:
-        replaces = key_and_value(line.text)[0] in replaced and line not in edited
-        if is_by_install(line) or replaces:
-            yield line
-
-
-def edited_lines(block: list[IniLine]) -> list[IniLine]:
-    """Return the entries of a block whose value the user changed."""
-    notes = [line.text[len(NOW) :] for line in block if line.text.startswith(NOW)]
-    inserted = {text for note in notes for text in note.split(NEXT)}
-    replaced = replaced_keys(block) if inserted else set()
-    return [
-        line
-        for line in block
-        if key_and_value(line.text)[0] in replaced and line.text not in inserted
-    ]
-
-
-def replaced_keys(block: list[IniLine]) -> set[str]:
-    """Return the keys whose entries a block replaces, and those of the limits that it adds."""
+def kinds_of(block: list[IniLine]) -> Iterator[tuple[IniLine, str]]:
+    """Yield the lines of a block, each with what it is."""
     texts = [line.text for line in block]
-    keys = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
-    keys |= set(kinematics_lines.LIMIT_KEYS) if "[AXIS_Y]" in texts else set()
-    return keys - {""}
+    replaced = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
+    replaced |= set(kinematics_lines.LIMIT_KEYS) if "[AXIS_Y]" in texts else set()
+    notes = [text[len(NOW) :] for text in texts if text.startswith(NOW)]
+    inserted = {text for note in notes for text in note.split(NEXT)}
+    for line in block:
+        replaces = key_and_value(line.text)[0] in replaced - {""}
+        if line.text.startswith(WAS):
+            yield line, WAS
+        elif line.text in HEADERS:
+            yield line, HEADER
+        elif replaces and inserted and line.text not in inserted:
+            yield line, EDITED
+        else:
+            yield line, OWN if replaces or is_by_install(line) else USERS
 
 
 def is_by_install(line: IniLine) -> bool:
-    """Return whether a line between the markers is by `install`."""
     key, value = key_and_value(line.text)
     if any(rule.fullmatch(line.text) for rule in OWN_LINES):
         return True
@@ -171,7 +156,6 @@ def remove_path(text: IniText, entry: str, shared: bool) -> None:
 def still_installed(text: IniText) -> bool:
     """Return whether `install` has put the package into another INI of the folder."""
     for other in other_inis(text):
-        other.files.update({file: text.files[file] for file in text.files if file in other.files})
         if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
             return True
     return False
@@ -194,11 +178,6 @@ def remove_noted(text: IniText, notes: list[str], shared: bool) -> dict[Path, by
         elif not shared and module.is_file():
             modules[module] = without_imports(module)
     return modules
-
-
-def lines_needing_package(text: IniText) -> list[IniLine]:
-    """Return the lines of an INI, outside its blocks, that need the package."""
-    return [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
 
 
 def after_change(path: Path) -> Iterator[str]:

@@ -35,21 +35,15 @@ WELL_FORMED_HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
 SETTINGS_PAGE = "configs/README.md has every setting"
 OWN_HEADER = f"[{INI_SECTION}]"
-LINE_FOR_REMAP = "from g12.remap import *"
+IMPORT_HANDLERS = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
 FORM_FILE = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
 MOST_NAMED = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
 STOPPING = {  # kinds that prevent LinuxCNC itself from loading the config
-    "taken",
-    "wrong-line",
-    "no-sub",
-    "blank-in-path",
-    "no-python",
-    "python-fails",
-    "no-linuxcnc",
-    "header",
+    *("taken", "wrong-line", "no-sub", "blank-in-path", "no-python", "python-fails"),
+    *("no-linuxcnc", "header"),
 }
 
 
@@ -58,8 +52,8 @@ Rule = Callable[[Config], Iterator[ConfigFinding]]
 # The INI's lines.
 
 
-def unreadable_includes(config: Config) -> Iterator[ConfigFinding]:
-    """Find an #INCLUDE of a missing file."""
+def includes(config: Config) -> Iterator[ConfigFinding]:
+    """Find an #INCLUDE of a missing file, and one inside an included file."""
     for line in config.text.unreadable:
         yield warning(
             "include",
@@ -67,10 +61,6 @@ def unreadable_includes(config: Config) -> Iterator[ConfigFinding]:
             "LinuxCNC 2.9 goes on, 2.10 does not start",
             "correct the file name or take the line out",
         )
-
-
-def nested_includes(config: Config) -> Iterator[ConfigFinding]:
-    """Find an #INCLUDE inside an included file, which LinuxCNC 2.9 takes for a comment."""
     for line in config.text.lines():
         if line.file != config.text.path and INCLUDE.match(line.text):
             yield warning(
@@ -86,9 +76,7 @@ def lines_not_read(config: Config) -> Iterator[ConfigFinding]:
     read = {line for line, _ in config.remaps}
     for line in config.text.lines():
         key, value = key_and_value(line.text)
-        if key != "REMAP" or line in read:
-            continue
-        if features.model_of(remap_from_value(value)):
+        if key == "REMAP" and line not in read and features.model_of(remap_from_value(value)):
             yield problem(
                 "not-read",
                 f"{line.location}: {line.text.strip()}: not in the section [RS274NGC] that is read",
@@ -118,7 +106,6 @@ def broken_headers(config: Config) -> Iterator[ConfigFinding]:
 
 
 def long_lines(config: Config) -> Iterator[ConfigFinding]:
-    """Find lines that LinuxCNC would truncate."""
     for section in ("RS274NGC", "PYTHON", INI_SECTION):
         for line in config.text.section(section):
             if len(line.text) > LONGEST_BLOCK:
@@ -133,7 +120,6 @@ def long_lines(config: Config) -> Iterator[ConfigFinding]:
 
 
 def wrong_version(config: Config) -> Iterator[ConfigFinding]:
-    """Find no LinuxCNC, or one before the first that works."""
     numbers = tuple(map(int, re.findall(r"\d+", config.version)[:2]))
     if not numbers:
         yield problem(
@@ -150,7 +136,6 @@ def wrong_version(config: Config) -> Iterator[ConfigFinding]:
 
 
 def other_interpreter(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine that does not read G-code with LinuxCNC's interpreter."""
     name = config.ini.get("TASK", "INTERPRETER")
     if name:
         yield problem(
@@ -164,7 +149,6 @@ def other_interpreter(config: Config) -> Iterator[ConfigFinding]:
 
 
 def codes_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find a config without the package."""
     if not config.codes and not installed_programs(config):
         yield problem(
             "no-codes",
@@ -174,38 +158,32 @@ def codes_missing(config: Config) -> Iterator[ConfigFinding]:
 
 
 def taken_codes(config: Config) -> Iterator[ConfigFinding]:
-    """Find a code with two REMAP lines: LinuxCNC does not start."""
     own = [code.line for code in config.codes]
     for code in config.codes:
         earlier = own[: own.index(code.line)]
         for line, remap in config.remaps:
-            if remap.number != code.remap.number or line in (code.line, *earlier):
-                continue
-            yield problem(
-                "taken",
-                f"{line.location}: {remap.code} is remapped here already: REMAP = {remap.text}",
-                f"keep one meaning of {remap.code}: take this line out or the package's "
-                f"({code.line.location})",
-            )
+            if remap.number == code.remap.number and line not in (code.line, *earlier):
+                yield problem(
+                    "taken",
+                    f"{line.location}: {remap.code} is remapped here already: REMAP = {remap.text}",
+                    f"keep one meaning of {remap.code}: take this line out or the package's "
+                    f"({code.line.location})",
+                )
 
 
 def owned_codes(config: Config) -> Iterator[ConfigFinding]:
-    """Find a code of LinuxCNC's own: it accepts the REMAP line and ignores it."""
+    cures = {"polar": "use the pair G12.3/G13.3: uninstall, then install --with polar-g12.3"}
     for code in config.codes:
-        if code.remap.code not in config.owned:
-            continue
-        cure = "give the feature another code in its REMAP line"
-        if code.feature == "polar":
-            cure = "use the pair G12.3/G13.3: uninstall, then install --with polar-g12.3"
-        yield problem(
-            "owned",
-            f"{code.line.location}: {code.remap.code} is LinuxCNC's own code: its REMAP is ignored",
-            cure,
-        )
+        name = code.remap.code
+        if name in config.owned:
+            yield problem(
+                "owned",
+                f"{code.line.location}: {name} is LinuxCNC's own code: its REMAP is ignored",
+                cures.get(code.feature, "give the feature another code in its REMAP line"),
+            )
 
 
 def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
-    """Find REMAP lines that are nearly the package's."""
     for code in config.codes:
         expected, found = code.model.keywords, code.remap.keywords
         wrong = [f"{key}={value}" for key, value in expected.items() if found.get(key) != value]
@@ -219,7 +197,6 @@ def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
 
 
 def halves(config: Config) -> Iterator[ConfigFinding]:
-    """Find one code of a pair without the other."""
     others = {remap.number: remap for _, remap in config.remaps}
     for feature in config.features:
         present = {code.model for code in config.codes if code.feature == feature}
@@ -233,9 +210,11 @@ def halves(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
-def missing_subs(config: Config) -> Iterator[ConfigFinding]:
-    """Find NGC subs that LinuxCNC does not find: it does not start."""
-    missing = [f"{name}.ngc" for name in needed_subs(config) if not subs_named(config.ini, name)]
+def wrong_subs(config: Config) -> Iterator[ConfigFinding]:
+    """Find NGC subs of the codes that LinuxCNC does not find, or finds in another file."""
+    names = [name for feature in config.features for name in features.names_of(feature)]
+    subs = {name: subs_named(config.ini, name) for name in names}
+    missing = [f"{name}.ngc" for name, files in subs.items() if not files]
     if missing:
         yield problem(
             "no-sub",
@@ -244,14 +223,18 @@ def missing_subs(config: Config) -> Iterator[ConfigFinding]:
             "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
             f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
         )
-
-
-def blanks_in_path(config: Config) -> Iterator[ConfigFinding]:
-    """Find a folder name that a shell would split: LinuxCNC finds no subs there."""
-    first = [subs_named(config.ini, name)[:1] for name in needed_subs(config)]
-    for folder in sorted({file.parent for files in first for file in files}):
-        if folder != config.folder:
-            yield from odd_folder(folder)
+    for folder in sorted({files[0].parent for files in subs.values() if files} - {config.folder}):
+        yield from odd_folder(folder)
+    package = config.python.package if config.python else None
+    for name, files in subs.items() if package else ():
+        own = (package.parent.parent / "ngc" / f"{name}.ngc").resolve()
+        if own in [other.resolve() for other in files[1:]]:
+            yield problem(
+                "shadowed",
+                f"{files[0]} is found before the package's {name}.ngc",
+                "rename or remove that file (LinuxCNC looks in the INI's folder, then "
+                "PROGRAM_PREFIX, then SUBROUTINE_PATH)",
+            )
 
 
 def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
@@ -263,20 +246,6 @@ def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
             f"{folder}: LinuxCNC finds no NGC subs in a folder with {odd[0]!r} in its path",
             "rename the folder: letters, digits, - and _ only",
         )
-
-
-def shadowed_subs(config: Config) -> Iterator[ConfigFinding]:
-    """Find another file of a sub's name in a folder that LinuxCNC searches first."""
-    for name in needed_subs(config):
-        first, *others = subs_named(config.ini, name) or [None]
-        own = package_sub(config, name)
-        if own in [other.resolve() for other in others]:
-            yield problem(
-                "shadowed",
-                f"{first} is found before the package's {name}.ngc",
-                "rename or remove that file (LinuxCNC looks in the INI's folder, then "
-                "PROGRAM_PREFIX, then SUBROUTINE_PATH)",
-            )
 
 
 def shadowing_functions(config: Config) -> Iterator[ConfigFinding]:
@@ -291,48 +260,29 @@ def shadowing_functions(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def needed_subs(config: Config) -> list[str]:
-    """Return the NGC subs that the codes set up here need."""
-    names = (name for feature in config.features for name in features.names_of(feature))
-    return list(dict.fromkeys(names))
-
-
-def package_sub(config: Config, name: str) -> Path | None:
-    """Return the sub that belongs to the package in use."""
-    package = config.python.package if config.python else None
-    return (package.parent.parent / "ngc" / f"{name}.ngc").resolve() if package else None
-
-
 # Python.
 
 
-def no_toplevel(config: Config) -> Iterator[ConfigFinding]:
-    """Find a config whose Python LinuxCNC never loads."""
-    name = config.ini.get("PYTHON", "TOPLEVEL")
-    if not config.codes:
-        return
-    if not name:
+def python_not_loaded(config: Config) -> Iterator[ConfigFinding]:
+    """Find what keeps LinuxCNC from loading the machine's Python: then it does not start."""
+    name, error = config.ini.get("PYTHON", "TOPLEVEL"), config.python and config.python.error
+    is_missing = name and not folder_from_ini(config.ini, name).is_file()
+    if config.codes and not name:
         yield problem(
             "no-python",
             "[PYTHON] TOPLEVEL is missing: LinuxCNC loads no Python, and the codes need it",
             "add [PYTHON], TOPLEVEL = …/python/toplevel.py and PATH_PREPEND = …/python "
             "with the package's folder",
         )
-    elif not folder_from_ini(config.ini, name).is_file():
+    elif config.codes and is_missing:
         yield problem(
             "no-python",
             f"[PYTHON] TOPLEVEL = {name}: there is no such file",
             f"correct the name; it is relative to {config.folder}; {MEND}",
         )
-
-
-def python_fails(config: Config) -> Iterator[ConfigFinding]:
-    """Find Python modules that stop with an error: LinuxCNC does not start."""
-    error = config.python.error if config.python else None
-    if error and not any(no_toplevel(config)):
+    elif error:
         cure = "correct the module named"
-        name = config.ini.get("PYTHON", "TOPLEVEL")
-        if name and not folder_from_ini(config.ini, name).is_file():
+        if is_missing:
             cure = f"correct the name in TOPLEVEL = {name}; it is relative to {config.folder}"
         if "No module named" in error:
             cure = "add the folder of that module to [PYTHON] as PATH_PREPEND or PATH_APPEND"
@@ -342,7 +292,7 @@ def python_fails(config: Config) -> Iterator[ConfigFinding]:
 def handlers_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find handlers that are missing: LinuxCNC starts, and the code fails when it is used."""
     python = config.python
-    if not config.codes or not python or python.error or any(no_toplevel(config)):
+    if not config.codes or not python or any(python_not_loaded(config)):
         return
     needed = {name for code in config.codes for name in code.model.handlers}
     missing = sorted(needed - set(python.remap))
@@ -357,16 +307,14 @@ def handlers_missing(config: Config) -> Iterator[ConfigFinding]:
         yield problem(
             "no-import",
             f"{python.remap_file} has no {', '.join(missing)}",
-            f"add the line: {LINE_FOR_REMAP}   to {python.remap_file}",
+            f"add the line: {IMPORT_HANDLERS}   to {python.remap_file}",
         )
 
 
 def handlers_hidden(config: Config) -> Iterator[ConfigFinding]:
-    """Find functions of the user's own with a handler's name."""
-    functions = config.python.remap if config.python else {}
-    for name in sorted({name for code in config.codes for name in code.model.handlers}):
-        module = functions.get(name)
-        if module and module.split(".")[0] != "g12":
+    needed = {name for code in config.codes for name in code.model.handlers}
+    for name, module in sorted((config.python.users if config.python else {}).items()):
+        if name in needed:
             yield problem(
                 "hidden",
                 f"your own function {name} (module {module}) hides the package's",
@@ -378,7 +326,6 @@ def handlers_hidden(config: Config) -> Iterator[ConfigFinding]:
 
 
 def bad_settings(config: Config) -> Iterator[ConfigFinding]:
-    """Find a [G12] section that is a start-up error."""
     try:
         settings_from_lines(config.ini.lines)
     except Refusal as refusal:
@@ -388,7 +335,6 @@ def bad_settings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def refused_values(config: Config) -> Iterator[ConfigFinding]:
-    """Find values of units, axes and speeds that verify, trace and plot refuse."""
     try:
         limits_of(config.ini)
     except IniError as refused:
@@ -396,8 +342,8 @@ def refused_values(config: Config) -> Iterator[ConfigFinding]:
         yield problem("value", text, "correct the line: verify, trace and plot refuse this INI")
 
 
-def missing_axes(config: Config) -> Iterator[ConfigFinding]:
-    """Find axes that a code needs."""
+def needs(config: Config) -> Iterator[ConfigFinding]:
+    """Find axes that a code needs, and shapes without the polar interpolation of their subs."""
     axes = config.ini.axes
     for feature in config.features:
         needed = features.AXES_NEEDED.get(feature, "XYZ")
@@ -409,10 +355,6 @@ def missing_axes(config: Config) -> Iterator[ConfigFinding]:
                 f"[TRAJ] COORDINATES has {' '.join(axes)}",
                 "add the axis to the machine, or take these codes out",
             )
-
-
-def shapes_without_polar(config: Config) -> Iterator[ConfigFinding]:
-    """Find the shapes on a machine without the polar interpolation that they need."""
     is_polar = not config.features.keys().isdisjoint(features.POLAR_FEATURES)
     if features.POLAR_SHAPES in config.features and not is_polar:
         yield problem(
@@ -422,11 +364,12 @@ def shapes_without_polar(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def no_tool_table(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine without a tool table: it starts, and has no tool."""
+def tools(config: Config) -> Iterator[ConfigFinding]:
+    """Find a machine without a tool table, or without any diameter in it."""
     name, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
     path = config.ini.file("EMCIO", "TOOL_TABLE")
-    if not config.codes or (path and path.is_file() and not database):
+    mill = config.features.keys() - features.AXES_NEEDED
+    if not config.codes:
         return
     if database:
         yield note(
@@ -434,21 +377,14 @@ def no_tool_table(config: Config) -> Iterator[ConfigFinding]:
             f"[EMCIO] DB_PROGRAM = {database}: the tools of that program were not looked at",
             "look yourself whether the cutters have diameters",
         )
-        return
-    yield warning(
-        "no-tool-table",
-        f"[EMCIO] TOOL_TABLE = {name}: there is no such file"
-        if name
-        else "[EMCIO] TOOL_TABLE is missing: this machine knows no tool",
-        f"name a tool table that is there; it is relative to {config.folder}",
-    )
-
-
-def tools_without_diameter(config: Config) -> Iterator[ConfigFinding]:
-    """Find a tool table without any diameter."""
-    mill = bool(config.features.keys() - features.AXES_NEEDED)
-    unknown = config.diameters is None or any(no_tool_table(config))
-    if mill and not unknown and not any(config.diameters.values()):
+    elif not (path and path.is_file()):
+        missing = "is missing: this machine knows no tool"
+        yield warning(
+            "no-tool-table",
+            f"[EMCIO] TOOL_TABLE {f'= {name}: there is no such file' if name else missing}",
+            f"name a tool table that is there; it is relative to {config.folder}",
+        )
+    elif mill and config.diameters is not None and not any(config.diameters.values()):
         yield warning(
             "no-diameters",
             "no tool in the tool table has a diameter: a pocket with D would come out too large",
@@ -473,7 +409,6 @@ def installed_programs(config: Config) -> list[str]:
 
 
 def wrong_filters(config: Config) -> Iterator[ConfigFinding]:
-    """Find a filter whose control cannot be read, or whose package is missing."""
     for suffix, control, words in translating_filters(config):
         command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
         if not command.exists():
@@ -493,7 +428,6 @@ def wrong_filters(config: Config) -> Iterator[ConfigFinding]:
 
 
 def changed_copy(config: Config) -> Iterator[ConfigFinding]:
-    """Find files of the package's copy that have changed since their installation."""
     copy = config.folder / package_copy.NAME
     if not (config.codes or installed_programs(config)) or not package_copy.is_copy(copy):
         return
@@ -525,8 +459,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     wrong_version,
     other_interpreter,
     codes_missing,
-    unreadable_includes,
-    nested_includes,
+    includes,
     lines_not_read,
     broken_headers,
     long_lines,
@@ -534,20 +467,15 @@ CONFIG_RULES: tuple[Rule, ...] = (
     owned_codes,
     wrong_lines,
     halves,
-    missing_subs,
-    blanks_in_path,
-    shadowed_subs,
+    wrong_subs,
     shadowing_functions,
-    no_toplevel,
-    python_fails,
+    python_not_loaded,
     handlers_missing,
     handlers_hidden,
     bad_settings,
     refused_values,
-    missing_axes,
-    shapes_without_polar,
-    no_tool_table,
-    tools_without_diameter,
+    needs,
+    tools,
     wrong_filters,
     changed_copy,
     form_findings,

@@ -8,16 +8,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from g12.ini_sections import entries_of
 from g12.tools.install.checking import check_config
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import PROBLEM, WARNING, ConfigFinding
 from g12.tools.install.config.forms import HERE
 from g12.tools.install.config.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, Refused
-from g12.tools.machine.ini import Ini, Overrides
+from g12.tools.machine.ini import Ini, broken_line
 
-HEADER = re.compile(r"\s*\[([^\s\]]+)\]")
 OWN_FILTER = "filter"  # kind of a finding about a line that the plan does not write
 SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
 
@@ -31,30 +29,20 @@ def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     tried = trial(plan, plan.text)
     filters = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
     warnings = filters + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
-    included = [path for path in plan.changes() if path in plan.text.files]
-    for path, shared in others_including(plan.text, included):
-        found = [of_other(each, path, shared) for each in trial(plan, with_changes(path, plan))]
+    for other, shared in others_including(plan.text, [*plan.changes()]):
+        found = [of_other(each, other.path, shared) for each in trial(plan, other)]
         refuse_problems([each for each in found if each.kind not in SHOWN_ONLY | {OWN_FILTER}])
         harmless = (each for each in found if each.kind in ("form", OWN_FILTER))
         warnings += [replace(each, level=WARNING) for each in harmless]
     return warnings
 
 
-def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[tuple[Path, Path]]:
+def others_including(text: IniText, changed: Sequence[Path]) -> Iterator[tuple[IniText, Path]]:
     """Yield the folder's other INIs that include a changed file, with that file."""
     for other in other_inis(text):
         shared = [file for file in changed if file in other.files]
         if shared:
-            yield other.path, shared[0]
-
-
-def with_changes(path: Path, plan: InstallPlan) -> IniText:
-    """Return another INI, with the plan's changes of the files that it includes."""
-    other = IniText(path)
-    other.files.update(
-        {file: plan.text.files[file] for file in other.files & plan.text.files.keys()}
-    )
-    return other
+            yield other, shared[0]
 
 
 def of_other(finding: ConfigFinding, ini: Path, shared: Path) -> ConfigFinding:
@@ -77,56 +65,36 @@ def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
     with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
         if plan.copied:
             link_package(Path(scratch))
-        _, found = check_config(text, trial_values(plan, text.ini(), Path(scratch)))
+        _, found = check_config(text, trial_ini(plan, text.ini(), Path(scratch)))
         return found
 
 
-def trial_values(plan: InstallPlan, ini: Ini, scratch: Path) -> Overrides:
-    """Return the INI values that make LinuxCNC load the plan's files.
+def trial_ini(plan: InstallPlan, ini: Ini, scratch: Path) -> Ini:
+    """Return the INI that makes LinuxCNC load the plan's files.
 
     Files that are not written yet, or not up to date, are in the folder ``scratch``.
     """
-    values = relocated_values(plan, ini, scratch)
-    python = values.setdefault("PYTHON", {})
-    prepended = python.setdefault("PATH_PREPEND", ini.all("PYTHON", "PATH_PREPEND"))
-    prepended += [str(scratch / "package")] if plan.copied else []
-    for path, content in trial_modules(plan, scratch):
-        module = put_module(path, content, scratch / "own")
-        if path == ini.file("PYTHON", "TOPLEVEL"):
-            python["TOPLEVEL"] = [str(module)]
-        prepended.append(str(scratch / "own"))
-    return values
-
-
-def relocated_values(plan: InstallPlan, ini: Ini, scratch: Path) -> dict[str, dict[str, list[str]]]:
-    """Return the INI's values that name the copy, with the trial's folder, by section."""
-    found: dict[str, dict[str, list[str]]] = {}
-    sections = dict.fromkeys(header[1] for header in map(HEADER.match, ini.lines) if header)
-    for section in sections if plan.copied else ():
-        entries = list(entries_of(ini.lines, section))
-        values = [relocated(value, plan.prefix, scratch) for _, _, value in entries]
-        moved = {entry.key for entry, value in zip(entries, values) if value != entry.value}
-        for key in moved:
-            found.setdefault(section, {})[key] = [
-                value for entry, value in zip(entries, values) if entry.key == key
-            ]
-    return found
-
-
-def relocated(value: str, prefix: str, scratch: Path) -> str:
-    """Return an INI's value with another folder instead of the copy's."""
-    copy = rf"(?<![^\s:=])(\./|{HERE}/)?{re.escape(prefix)}(?=[/\s:]|$)"
-    return re.sub(copy, str(scratch), value)
-
-
-def trial_modules(plan: InstallPlan, scratch: Path) -> Iterator[tuple[Path, bytes]]:
-    """Yield the user's modules that change, with their content for the trial."""
-    changes = plan.changes()
+    if plan.copied:
+        ini = replace(ini, lines=tuple(relocated(ini.lines, plan.prefix, scratch)))
+    python, changes = {}, plan.changes()
+    prepended = ini.all("PYTHON", "PATH_PREPEND") + [str(scratch / "package")] * plan.copied
     for path in plan.modules:
         content = changes[path]
         if plan.copied:
             content = content.replace(f'"{plan.prefix}/'.encode(), f'"{scratch}/'.encode())
-        yield path, content
+        module = put_module(path, content, scratch / "own")
+        if path == ini.file("PYTHON", "TOPLEVEL"):
+            python["TOPLEVEL"] = str(module)
+        prepended.append(str(scratch / "own"))
+    return ini.replaced({"PYTHON": {**python, "PATH_PREPEND": prepended}})
+
+
+def relocated(lines: Sequence[str], prefix: str, scratch: Path) -> Iterator[str]:
+    """Yield an INI's lines with another folder instead of the copy's."""
+    copy = re.compile(rf"(?<![^\s:=])(\./|{HERE}/)?{re.escape(prefix)}(?=[/\s:]|$)")
+    for line in lines:
+        moved = copy.sub(str(scratch), line)
+        yield from [line] if moved == line else broken_line(moved)
 
 
 def link_package(scratch: Path) -> None:

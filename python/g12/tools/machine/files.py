@@ -3,6 +3,7 @@
 
 import contextlib
 import difflib
+import filecmp
 import os
 import shutil
 import tempfile
@@ -15,7 +16,6 @@ BACKUP = ".before-g12"
 
 
 def existing(path: Path) -> Path:
-    """Return a file's path if it exists."""
     if path.is_dir():
         raise UsageError(f"{path}: is a folder")
     if not path.is_file():
@@ -23,17 +23,12 @@ def existing(path: Path) -> Path:
     return path
 
 
-def lines_to_show(content: bytes) -> list[str]:
-    """Return a file's lines for showing them."""
-    return content.decode("utf-8", "replace").splitlines()
-
-
 def difference(path: Path, content: bytes) -> Iterator[str]:
     """Yield the lines of a unified diff from the present file to its new content."""
-    old = path.read_bytes() if path.exists() else b""
-    return difflib.unified_diff(
-        lines_to_show(old), lines_to_show(content), str(path), f"{path} (new)", lineterm="", n=2
+    old, new = (
+        text.decode("utf-8", "replace").splitlines() for text in (path.read_bytes(), content)
     )
+    return difflib.unified_diff(old, new, str(path), f"{path} (new)", lineterm="", n=2)
 
 
 def write(path: Path, content: bytes) -> None:
@@ -63,10 +58,9 @@ def take_after(new: Path, path: Path) -> None:
     """Give a new file the mode and owner of the one at ``path``, if there is one."""
     if path.exists():
         shutil.copymode(path, new)
-        take_owner(new, path)
     else:
         new.chmod(0o644)
-        take_owner(new)
+    take_owner(new, path if path.exists() else None)
 
 
 def take_owner(new: Path, model: Path | None = None) -> None:
@@ -78,28 +72,27 @@ def take_owner(new: Path, model: Path | None = None) -> None:
 
 def write_all(changes: Mapping[Path, bytes]) -> None:
     """Write several files; if one cannot be written, restore the others."""
-    written: dict[Path, bytes] = {}
+    old = {path: path.read_bytes() for path in changes}
+    written: list[Path] = []
     try:
         for path, content in changes.items():
-            old = path.read_bytes()
             write(path, content)
-            written[path] = old
+            written.append(path)
     except BaseException:
-        for path, old in written.items():
-            write(path, old)
+        for path in written:
+            write(path, old[path])
         raise
 
 
 def backups_of(path: Path) -> list[Path]:
-    """Return the backups of a file."""
     return sorted(path.parent.glob(f"{path.name}{BACKUP}*"))
 
 
 def back_up(path: Path) -> Path:
     """Copy the file to a backup, and return the backup's path."""
-    content, backups = path.read_bytes(), backups_of(path)
+    backups = backups_of(path)
     for backup in backups:
-        if backup.read_bytes() == content:
+        if filecmp.cmp(path, backup, shallow=False):
             return backup
     number = f".{len(backups) + 1}" if backups else ""
     backup = path.with_name(f"{path.name}{BACKUP}{number}")
@@ -110,8 +103,7 @@ def back_up(path: Path) -> Path:
 
 def drop_backup(path: Path) -> list[Path]:
     """Delete the backup that equals the file; return the remaining ones."""
-    content = path.read_bytes()
     for backup in backups_of(path):
-        if backup.read_bytes() == content:
+        if filecmp.cmp(path, backup, shallow=False):
             backup.unlink()
     return backups_of(path)

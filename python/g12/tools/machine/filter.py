@@ -69,11 +69,13 @@ class OpenedProgram:
         """Return a text about the program with the user's file name and line numbers."""
         if not self.is_filtered:
             return text
-        location = re.compile(rf"{re.escape(str(self.path))}(?::([0-9]+):)?")
-        line = lambda match: f":{self.source_line(int(match[1]))}:" if match[1] else ""  # noqa: E731
-        number = lambda match: str(self.source_line(int(match[0])))  # noqa: E731
-        text = NAMED_LINES.sub(lambda match: LINE_NUMBER.sub(number, match[0]), text)
-        return location.sub(lambda match: f"{self.name}{line(match)}", text)
+
+        def renumbered(match: re.Match[str]) -> str:
+            return LINE_NUMBER.sub(lambda number: str(self.source_line(int(number[0]))), match[0])
+
+        text = NAMED_LINES.sub(renumbered, text)
+        text = re.sub(rf"(?<={re.escape(str(self.path))}):[0-9]+:", renumbered, text)
+        return text.replace(str(self.path), self.name)
 
 
 def filter_for(program: Path, ini: Ini) -> str | None:

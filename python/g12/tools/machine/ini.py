@@ -65,7 +65,6 @@ class Ini:
 
     @property
     def axes(self) -> str:
-        """The letters of the machine's axes."""
         return coordinates_of(self.get)
 
     @property
@@ -75,7 +74,6 @@ class Ini:
 
     @property
     def settings(self) -> Settings:
-        """The settings of section [G12]."""
         return self._valid(lambda: settings_from_lines(self.lines))
 
     @property
@@ -181,10 +179,10 @@ def _entries(key: str, value: Value) -> list[str]:
     if value is None:
         return []
     values = value if isinstance(value, (list, tuple)) else [value]
-    return [part for item in values for part in _parts(f"{key} = {item}")]
+    return [part for item in values for part in broken_line(f"{key} = {item}")]
 
 
-def _parts(line: str) -> list[str]:
+def broken_line(line: str) -> list[str]:
     """Return a line, broken where it is longer than LinuxCNC reads."""
     starts = range(0, len(line), LONGEST_PART)
     *parts, last = (line[start : start + LONGEST_PART] for start in starts)

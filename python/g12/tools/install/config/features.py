@@ -53,6 +53,13 @@ MEANING = {
         name: f".nc files are opened as programs of {control}" for name, control in CONTROLS.items()
     },
 }
+FIRST_STEPS = {  # what to try of a feature, besides a code
+    POLAR_SHAPES: "o<polar_polygon> call is answered with what it needs; nothing moves",
+    SPINDLE_AS_C: "home, M254: the spindle turns to its index and to C; M255 gives it back",
+    KINEMATICS: "home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back",
+    FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
+}
+FILTER_SUFFIX = "nc"  # of other controls' programs
 SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
 CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
@@ -71,7 +78,6 @@ CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the 
 }
 
 CLOSE = 0.8  # least similarity of a misspelt name
-INTERPRETER_SECTION = "RS274NGC"  # which the files of configs/include go into
 
 
 def own_names(remap: Remap) -> set[str]:
@@ -84,7 +90,7 @@ def own_names(remap: Remap) -> set[str]:
 def remaps_of(feature: str) -> tuple[Remap, ...]:
     """Return the REMAP lines of a feature, from its file in configs/include."""
     lines = (INCLUDES / REMAP_FILES[feature]).read_text(encoding="utf-8").splitlines()
-    entries = entries_of([f"[{INTERPRETER_SECTION}]", *lines], INTERPRETER_SECTION)
+    entries = entries_of(["[RS274NGC]", *lines], "RS274NGC")
     return tuple(remap_from_value(value) for _, key, value in entries if key == "REMAP")
 
 
@@ -115,13 +121,18 @@ def names_of(feature: str) -> list[str]:
     return list(dict.fromkeys([*called, *CALLED_SUBS.get(feature, ())]))
 
 
-def harmless(feature: str) -> str | None:
-    """Return a block without effect outside a section, None without sections."""
-    if feature in POLAR_FEATURES:
-        return remaps_of(feature)[1].code
-    return f"{remaps_of(feature)[0].code} C0" if feature == "cylinder" else None
+def first_step(feature: str) -> str:
+    """Return what to try of a feature, and what happens: nothing moves."""
+    if feature in FIRST_STEPS:
+        return FIRST_STEPS[feature]
+    if feature in CONTROLS:
+        return f"open a .{FILTER_SUFFIX} program of {CONTROLS[feature]}"
+    codes = [remap.code for remap in remaps_of(feature)]
+    if feature in (*POLAR_FEATURES, "cylinder"):
+        block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0"
+        return f"{block:6} does nothing, and is no error"
+    return f"{codes[0]:6} is answered with what it needs; nothing moves"
 
 
 def functions_of(feature: str) -> list[str]:
-    """Return the Python functions that a feature's codes call."""
     return list(dict.fromkeys(name for remap in remaps_of(feature) for name in remap.handlers))

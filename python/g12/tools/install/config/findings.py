@@ -6,6 +6,7 @@ change.
 """
 
 from dataclasses import dataclass
+from functools import partial
 
 PROBLEM, WARNING, NOTE = "problem", "warning", "note"
 
@@ -20,16 +21,6 @@ class ConfigFinding:
     cure: str
 
 
-def problem(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding that prevents a code from working."""
-    return ConfigFinding(PROBLEM, kind, text, cure)
-
-
-def warning(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding of surprising behaviour."""
-    return ConfigFinding(WARNING, kind, text, cure)
-
-
-def note(kind: str, text: str, cure: str) -> ConfigFinding:
-    """Return a finding that needs no change, but that the owner should know."""
-    return ConfigFinding(NOTE, kind, text, cure)
+problem = partial(ConfigFinding, PROBLEM)
+warning = partial(ConfigFinding, WARNING)
+note = partial(ConfigFinding, NOTE)

@@ -8,6 +8,7 @@ AXIS loads one as a Tcl package. Some screens of QtVCP contain one. GladeVCP mak
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 from g12.lengths import is_inch
@@ -48,22 +49,19 @@ AXIS, QTVCP, GLADEVCP = "axis", "qtvcp", "gladevcp"  # the program whose ngcgui 
 
 def screen_of(config: Config) -> str:
     """Return the program that a config's screen is, "" if it names none."""
-    words = (config.ini.get("DISPLAY", "DISPLAY") or "").split()
-    return Path(words[0]).name if words else ""
+    return Path("".join((config.ini.get("DISPLAY", "DISPLAY") or "").split()[:1])).name
 
 
 def ngcgui_of(config: Config) -> str:
     """Return the program whose ngcgui shows the forms on a config's screen."""
-    screen, *options = (config.ini.get("DISPLAY", "DISPLAY") or "").split() or [""]
-    if Path(screen).name == "axis":
-        return AXIS
-    own_page = any(word.startswith(QTVCP_WITH_NGCGUI) for word in options)
-    return QTVCP if Path(screen).name == "qtvcp" and own_page else GLADEVCP
+    screen, words = screen_of(config), (config.ini.get("DISPLAY", "DISPLAY") or "").split()
+    own_page = any(word.startswith(QTVCP_WITH_NGCGUI) for word in words[1:])
+    return screen if screen == AXIS or (screen == QTVCP and own_page) else GLADEVCP
 
 
 def files_of(config: Config, features: Iterable[str]) -> list[str]:
     """Return the files of the features' forms, in the machine's unit."""
-    unit = UNIT_NAMES[0] if is_inch(config.ini.mm) else UNIT_NAMES[1]
+    unit = "inch" if is_inch(config.ini.mm) else "mm"
     return [f"{form}_{unit}.ngc" for feature in features for form in FORMS_OF.get(feature, ())]
 
 
@@ -82,15 +80,10 @@ def lines_for(config: Config, features: Sequence[str], prefix: str) -> dict[str,
 
 def folder_of_pages(config: Config, prefix: str) -> str:
     """Return the path before a form's name: QtVCP searches one folder for plain names."""
-    if ngcgui_of(config) != QTVCP or not own_page_folder(config, prefix):
+    folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+    if ngcgui_of(config) != QTVCP or folder in (None, f"{prefix}/ngc"):
         return ""
-    return f"{prefix if Path(prefix).is_absolute() else f'{HERE}/{prefix}'}/ngc/"
-
-
-def own_page_folder(config: Config, prefix: str) -> str:
-    """Return the folder of the user's own ngcgui pages for QtVCP, "" if the INI names none."""
-    folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH") or ""
-    return "" if folder == f"{prefix}/ngc" else folder
+    return f"{HERE / Path(prefix)}/ngc/"
 
 
 def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
@@ -105,9 +98,8 @@ def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
         return {}
     if screen not in TABS:
         return {"HAL": [f"HALCMD = {OWN_WINDOW}{prefix}/{GLADE_FILE}"]}
-    locations, tabs = (
-        config.ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME")
-    )
+    ini = config.ini
+    locations, tabs = (ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME"))
     # Screens pair names and locations by number: if a tab of the user has none, this one has none.
     location = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(locations) == len(tabs) else []
     command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{GLADE_FILE}"
@@ -135,7 +127,6 @@ def shown(config: Config) -> list[str]:
 
 
 def form_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Find what prevents forms from being shown or from working."""
     forms = shown(config)
     for form in forms:
         yield from form_finding(config, form)
@@ -144,15 +135,12 @@ def form_findings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def form_finding(config: Config, form: str) -> Iterator[ConfigFinding]:
-    """Find the fault of one form."""
     stem = form.rpartition("_")[0]
     own = {feature: names for feature, names in FORMS_OF.items() if stem in names}
     parts = FACE_FORM_SUBS if "polar-shapes" in own else FORM_SUBS
     missing = [name for name in (form, *parts) if not subs_named(config.ini, name)]
     if missing:
-        known = [
-            f"{name}_{unit}" for names in FORMS_OF.values() for name in names for unit in UNIT_NAMES
-        ]
+        known = [f"{name}_{unit}" for name in chain(*FORMS_OF.values()) for unit in UNIT_NAMES]
         cure = "add the package's folder ngc to SUBROUTINE_PATH, or run install again"
         yield problem(
             "form",
@@ -170,7 +158,6 @@ def form_finding(config: Config, form: str) -> Iterator[ConfigFinding]:
 
 
 def axis_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Find an AXIS that loads no ngcgui."""
     if NGCGUI not in packages(config):
         loaded = " and ".join(packages(config)) or "nothing"
         yield problem(
@@ -181,7 +168,6 @@ def axis_findings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def gladevcp_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Find a screen without GladeVCP's ngcgui, or one that has no folder for its programs."""
     screen = screen_of(config)
     if not any(file.is_file() for file in pages_of_gladevcp(config)):
         tab = f"[DISPLAY] EMBED_TAB_NAME = Forms, EMBED_TAB_COMMAND = {TAB}"
@@ -207,7 +193,8 @@ def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
     folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
     for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"):
         is_form = Path(name).name.startswith("form_")
-        if is_form and not (folder and qtvcp_file(config, folder, name).is_file()):
+        file = name.replace(HERE, str(config.folder), 1)
+        if is_form and not (folder and (folder_from_ini(config.ini, folder) / file).is_file()):
             yield problem(
                 "form",
                 f"[DISPLAY] NGCGUI_SUBFILE_PATH = {folder or 'nothing'}, NGCGUI_SUBFILE = {name}: "
@@ -215,12 +202,6 @@ def qtvcp_findings(config: Config) -> Iterator[ConfigFinding]:
                 "have NGCGUI_SUBFILE_PATH = g12/ngc; if your own pages need that line, "
                 f"NGCGUI_SUBFILE = {HERE}/g12/ngc/{Path(name).name}",
             )
-
-
-def qtvcp_file(config: Config, folder: str, name: str) -> Path:
-    """Return the file that a QtVCP screen shows as a page."""
-    name = name.replace(HERE, str(config.folder), 1)
-    return folder_from_ini(config.ini, folder) / name
 
 
 SCREEN_RULES = {AXIS: axis_findings, QTVCP: qtvcp_findings, GLADEVCP: gladevcp_findings}

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.ini_sections import entries_of, included_file, section_extent
+from g12.ini_sections import entries_of, included_file, key_and_value, section_extent
 from g12.tools.machine.ini import Ini, IniError
 
 BEGIN_MARK = "# >>> g12 install"
@@ -35,7 +35,6 @@ class IniLine(NamedTuple):
 
     @property
     def location(self) -> str:
-        """File and line number for messages."""
         return f"{self.file.name}:{self.row + 1}"
 
 
@@ -57,23 +56,12 @@ def to_bytes(lines: Sequence[str]) -> bytes:
 
 
 def line_end(lines: Sequence[str]) -> str:
-    """Return the line end that a file uses."""
     return "\r\n" if lines and lines[0].endswith("\r\n") else "\n"
-
-
-def is_entry(text: str) -> bool:
-    """Return whether a line is an entry: neither blank nor a comment."""
-    return bool(text.strip()) and text.lstrip()[0] not in "#;"
 
 
 def belongs(text: str) -> bool:
     """Return whether a line belongs to the section before it; comments may not."""
-    return is_entry(text) or text.startswith(END_MARK)
-
-
-def opens_section(text: str, section: str) -> bool:
-    """Return whether LinuxCNC takes the line for the header of that section."""
-    return text.lstrip().startswith(f"[{section}]")
+    return bool(key_and_value(text)[0]) or text.startswith(END_MARK)
 
 
 def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
@@ -92,8 +80,12 @@ class IniText:
         self.unreadable: list[IniLine] = []
         self._lines: list[IniLine] = []
         self._files_of_lines: dict[Path, list[str]] = {}
-        for line in self._own_lines():
-            self._load_included(line)
+        for line in self._lines_of(self.path):
+            included = included_file(line.text, self.path.parent)
+            if included and included.is_file():
+                self.files[included] = self._read(included)
+            elif included or line.text.split() == ["#INCLUDE"]:
+                self.unreadable.append(line)
 
     def _read(self, path: Path) -> list[str]:
         try:
@@ -101,16 +93,9 @@ class IniText:
         except OSError as error:
             raise IniError(f"{path}: {error.strerror}") from error
 
-    def _load_included(self, line: IniLine) -> None:
-        included = included_file(line.text, self.path.parent)
-        if included and included.is_file():
-            self.files[included] = self._read(included)
-        elif included or line.text.split() == ["#INCLUDE"]:
-            self.unreadable.append(line)
-
-    def _own_lines(self) -> Iterator[IniLine]:
-        for index, text in enumerate(self.files[self.path]):
-            yield IniLine(self.path, index, text.rstrip("\r\n"), index)
+    def _lines_of(self, file: Path, host: int | None = None) -> Iterator[IniLine]:
+        for row, text in enumerate(self.files[file]):
+            yield IniLine(file, row, text.rstrip("\r\n"), row if host is None else host)
 
     def lines(self) -> Sequence[IniLine]:
         """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes.
@@ -123,23 +108,21 @@ class IniText:
         return self._lines
 
     def _expanded(self) -> Iterator[IniLine]:
-        folder = self.path.parent
-        for line in self._own_lines():
+        for line in self._lines_of(self.path):
             yield line
-            included = included_file(line.text, folder)
-            for index, text in enumerate(self.files.get(included, ())):
-                yield IniLine(included, index, text.rstrip("\r\n"), line.row)
+            included = included_file(line.text, self.path.parent)
+            if included in self.files:
+                yield from self._lines_of(included, line.row)
 
     def ini(self) -> Ini:
         """Return the expanded INI, edits included, for looking values up."""
-        folder, texts = self.path.parent, [line.text for line in self.lines()]
-        included = (included_file(text, folder) for text in texts)
-        pairs = zip(texts, included)
-        return Ini(self.path, tuple(text for text, file in pairs if file not in self.files))
+        texts, folder = (line.text for line in self.lines()), self.path.parent
+        kept = (text for text in texts if included_file(text, folder) not in self.files)
+        return Ini(self.path, tuple(kept))
 
     def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
-        return [line for line in self.lines() if opens_section(line.text, section)]
+        return [line for line in self.lines() if line.text.lstrip().startswith(f"[{section}]")]
 
     def section(self, section: str) -> list[IniLine]:
         """Return the lines LinuxCNC finds in a section, its header first."""
@@ -187,10 +170,6 @@ class IniText:
             index += 1
         return index + 1
 
-    def end_of_file(self) -> InsertionPoint:
-        """Return the point at the end of the INI itself."""
-        return InsertionPoint(self.path, len(self.files[self.path]))
-
     def insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
         """Insert lines. At the end of a file without a last line end they have none either."""
         lines = self.files[point.file]
@@ -213,7 +192,6 @@ class IniText:
         lines[line.row] = text + lines[line.row][len(line.text) :]
 
     def append_to_value(self, line: IniLine, text: str) -> None:
-        """Append to the value of the entry that begins at ``line``."""
         index = self._after(line.file, line.row) - 1
         lines = self.files[line.file]
         body = lines[index].rstrip()
@@ -229,38 +207,38 @@ class IniText:
     def blocks(self) -> list[list[IniLine]]:
         """Return the marked blocks, markers included, of the INI and its included files."""
         blocks: list[list[IniLine]] = []
-        open_ = False
+        block: list[IniLine] = []
         for line in self.lines():
-            if line.text.startswith(BEGIN_MARK):
-                if open_:
-                    break
-                blocks.append([])
-                open_ = True
-            if open_:
-                blocks[-1].append(line)
-            if line.text.startswith(END_MARK):
-                if not open_:
-                    raise IniError(
-                        f'{line.location}: the line "{BEGIN_MARK}" that begins this is missing: '
-                        "put it in front of the first line that install wrote"
-                    )
-                open_ = False
-        if open_:
+            begins, ends = map(line.text.startswith, (BEGIN_MARK, END_MARK))
+            if begins and block:
+                break
+            if ends and not block:
+                raise IniError(
+                    f'{line.location}: the line "{BEGIN_MARK}" that begins this is missing: '
+                    "put it in front of the first line that install wrote"
+                )
+            if begins or block:
+                block.append(line)
+            if ends:
+                blocks.append(block)
+                block = []
+        if block:
             raise IniError(
-                f'{blocks[-1][0].location}: the line "{END_MARK}" that ends this is missing: '
+                f'{block[0].location}: the line "{END_MARK}" that ends this is missing: '
                 "put it after the last line that install wrote there"
             )
         return blocks
 
     def remove(self, doomed: Sequence[IniLine]) -> None:
-        """Remove lines."""
         for file in {line.file for line in doomed}:
             indices = {line.row for line in doomed if line.file == file}
             self.files[file] = without(self.files[file], indices)
 
 
 def other_inis(text: IniText) -> Iterator[IniText]:
-    """Yield the other INIs of an INI's folder, without links to it."""
+    """Yield the folder's other INIs, without links, with the edits of files that they include."""
     for path in sorted(text.path.parent.glob("*.ini")):
         if path.is_file() and not path.samefile(text.path):
-            yield IniText(path)
+            other = IniText(path)
+            other.files |= {file: text.files[file] for file in other.files.keys() & text.files}
+            yield other

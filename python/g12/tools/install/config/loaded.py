@@ -9,9 +9,10 @@ from functools import cached_property
 from pathlib import Path
 
 from g12.machine_ini import Remap, remap_from_value
+from g12.settings import Settings
 from g12.tools.install.config.features import model_of
 from g12.tools.install.config.ini_edit import IniLine, IniText
-from g12.tools.machine.ini import Ini, Overrides
+from g12.tools.machine.ini import Ini, IniError, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
 from g12.tools.preview.tracer import TraceFailure, Tracer
 
@@ -53,6 +54,12 @@ class Python:
     package: Path | None = None
     error: str | None = None
 
+    @property
+    def users(self) -> dict[str, str | None]:
+        """The functions of ``remap`` that are not the package's."""
+        modules = self.remap.items()
+        return {name: module for name, module in modules if (module or "").split(".")[0] != "g12"}
+
 
 @dataclass(frozen=True)
 class Code:
@@ -69,33 +76,38 @@ class Config:
     """A machine config: its lines, values and REMAP lines, and the loaded interpreter's state.
 
     ``version`` is LinuxCNC's, empty if its Python modules are missing. ``python`` is None if the
-    interpreter did not run. ``owned`` has the queried codes that are LinuxCNC's own. ``failure`` is
-    the interpreter's own text if it does not load the config. ``diameters`` are those of the tool
-    table, in mm by tool number.
+    interpreter did not run. ``owned`` has the package's codes that are LinuxCNC's own.
+    ``failure`` is the interpreter's own text if it does not load the config. ``diameters`` are
+    those of the tool table, in mm by tool number.
     """
 
     text: IniText
     ini: Ini
     remaps: list[tuple[IniLine, Remap]]
     version: str
-    python: Python | None
-    owned: frozenset[str]
-    failure: str | None
+    python: Python | None = None
+    owned: frozenset[str] = frozenset()
+    failure: str | None = None
     diameters: dict[int, float] | None = None
 
     @property
     def folder(self) -> Path:
-        """The config's folder, which LinuxCNC works in."""
         return self.ini.directory
 
     @cached_property
+    def settings(self) -> Settings | None:
+        """The settings of section [G12], None where one is wrong."""
+        try:
+            return self.ini.settings
+        except IniError:
+            return None
+
+    @cached_property
     def codes(self) -> list[Code]:
-        """The REMAP lines that are the package's."""
         return codes_of(self.remaps)
 
     @cached_property
     def features(self) -> dict[str, None]:
-        """The features with such a line, in their order."""
         return dict.fromkeys(code.feature for code in self.codes)
 
 
@@ -110,25 +122,20 @@ def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
     return [Code(line, remap, *model) for line, remap, model in found if model]
 
 
-def load_config(text: IniText, codes: set[str], overlay: Overrides | None = None) -> Config:
-    """Return the config of an INI, loaded by LinuxCNC; ``codes`` are G codes to query.
-
-    ``overlay`` replaces values for the interpreter, as in `Ini.replaced`.
-    """
-    ini = text.ini().replaced(overlay or {})
-    version = linuxcnc_version()
+def load_config(text: IniText, ini: Ini | None = None) -> Config:
+    """Return the config of an INI, loaded by LinuxCNC: as ``ini`` instead, if that is given."""
+    ini, remaps, version = ini or text.ini(), remaps_in(text), linuxcnc_version()
     if not version:
-        return Config(text, ini, remaps_in(text), version, None, frozenset(), "no LinuxCNC")
+        return Config(text, ini, remaps, version, failure="no LinuxCNC")
     failure = load_failure(ini)
-    python, owned, diameters = None, frozenset[str](), None
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = python_of(tracer)
+            codes = {code.remap.code for code in codes_of(remaps)}
             owned = frozenset(code for code in codes if is_owned(tracer, code))
-            diameters = tracer.diameters
+            return Config(text, ini, remaps, version, python, owned, failure, tracer.diameters)
     except TraceFailure as refused:
-        failure = failure or str(refused)
-    return Config(text, ini, remaps_in(text), version, python, owned, failure, diameters)
+        return Config(text, ini, remaps, version, failure=failure or str(refused))
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
@@ -169,10 +176,9 @@ def sub_folders(ini: Ini) -> list[Path]:
     """Return the folders that LinuxCNC searches for NGC subs, in its order."""
     prefix = ini.get("DISPLAY", "PROGRAM_PREFIX")
     names = [name for name in ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":") if name]
-    existing = [folder for folder in (folder_from_ini(ini, name) for name in names)
-                if folder.exists()]  # fmt: skip
+    folders = [folder_from_ini(ini, name) for name in names]
     first = [ini.directory, *([folder_from_ini(ini, prefix)] if prefix else [])]
-    return [*first, *existing[:MOST_FOLDERS]]
+    return [*first, *[folder for folder in folders if folder.exists()][:MOST_FOLDERS]]
 
 
 def subs_named(ini: Ini, name: str) -> list[Path]:

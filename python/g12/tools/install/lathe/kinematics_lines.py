@@ -20,11 +20,12 @@ from g12.tools.install.lathe.kinematics_rules import (
     GUARD_HAL,
     KINEMATICS_PAGE,
     OFFSET_HAL,
+    SHARE,
+    are_of_lathe,
     codes_off,
     hal_files,
 )
 
-SHARE = 0.7  # of the slide's acceleration, for X and Y each
 LIMIT_KEYS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
 CHANGED_ENTRIES = (  # entries whose value changes
     ("KINS", "KINEMATICS"),
@@ -42,22 +43,15 @@ KINEMATICS_LINE = re.compile(
 CURE = f"by hand: the steps in {KINEMATICS_PAGE}, and check reports what is missing or wrong"
 
 
-def not_changed(text: str) -> ConfigFinding:
-    """Return why `install` does not change a machine's kinematics."""
-    return problem(
-        "kinematics", f"{text}: install leaves the kinematics of this machine alone", CURE
-    )
-
-
 def obstacles(config: Config, text: IniText, requested: Sequence[str]) -> Iterator[ConfigFinding]:
-    """Yield the obstacles to an installation of the kinematics."""
     if not code_off(config, requested):
         yield problem(
             "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
         )
     rules = (wrong_joints(config), wrong_limits(config), wrong_entries(config, text))
     for reason in chain(*rules, wrong_hal(config)):
-        yield not_changed(reason)
+        alone = f"{reason}: install leaves the kinematics of this machine alone"
+        yield problem("kinematics", alone, CURE)
 
 
 def code_off(config: Config, requested: Sequence[str]) -> str:
@@ -76,12 +70,11 @@ def joints(config: Config) -> str:
 
 
 def wrong_joints(config: Config) -> Iterator[str]:
-    """Yield unusual entries of [KINS] and [TRAJ]."""
     letters, found = joints(config), config.ini.get("KINS", "KINEMATICS", "nothing")
     axes = coordinates_of(config.ini.get)
     if not letters:
         yield f"[KINS] KINEMATICS = {found} is not trivkins coordinates=…"
-    elif not {"X", "C"} <= set(letters) or "Y" in letters or len(set(letters)) < len(letters):
+    elif not are_of_lathe(letters):
         yield f"[KINS] coordinates={letters} is not X and C, each once, without Y"
     elif set(axes) != set(letters):
         yield f"[TRAJ] COORDINATES = {' '.join(axes)} is not coordinates={letters}"
@@ -90,7 +83,6 @@ def wrong_joints(config: Config) -> Iterator[str]:
 
 
 def wrong_limits(config: Config) -> Iterator[str]:
-    """Yield unusual limits of X and C, and an axis Y."""
     letters = joints(config)
     if "X" not in letters:
         return
@@ -98,9 +90,7 @@ def wrong_limits(config: Config) -> Iterator[str]:
     needed = [*(("AXIS_X", key) for key in LIMIT_KEYS), *((slide, key) for key in LIMIT_KEYS)]
     needed += [("AXIS_C", key) for key in LIMIT_KEYS[2:]]
     values = {key: leading_number(config.ini.get(*key) or "") for key in needed}
-    for (section, key), value in values.items():
-        if value is None:
-            yield f"[{section}] has no {key}"
+    yield from (f"[{key[0]}] has no {key[1]}" for key, value in values.items() if value is None)
     ends = [values[section, "MAX_LIMIT"] for section in ("AXIS_X", slide)]
     if None not in ends and (ends[0] <= 0.0 or not isclose(*ends)):
         yield f"[AXIS_X] and [{slide}] have MAX_LIMIT {ends[0]:g} and {ends[1]:g}"
@@ -121,30 +111,26 @@ def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
 
 
 def wrong_hal(config: Config) -> Iterator[str]:
-    """Yield unusual lines of the HAL files."""
     names = [value.split()[0] for value in config.ini.all("HAL", "HALFILE") if value.strip()]
     for name in names:
         if not name.endswith(".hal") or not folder_from_ini(config.ini, name).is_file():
             yield f"[HAL] HALFILE = {name} is no HAL file beside the INI"
     if config.ini.get("HAL", "TWOPASS"):
         yield "[HAL] TWOPASS is set"
-    lines = [line for lines in hal_files(config) for line in lines]
-    if any(line.text.startswith("source ") for line in lines):
+    texts = [line.text for line in chain(*hal_files(config))]
+    if any(text.startswith("source ") for text in texts):
         yield "a HAL file has a source line"
-    if not any(LOADS_MODULE.match(line.text) for line in lines):
+    if not any(map(LOADS_MODULE.match, texts)):
         yield "no HAL file has loadrt [KINS]KINEMATICS"
-    if not any(ADDS_CONTROLLER.match(line.text) for line in lines):
+    if not any(map(ADDS_CONTROLLER.match, texts)):
         yield "no HAL file has addf motion-controller servo-thread"
 
 
 def in_place(config: Config) -> Iterator[tuple[str, str, str]]:
     """Yield section, key and new value of the entries that change."""
-    letters = joints(config)
-    axes = coordinates_of(config.ini.get)
-    after_x = axes.index("X") + 1
     values = limits(config)
-    yield "KINS", "KINEMATICS", f"{FACE_KINEMATICS} coordinates={letters}"
-    yield "TRAJ", "COORDINATES", " ".join(f"{axes[:after_x]}Y{axes[after_x:]}")
+    yield "KINS", "KINEMATICS", f"{FACE_KINEMATICS} coordinates={joints(config)}"
+    yield "TRAJ", "COORDINATES", " ".join(coordinates_of(config.ini.get).replace("X", "XY"))
     yield "AXIS_X", "MIN_LIMIT", values["MIN_LIMIT"]
     yield "AXIS_X", "MAX_ACCELERATION", values["MAX_ACCELERATION"]
     if config.ini.get("G12", "POLAR_KINEMATICS"):
@@ -152,15 +138,12 @@ def in_place(config: Config) -> Iterator[tuple[str, str, str]]:
 
 
 def limits(config: Config) -> dict[str, str]:
-    """Return the limits of the face's X and Y."""
-    most, slide = config.ini.get("AXIS_X", "MAX_LIMIT"), f"JOINT_{joints(config).index('X')}"
-    acceleration = leading_number(config.ini.get(slide, "MAX_ACCELERATION"))
-    return {
-        "MIN_LIMIT": f"{-leading_number(most):.10g}",
-        "MAX_LIMIT": f"{leading_number(most):.10g}",
-        "MAX_VELOCITY": f"{leading_number(config.ini.get('AXIS_X', 'MAX_VELOCITY')):.10g}",
-        "MAX_ACCELERATION": f"{SHARE * acceleration:.10g}",
-    }
+    slide = f"JOINT_{joints(config).index('X')}"
+    most = config.ini.number("AXIS_X", "MAX_LIMIT", 0.0)
+    speed = config.ini.number("AXIS_X", "MAX_VELOCITY", 0.0)
+    acceleration = SHARE * config.ini.number(slide, "MAX_ACCELERATION", 0.0)
+    values = zip(LIMIT_KEYS, (-most, most, speed, acceleration))
+    return {key: f"{value:.10g}" for key, value in values}
 
 
 def added(config: Config, requested: Sequence[str], prefix: str) -> dict[str, list[str]]:

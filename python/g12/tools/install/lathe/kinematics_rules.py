@@ -8,7 +8,7 @@ step of the page has a rule here.
 import re
 import shutil
 from collections.abc import Iterable, Iterator
-from itertools import product
+from itertools import chain, product
 from math import hypot
 from pathlib import Path
 from typing import NamedTuple
@@ -16,7 +16,6 @@ from typing import NamedTuple
 from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
-from g12.settings import settings_from_lines
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
@@ -40,6 +39,7 @@ NEWEST_PIN = b".most-override"  # of the module
 LEAST_PINS = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 LIMIT_SLACK = 1.001
+SHARE = 0.7  # of the slide's acceleration, for X and Y each
 SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp
@@ -62,25 +62,19 @@ def module_file() -> Path | None:
 
 
 def is_outdated(module: Path) -> bool:
-    """Return whether a kinematics' module is older than this package."""
     return NEWEST_PIN not in module.read_bytes()
 
 
 def selects_kinematics(config: Config) -> bool:
-    """Return whether a config selects the face's kinematics."""
     return uses_face_kinematics(config) or bool(face_joints(config.ini.get))
 
 
 def uses_face_kinematics(config: Config) -> bool:
     """Return whether G12.1 moves X and Y; another rule reports a wrong setting."""
-    try:
-        return settings_from_lines(config.ini.lines).polar_kinematics == "1"
-    except Refusal:
-        return False
+    return bool(config.settings) and config.settings.polar_kinematics == "1"
 
 
 def not_used(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine that has them but does not use them."""
     if not uses_face_kinematics(config):
         yield warning(
             "kinematics-unused",
@@ -90,35 +84,26 @@ def not_used(config: Config) -> Iterator[ConfigFinding]:
 
 
 def module_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find a LinuxCNC without the module: the machine does not start."""
     module = module_file()
-    if not module:
+    if not module or is_outdated(module):
+        older = f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: G12.1 is refused"
         yield problem(
             "no-kinematics",
-            f"LinuxCNC has no module {FACE_KINEMATICS}",
-            f"build it: make kinematics ({KINEMATICS_PAGE})",
-        )
-    elif is_outdated(module):
-        yield problem(
-            "no-kinematics",
-            f"LinuxCNC's module {FACE_KINEMATICS} is older than this package: G12.1 is refused",
-            f"build it again: make kinematics ({KINEMATICS_PAGE})",
+            older if module else f"LinuxCNC has no module {FACE_KINEMATICS}",
+            f"build it{' again' if module else ''}: make kinematics ({KINEMATICS_PAGE})",
         )
 
 
 def joints_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find a [KINS] that is not the module's."""
     letters, found = face_joints(config.ini.get), config.ini.get("KINS", "KINEMATICS")
+    joints = config.ini.get("KINS", "JOINTS", "0").strip()
     if not letters:
         yield problem(
             "kins",
             f"[KINS] KINEMATICS = {found}: POLAR_KINEMATICS = 1 needs {FACE_KINEMATICS}",
             f"KINEMATICS = {FACE_KINEMATICS} coordinates=XZC (the letters of your joints)",
         )
-        return
-    joints = config.ini.get("KINS", "JOINTS", "0").strip()
-    once = len(set(letters)) == len(letters)
-    if not {"X", "C"} <= set(letters) or "Y" in letters or not once:
+    elif not are_of_lathe(letters):
         yield problem(
             "kins",
             f"[KINS] KINEMATICS: coordinates={letters}: X and C have to be there, Y may not, "
@@ -133,8 +118,12 @@ def joints_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
+def are_of_lathe(letters: str) -> bool:
+    """Return whether the letters of joints are X and C, each once, without Y."""
+    return {"X", "C"} <= set(letters) and "Y" not in letters and len({*letters}) == len(letters)
+
+
 def axes_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find axes that are not those of the face."""
     letters = face_joints(config.ini.get)
     if not letters:
         return
@@ -157,7 +146,6 @@ def axes_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find limits on the face that are not the slide's."""
     if "X" not in face_joints(config.ini.get) or any(axes_wrong(config)):
         return
     try:
@@ -182,17 +170,15 @@ def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
                 f"MAX_VELOCITY = {slide.velocity:g}",
             )
     if hypot(x.acceleration, y.acceleration) > slide.acceleration * LIMIT_SLACK:
-        least = 0.7 * slide.acceleration
         yield warning(
             "face-acceleration",
             f"[AXIS_X] and [AXIS_Y] MAX_ACCELERATION {x.acceleration:g} and {y.acceleration:g}: "
             f"together more than the slide's {slide.acceleration:g}, so G12.1 makes segments",
-            f"MAX_ACCELERATION = {least:g} in both",
+            f"MAX_ACCELERATION = {SHARE * slide.acceleration:g} in both",
         )
 
 
 def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find a guard's HAL file that is missing, too early or in conflict."""
     files = hal_files(config)
     guards = [number for number, lines in enumerate(files) if names(lines, REQUEST)]
     if not guards:
@@ -233,9 +219,10 @@ def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
 def periods_differ(config: Config) -> Iterator[ConfigFinding]:
     """Find a motion module that plans more slowly than the guard counts."""
     for text, location in all_hal(config):
-        periods = {key: period(config, value) for key, value in SETS_PERIOD.findall(text)}
-        trajectory, servo = periods.get("traj"), periods.get("servo")
-        if trajectory and servo and SMOOTHED * trajectory > SETTLED * servo:
+        values = dict(SETS_PERIOD.findall(substituted(text, config)))
+        periods = {key: leading_number(value) or 0.0 for key, value in values.items()}
+        trajectory, servo = periods.get("traj", 0.0), periods.get("servo", 0.0)
+        if servo and SMOOTHED * trajectory > SETTLED * servo:
             yield note(
                 "traj-period",
                 f"{location}: traj_period_nsec is {trajectory / servo:g} times servo_period_nsec: "
@@ -245,15 +232,12 @@ def periods_differ(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
-def period(config: Config, text: str) -> float:
-    """Return a period that a HAL line gives, itself or by the INI; 0 if it is not known."""
-    named = FROM_INI.fullmatch(text)
-    value = config.ini.get(named[1], named[2]) if named else text
-    return leading_number(value or "") or 0.0
+def substituted(text: str, config: Config) -> str:
+    """Return a HAL line with the INI's values in it."""
+    return FROM_INI.sub(lambda named: config.ini.get(named[1], named[2]) or "", text)
 
 
 def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
-    """Find lines of other HAL files that conflict with the guard's."""
     cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
     yield from pins_taken(lines, GUARD_PINS, "is the kinematics'", cure)
     for text, location in lines:
@@ -274,35 +258,30 @@ def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
                 )
 
 
-def hal_files(config: Config) -> list[list[HalLine]]:
+def hal_files(config: Config, key: str = "HALFILE") -> list[list[HalLine]]:
     """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
     return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
-            for value in config.ini.all("HAL", "HALFILE") if value.strip()]  # fmt: skip
+            for value in config.ini.all("HAL", key) if value.strip()]  # fmt: skip
 
 
 def hal_lines(path: Path) -> list[HalLine]:
-    """Return the effective lines of a HAL file."""
-    try:
-        texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError:
+    """Return the lines of a HAL file that are not blank, without comments."""
+    if not path.is_file():
         return []
+    texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
     bare = ((text.partition("#")[0].strip(), number) for number, text in enumerate(texts, 1))
     return [HalLine(text, f"{path.name}:{number}") for text, number in bare if text]
 
 
 def names(lines: list[HalLine], *words: str) -> bool:
-    """Return whether a HAL file has one of some words."""
     return any(word in line.text for line in lines for word in words)
 
 
 def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find kinematics with another distance of the tool from the X line than G12.1's."""
-    try:
-        offset = settings_from_lines(config.ini.lines).polar_tool_offset
-    except Refusal:
-        return
-    values = [set_offset(line.text, offset) for line in all_hal(config)]
-    found = next((value for value in reversed(values) if value is not None), 0.0)
+    matches = (SETS_OFFSET.fullmatch(substituted(line.text, config)) for line in all_hal(config))
+    *_, found = 0.0, *(leading_number(match[1]) or 0.0 for match in matches if match)
+    offset = config.settings.polar_tool_offset if config.settings else found
     if found != offset:
         yield problem(
             "tool-offset",
@@ -311,26 +290,15 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def set_offset(text: str, from_ini: float) -> float | None:
-    """Return the value that a HAL line sets for the offset's pin, None for another line."""
-    match = SETS_OFFSET.fullmatch(text)
-    if not match:
-        return None
-    if match[1] in ("[G12]POLAR_TOOL_OFFSET", "[G12](POLAR_TOOL_OFFSET)"):
-        return from_ini
-    return leading_number(match[1]) or 0.0
-
-
 def later_hal(config: Config) -> list[HalLine]:
     """Return the lines of HALCMD, and of the HAL files for after the screen's start."""
     commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
-    files = (folder_from_ini(config.ini, name) for name in config.ini.all("HAL", "POSTGUI_HALFILE"))
-    return [*commands, *(line for file in files for line in hal_lines(file))]
+    return [*commands, *chain(*hal_files(config, "POSTGUI_HALFILE"))]
 
 
 def all_hal(config: Config) -> list[HalLine]:
     """Return all HAL lines, in LinuxCNC's order."""
-    return [*(line for lines in hal_files(config) for line in lines), *later_hal(config)]
+    return [*chain(*hal_files(config)), *later_hal(config)]
 
 
 def codes_off(config: Config) -> list[str]:
@@ -339,7 +307,6 @@ def codes_off(config: Config) -> list[str]:
 
 
 def abort_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine that an abort leaves on the face."""
     off, found = codes_off(config), config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
     if off and (found or "").upper().split() != [off[0], "P"]:
         state = f" = {found}" if found else " is missing"
@@ -364,6 +331,5 @@ KINEMATICS_RULES = (
 
 
 def kinematics_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Yield the findings about the face's kinematics, where a config selects them."""
     for rule in KINEMATICS_RULES if selects_kinematics(config) else ():
         yield from rule(config)

@@ -22,27 +22,19 @@ def geometry_for(axes: str) -> str:
     return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
 
 
-def turns_with_c(geometry: str) -> bool:
-    """Return whether a GEOMETRY turns the picture by C before it moves along X."""
-    letters = geometry.upper().replace("-", "")
-    return "C" in letters and letters.find("C") < letters.find("X")
-
-
 def without_geometry(config: Config) -> Iterator[ConfigFinding]:
-    """Find a screen that draws sections as if C did not turn the part."""
     found = config.ini.get("DISPLAY", "GEOMETRY") or ""
-    if screen_of(config) not in WITH_PREVIEW or turns_with_c(found):
-        return
-    yield warning(
-        "geometry",
-        f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a section "
-        "as a line to and fro along X",
-        f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
-    )
+    turns_first = "C" in found.upper().partition("X")[0]
+    if screen_of(config) in WITH_PREVIEW and not turns_first:
+        yield warning(
+            "geometry",
+            f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a "
+            "section as a line to and fro along X",
+            f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
+        )
 
 
 def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
-    """Find a C axis that unwinds all its turns."""
     low, high = (config.ini.number("AXIS_C", key, default)
                  for key, default in (("MIN_LIMIT", -1e99), ("MAX_LIMIT", 1e99)))  # fmt: skip
     wrapped = config.ini.number("AXIS_C", "WRAPPED_ROTARY", 0.0)
@@ -56,7 +48,6 @@ def unwinding_c(config: Config) -> Iterator[ConfigFinding]:
 
 
 def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
-    """Find a position of G28 that was never set: it is machine zero."""
     path = config.ini.file("RS274NGC", "PARAMETER_FILE")
     if "G28" in unset_positions(config.ini):
         yield note(
@@ -68,7 +59,6 @@ def never_set_g28(config: Config) -> Iterator[ConfigFinding]:
 
 
 def lathe_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Yield the warnings for a lathe with C that has some of its features."""
     if "C" in config.ini.axes and not config.features.keys().isdisjoint(ON_A_LATHE):
         yield from without_geometry(config)
         yield from unwinding_c(config)

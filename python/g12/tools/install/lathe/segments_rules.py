@@ -23,7 +23,6 @@ EXAMPLE_FEEDS = (1000.0, 2000.0)  # mm/min
 
 
 def hexagon() -> list[Curve]:
-    """Return the path of the cutter's centre around the hexagon."""
     path: list[Curve] = []
     for side in range(6):
         turn = complex(0.5, -sqrt(0.75)) ** side
@@ -40,7 +39,6 @@ CONTOURS: dict[str, list[Curve]] = {
 
 
 def takes(path: list[Curve], axes: LatheAxes) -> str:
-    """Return a text for the times of a contour."""
     times = (
         section_times([Leg(curve, feed / 60.0) for curve in path], axes) for feed in EXAMPLE_FEEDS
     )

@@ -123,17 +123,14 @@ def signals(lines: Iterable[HalLine]) -> dict[str, str]:
     found = {}
     for text, _ in lines:
         command, *words = text.split() or [""]
-        if command == "net" and words:
+        if command == "linkps":
+            words.reverse()
+        if command in ("net", "linkps", "linksp") and words:
             found.update(dict.fromkeys(words[1:], words[0]))
-        elif command == "linkps" and len(words) > 1:
-            found[words[0]] = words[-1]
-        elif command == "linksp" and len(words) > 1:
-            found[words[-1]] = words[0]
     return found
 
 
 def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
-    """Yield the obstacles to an installation."""
     if pins is None:
         yield problem(
             "pins",
@@ -145,9 +142,8 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
                       f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
     lines = all_hal(config)
-    found = signals(lines)
-    for pin, _ in (SIGNALS[key] for key in ENCODER):
-        if pin not in found:
+    for pin in (SIGNALS[key][0] for key in ENCODER):
+        if pin not in signals(lines):
             yield problem(
                 "spindle-c",
                 f"no HAL file connects {pin}",
@@ -201,14 +197,12 @@ def spindle_sections(
 
 
 def spindle_c_findings(config: Config) -> Iterator[ConfigFinding]:
-    """Yield the findings about a spindle that becomes C, where a REMAP line selects it."""
     if any(PROLOG in remap.handlers for _, remap in config.remaps):
         for rule in SPINDLE_C_RULES:
             yield from rule(config)
 
 
 def keys_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find keys of [SPINDLE_C] that the HAL file reads, and signals that are not the spindle's."""
     needed = ("JOINT", *SIGNALS, *(key for key in NUMBERS if key != "TIMEOUT"))
     missing = [key for key in needed if not config.ini.get("SPINDLE_C", key)]
     if missing:
@@ -227,7 +221,6 @@ def keys_missing(config: Config) -> Iterator[ConfigFinding]:
 
 
 def not_connected(config: Config) -> Iterator[ConfigFinding]:
-    """Find HAL files and signals of the drive that are not connected."""
     if not any(names(lines, CONNECTS) for lines in hal_files(config)):
         yield problem(
             "spindle-c-hal",
@@ -262,7 +255,6 @@ def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def index_shared(config: Config) -> Iterator[ConfigFinding]:
-    """Find a joint on the spindle's index."""
     found = signals(all_hal(config))
     index = found.get(SIGNALS["INDEX"][0])
     for pin, signal in found.items():
@@ -276,7 +268,6 @@ def index_shared(config: Config) -> Iterator[ConfigFinding]:
 
 
 def travel_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find an axis C without the limits for its restored travel."""
     missing = [key for key in ("MIN_LIMIT", "MAX_LIMIT") if not config.ini.get("AXIS_C", key)]
     if missing:
         yield problem(
@@ -287,7 +278,6 @@ def travel_missing(config: Config) -> Iterator[ConfigFinding]:
 
 
 def homing_moves(config: Config) -> Iterator[ConfigFinding]:
-    """Find a joint C that homes by moving, while the spindle is not C yet."""
     joint = f"JOINT_{letters_of_joints(config).find('C')}"
     for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
         value = config.ini.get(joint, key)
@@ -300,7 +290,6 @@ def homing_moves(config: Config) -> Iterator[ConfigFinding]:
 
 
 def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
-    """Find modules that other HAL files load too."""
     for text, location in lines:
         module = MODULES.match(text)
         if module and module[1] in OWN_MODULES:
@@ -314,36 +303,35 @@ def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
 
 
 def components_of(module: str) -> str:
-    """Return the names of spindle_c.hal's components of a module."""
     text = (ROOT / SPINDLE_C_HAL).read_text(encoding="utf-8")
     return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
 
 
 def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
-    """Find modules and pins of spindle_c.hal that other HAL files use."""
     yield from in_the_way(other_lines(config))
 
 
 def in_the_way(lines: Sequence[HalLine]) -> Iterator[ConfigFinding]:
-    """Find modules and pins of spindle_c.hal in HAL lines."""
     yield from modules_twice(lines)
-    yield from pins_taken(
-        lines, OWN_PINS, "is what the spindle becomes C by", "use another pin here"
-    )
+    owner = "is what the spindle becomes C by"
+    yield from pins_taken(lines, OWN_PINS, owner, "use another pin here")
 
 
 def other_lines(config: Config) -> list[HalLine]:
     """Return the lines of the HAL files other than spindle_c.hal, and those of HALCMD."""
-    return [line for line in all_hal(config) if not line.location.startswith("spindle_c.hal:")]
+    return [line for line in all_hal(config) if not is_of_spindle_c(line)]
+
+
+def is_of_spindle_c(line: HalLine) -> bool:
+    return line.location.startswith(f"{Path(SPINDLE_C_HAL).name}:")
 
 
 def after_own(config: Config) -> list[HalLine]:
     """Return the lines after those of spindle_c.hal."""
     lines = all_hal(config)
-    own = [number for number, line in enumerate(lines) if CONNECTS in line.text]
-    last = max((n for n, line in enumerate(lines) if line.location.startswith("spindle_c.hal:")),
-               default=own[-1] if own else len(lines))  # fmt: skip
-    return lines[last + 1 :]
+    own = [number for number, line in enumerate(lines) if is_of_spindle_c(line)]
+    own = own or [number for number, line in enumerate(lines) if CONNECTS in line.text]
+    return lines[own[-1] + 1 :] if own else []
 
 
 SPINDLE_C_RULES = (
