@@ -136,19 +136,20 @@ def no_interpreter(monkeypatch):
         if not text.ini().get("PYTHON", "TOPLEVEL"):
             return Python(), None
         if text.path not in known:
-            config = load_config(text, set())
+            config = load_config(text)
             known[text.path] = config.python or Python(), config.failure
         return known[text.path]
 
-    def loaded(text, codes, overlay=None):
+    def loaded(text, ini=None):
         remaps = remaps_in(text)
         installed = bool(codes_of(remaps))
         unasked = installed and text.path not in known
         python, failure = (Python(), None) if unasked else own_python(text)
         if installed:
             python = replace(python, remap={**python.remap, **HANDLERS})
-        ini = text.ini().replaced(overlay or {})
-        return Config(text, ini, remaps, "2.9.0", python, frozenset(), failure, {1: 6.0})
+        return Config(
+            text, ini or text.ini(), remaps, "2.9.0", python, frozenset(), failure, {1: 6.0}
+        )
 
     monkeypatch.setattr(checking, "load_config", loaded)
     monkeypatch.setattr(installation, "load_config", loaded)
@@ -166,9 +167,9 @@ def package(tmp_path_factory):
 
 def in_and_out_in_memory(path, name):
     """Put one feature into a config, check it and take it out again, without writing anything."""
-    plan = make_plan(checking.load_config(IniText(path), set()), [name])
+    plan = make_plan(checking.load_config(IniText(path)), [name])
     assert plan.changes()
-    refuse_problems(findings_of(checking.load_config(plan.text, set())))
+    refuse_problems(findings_of(checking.load_config(plan.text)))
     blocks = plan.text.blocks()
     removal.remove_blocks(plan.text, blocks)
     removal.remove_noted(plan.text, removal.notes_in(blocks), False)

@@ -3,10 +3,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from g12.tools.install import installation, removal
+from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, Python, remaps_in
+from g12.tools.install.lathe.spindle_c import Pins
+from g12.tools.install.plan import make_plan
 
 MILL = """\
 [EMC]
@@ -112,3 +118,28 @@ def content_of(folder: Path) -> dict[str, bytes]:
     """Return every file of a folder with its content."""
     files = (path for path in sorted(folder.rglob("*")) if path.is_file())
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def put_in(ini: Path, *names: str, pins: Pins | None = None, **python) -> list[str]:
+    """Install features in an INI that no LinuxCNC was asked about; return what was said."""
+    config = config_of(ini, **python)
+    return installation.write_changes(make_plan(config, names, pins), config.folder)
+
+
+def take_out(ini: Path) -> list[str]:
+    """Uninstall; return what was said."""
+    return list(removal.uninstall(IniText(ini), dry_run=False))
+
+
+@contextmanager
+def restored(ini: Path) -> Iterator[None]:
+    """Uninstall in the end; every file of the INI's folder is as it was."""
+    before = content_of(ini.parent)
+    yield
+    take_out(ini)
+    assert content_of(ini.parent) == before
+
+
+def files_of_package(*names: str) -> dict[str, bytes]:
+    """Return files of the real package, for a small one."""
+    return {name: (features.ROOT / name).read_bytes() for name in names}

@@ -77,18 +77,12 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
      "kins", "loads trivkins"),
 ]  # fmt: skip
 PERIODS = [  # of the trajectory: the INI's, the HAL line's, what is said
-    ("2000000", "[EMCMOT]TRAJ_PERIOD", "traj_period_nsec is 2 times servo_period_nsec"),
     ("2000000", "2000000", "traj_period_nsec is 2 times servo_period_nsec"),
     ("1000000", "[EMCMOT](TRAJ_PERIOD)", ""),
     ("2000000", "", ""),  # no HAL line uses it
 ]
 IN_THE_WAY = [
-    ("net probe => motion.digital-in-03", "pin-taken"),
-    ("net lube motion.analog-out-03 => pump.speed", "pin-taken"),
-    ("net type somebody.type => motion.switchkins-type", "pin-taken"),
-    ("net torch thc.feed => motion.adaptive-feed", "pin-taken"),
-    ("net door => motion.feed-inhibit", "pin-taken"),
-    ("net door => motion.jog-inhibit", "pin-taken"),
+    *((f"net own => {pin}", "pin-taken") for pin in kinematics_rules.GUARD_PINS),
     ("loadrt trivkins coordinates=XZC", "kins"),
     ("loadrt motmod num_joints=3 num_aio=2", "few-pins"),
 ]

@@ -3,15 +3,21 @@
 
 import pytest
 
-from g12.tools.install import package_copy, removal
+from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, WARNING
-from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.installation import write_changes
 from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.plan import make_plan
-from support.small_configs import LATHE, config_of, with_lines, write_config
+from support.small_configs import (
+    LATHE,
+    config_of,
+    files_of_package,
+    put_in,
+    take_out,
+    with_lines,
+    write_config,
+)
 
 SCREEN = f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}"
 
@@ -19,8 +25,7 @@ SCREEN = f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}"
 @pytest.fixture(autouse=True)
 def small_package(monkeypatch):
     files = {"python/g12/__init__.py": b"", "ngc/g12_skipped_over.ngc": b"(a sub)\n"}
-    own = ("python/toplevel.py", "python/remap.py")
-    files |= {name: (features.ROOT / name).read_bytes() for name in own}
+    files |= files_of_package("python/toplevel.py", "python/remap.py")
     monkeypatch.setattr(package_copy, "package_files", lambda: files)
 
 
@@ -67,14 +72,12 @@ def test_install_leaves_the_geometry_and_uninstall_takes_the_lines_out(tmp_path)
     """A geometry without C stays; check reports it."""
     ini = write_config(tmp_path, with_lines(SCREEN, "DISPLAY", "GEOMETRY = XZ\n"))
     before = ini.read_bytes()
-    config = config_of(ini)
-    plan = make_plan(config, ["polar"])
-    write_changes(plan, config.folder)
+    put_in(ini, "polar")
     added = set(ini.read_text().splitlines()) - set(before.decode().splitlines())
     assert not any("GEOMETRY" in line for line in added)
     own = {"remap": {"polar_on": "g12.host"}, "remap_file": "g12/python/remap.py"}
     assert make_plan(config_of(ini, **own), ["polar"]).changes() == {}
-    list(removal.uninstall(IniText(ini), dry_run=False))
+    take_out(ini)
     assert ini.read_bytes() == before
 
 

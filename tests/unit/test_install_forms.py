@@ -3,13 +3,21 @@
 
 import pytest
 
-from g12.tools.install import installation, package_copy, removal
+from g12.tools.install import package_copy
 from g12.tools.install.checking import check_report, lines_of_check
-from g12.tools.install.config import features, forms
-from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config import forms
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import findings_of
-from support.small_configs import HAAS, MILL, config_of, with_lines, write_config
+from support.small_configs import (
+    HAAS,
+    MILL,
+    config_of,
+    files_of_package,
+    put_in,
+    restored,
+    with_lines,
+    write_config,
+)
 
 AXIS = f"[DISPLAY]\nDISPLAY = axis\nCYCLE_TIME = 0.1\n\n{MILL}"
 GMOCCAPY = AXIS.replace("axis", "gmoccapy")
@@ -28,15 +36,8 @@ SUBS = {
 @pytest.fixture(autouse=True)
 def small_package(monkeypatch):
     files = {name.removeprefix("g12/"): content for name, content in SUBS.items()}
-    page = (features.ROOT / forms.GLADE_FILE).read_bytes()
-    package = {"python/g12/__init__.py": b"", forms.GLADE_FILE: page, **files}
+    package = {"python/g12/__init__.py": b"", **files_of_package(forms.GLADE_FILE), **files}
     monkeypatch.setattr(package_copy, "package_files", lambda: package)
-
-
-def put_in(ini, *names):
-    """Install without asking LinuxCNC."""
-    config = config_of(ini)
-    return installation.write_changes(make_plan(config, names), config.folder)
 
 
 def reported(ini):
@@ -62,17 +63,15 @@ OWN_TAB = with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMM
 )
 def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, lines):
     ini = write_config(tmp_path, screen)
-    before = ini.read_bytes()
-    put_in(ini, "haas", "circle-mill", "forms")
-    display = ini.read_text().partition("[RS274NGC]")[0]
-    assert lines in display
-    assert display.count("[DISPLAY]") == 1
-    assert (WINDOW in ini.read_text()) == (screen in (TK, QTAXIS))
-    assert reported(ini) == []
-    put_in(ini, "forms")
-    assert ini.read_text().count("NGCGUI_SUBFILE =") == 2
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_bytes() == before
+    with restored(ini):
+        put_in(ini, "haas", "circle-mill", "forms")
+        display = ini.read_text().partition("[RS274NGC]")[0]
+        assert lines in display
+        assert display.count("[DISPLAY]") == 1
+        assert (WINDOW in ini.read_text()) == (screen in (TK, QTAXIS))
+        assert reported(ini) == []
+        put_in(ini, "forms")
+        assert ini.read_text().count("NGCGUI_SUBFILE =") == 2
 
 
 def test_forms_of_codes_that_are_there_and_in_the_machines_unit(tmp_path):

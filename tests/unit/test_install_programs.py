@@ -3,11 +3,10 @@
 
 import pytest
 
-from g12.tools.install import installation, package_copy, removal
-from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install import package_copy
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import installed_programs, wrong_filters
-from support.small_configs import LATHE, config_of, write_config
+from support.small_configs import LATHE, config_of, put_in, restored, write_config
 
 FILTER = """\
 PROGRAM_EXTENSION = .nc Programs of haas-mill
@@ -20,22 +19,14 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: {"python/g12/__init__.py": b""})
 
 
-def put_in(ini, *names):
-    """Install without asking LinuxCNC."""
-    config = config_of(ini)
-    return installation.write_changes(make_plan(config, names), config.folder)
-
-
 def test_a_section_of_its_own(tmp_path):
     ini = write_config(tmp_path)
-    before = ini.read_bytes()
-    put_in(ini, "programs-haas-mill")
-    text = ini.read_text()
-    assert f"[FILTER]\n{FILTER}" in text
-    assert "TOPLEVEL" not in text and "REMAP" not in text
-    assert installed_programs(config_of(ini)) == ["haas-mill"]
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_bytes() == before
+    with restored(ini):
+        put_in(ini, "programs-haas-mill")
+        text = ini.read_text()
+        assert f"[FILTER]\n{FILTER}" in text
+        assert "TOPLEVEL" not in text and "REMAP" not in text
+        assert installed_programs(config_of(ini)) == ["haas-mill"]
 
 
 def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
@@ -66,22 +57,17 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     assert text in finding.text
 
 
-def test_a_lathes_programs_need_settings(tmp_path):
-    ini = write_config(tmp_path, LATHE.replace("[TRAJ]\n", "[TRAJ]\nSPINDLES = 2\n"))
-    before = ini.read_bytes()
-    put_in(ini, "programs-doosan-lathe")
-    assert "POLAR_Z = allow\nLIVE_SPINDLE = 1\n" in ini.read_text()
-    assert ini.read_text().count("POLAR_Z") == 1
-    put_in(ini, "programs-doosan-lathe")
-    assert ini.read_text().count("LIVE_SPINDLE") == 1
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_bytes() == before
-
-
-def test_a_mills_programs_on_a_lathe_need_a_setting(tmp_path):
-    ini = write_config(tmp_path, LATHE)
-    before = ini.read_bytes()
-    put_in(ini, "programs-mill-round-part")
-    assert "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n" in ini.read_text()
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert ini.read_bytes() == before
+@pytest.mark.parametrize(
+    ("spindles", "control", "settings"),
+    [
+        (2, "doosan-lathe", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
+        (1, "mill-round-part", "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n"),
+    ],
+)
+def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings):
+    ini = write_config(tmp_path, LATHE.replace("[TRAJ]\n", f"[TRAJ]\nSPINDLES = {spindles}\n"))
+    with restored(ini):
+        for _ in range(2):
+            put_in(ini, f"programs-{control}")
+            assert settings in ini.read_text()
+            assert ini.read_text().count("LIVE_SPINDLE") == 1

@@ -4,16 +4,21 @@
 import pytest
 
 from g12.tools.errors import UsageError
-from g12.tools.install import installation, package_copy, removal
+from g12.tools.install import package_copy
 from g12.tools.install.config import features
-from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.lathe import kinematics_rules
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
 from g12.tools.install.plan import Refused, make_plan
 from support.small_configs import TURNING as LATHE
 from support.small_configs import TURNING_HAL as HAL
-from support.small_configs import config_of, content_of, write_config
+from support.small_configs import (
+    config_of,
+    files_of_package,
+    put_in,
+    restored,
+    write_config,
+)
 
 PINS = """\
 velocity = "drive.velocity"
@@ -47,8 +52,7 @@ def small_package(monkeypatch):
     files = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
     files += [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
     files += ["python/toplevel.py", "python/remap.py"]
-    package = {name: (features.ROOT / name).read_bytes() for name in files}
-    monkeypatch.setattr(package_copy, "package_files", lambda: dict(package))
+    monkeypatch.setattr(package_copy, "package_files", lambda: files_of_package(*files))
 
 
 def pins_of(folder, text=PINS):
@@ -57,19 +61,18 @@ def pins_of(folder, text=PINS):
     return read_pins(path)
 
 
-def put_in(folder, text=LATHE, hal=HAL):
+def installed(folder, text=LATHE, hal=HAL):
     ini = write_config(folder, text, "lathe.ini", motion_hal=hal)
-    before = content_of(folder)
-    plan = make_plan(config_of(ini), [features.SPINDLE_AS_C], pins_of(folder))
-    installation.write_changes(plan, folder)
-    return ini, before
+    put_in(ini, features.SPINDLE_AS_C, pins=pins_of(folder))
+    return ini
 
 
 def test_check_finds_nothing_and_uninstall_gives_every_byte_back(tmp_path):
-    ini, before = put_in(tmp_path)
-    assert list(spindle_c_findings(config_of(ini))) == []
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert content_of(tmp_path) == before
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
+    assert list(spindle_c_findings(config_of(ini))) == []  # of a machine without it
+    with restored(ini):
+        installed(tmp_path)
+        assert list(spindle_c_findings(config_of(ini))) == []
 
 
 @pytest.mark.parametrize(
@@ -86,20 +89,17 @@ def test_the_kinematics_of_the_face_and_this_share_a_signal_in_each_order(
     monkeypatch.setattr(kinematics_rules, "module_file", lambda: tmp_path)
     monkeypatch.setattr(kinematics_rules, "is_outdated", lambda _: False)
     ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
-    before, pins = content_of(tmp_path), pins_of(tmp_path)
     loaded = {"remap_file": "g12/python/remap.py", "package": tmp_path / "g12" / "python" / "g12"}
-    for number, names in enumerate(steps):
-        config = config_of(ini, **(loaded if number else {}))
-        installation.write_changes(make_plan(config, names, pins), tmp_path)
-    config = config_of(ini)
-    assert [*spindle_c_findings(config), *kinematics_findings(config)] == []
-    assert config.ini.get("SPINDLE_C", "ENABLED") == "polar-enabled"
-    list(removal.uninstall(IniText(ini), dry_run=False))
-    assert content_of(tmp_path) == before
+    with restored(ini):
+        for number, names in enumerate(steps):
+            put_in(ini, *names, pins=pins_of(tmp_path), **(loaded if number else {}))
+        config = config_of(ini)
+        assert [*spindle_c_findings(config), *kinematics_findings(config)] == []
+        assert config.ini.get("SPINDLE_C", "ENABLED") == "polar-enabled"
 
 
 def test_what_is_written(tmp_path):
-    text = put_in(tmp_path)[0].read_text()
+    text = installed(tmp_path).read_text()
     for lines in (
         "HALFILE = g12/configs/include/spindle_c.hal\n"
         "HALCMD = unlinkp drive.velocity\nHALCMD = net spindle-c-velocity => drive.velocity\n",
@@ -124,7 +124,7 @@ def test_install_asks_for_the_pins(tmp_path):
 @pytest.mark.parametrize(("old", "new", "said"), REFUSED)
 def test_refused_for_what_the_machine_has(tmp_path, old, new, said):
     with pytest.raises(Refused) as refused:
-        put_in(tmp_path, LATHE.replace(old, new), HAL.replace(old, new))
+        installed(tmp_path, LATHE.replace(old, new), HAL.replace(old, new))
     assert said in "".join(finding.text for finding in refused.value.args)
 
 
@@ -145,14 +145,9 @@ def test_a_file_of_pins_that_says_something_else(tmp_path, text, said):
 
 @pytest.mark.parametrize(("old", "new", "kind"), MISTAKES)
 def test_check_finds(tmp_path, old, new, kind):
-    ini, _ = put_in(tmp_path)
+    ini = installed(tmp_path)
     text = ini.read_text()
     assert old in text
     ini.write_text(text.replace(old, new))
     found = list(spindle_c_findings(config_of(ini)))
     assert kind in [finding.kind for finding in found]
-
-
-def test_check_finds_nothing_on_other_machines(tmp_path):
-    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
-    assert list(spindle_c_findings(config_of(ini))) == []

@@ -15,7 +15,6 @@ from g12.machine_ini import (
     millimetres_of,
     owns_g12_1,
     refuse_owned_codes,
-    remap_from_value,
     remap_lines,
 )
 from g12.tools.machine.ini import Ini
@@ -74,12 +73,6 @@ def test_an_inch_machine_is_told_as_linuxcnc_tells_it():
 def test_the_first_of_repeated_keys_counts_and_a_backslash_continues_a_line():
     ini = ini_of("[AXIS_X]\nMAX_LIMIT = \\\n100\nMAX_LIMIT = 300\n[AXIS_X]\nMIN_LIMIT = 1\n")
     assert axes_of(ini.get, "X")["X"] == Axis(-1e99, 100, 1, 1)
-
-
-def test_keywords_of_a_remap_may_be_shortened_and_a_comment_may_follow():
-    assert remap_from_value("M33 modalgroup=10 n=m33 # ours").keywords["ngc"] == "m33"
-    assert remap_from_value("G13.1 MODAL=1 Py=polar_off").handlers == ["polar_off"]
-    assert remap_from_value("g12 prolog=a e=b").code == "G12"
 
 
 def test_the_number_of_a_code_is_linuxcncs():
