@@ -83,6 +83,7 @@ PERIODS = [  # of the trajectory: the INI's, the HAL line's, what is said
 ]
 IN_THE_WAY = [
     *((f"net own => {pin}", "pin-taken") for pin in kinematics_rules.GUARD_PINS),
+    ("net machine-on motion.motion-enabled", "pin-taken"),
     ("loadrt trivkins coordinates=XZC", "kins"),
     ("loadrt motmod num_joints=3 num_aio=2", "few-pins"),
 ]

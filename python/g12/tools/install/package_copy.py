@@ -105,7 +105,7 @@ def missing(folder: Path) -> list[str]:
 def is_damaged(path: Path, value: str) -> bool:
     """Return whether a file is missing, or empty with another digest in the list."""
     found = digest_of(path)
-    return not found or (found in LOST_DIGESTS and found != value)
+    return found in LOST_DIGESTS and found != value
 
 
 def stale(folder: Path) -> list[str]:

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
+from g12.tools.install.config.features import ROOT
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
@@ -41,6 +42,7 @@ LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 LIMIT_SLACK = 1.001
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
 SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
+ARROW = re.compile(r"\s<?=>?\s")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp
 
@@ -197,7 +199,7 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
     yield from accelerations_taken(all_hal(config))
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
-    yield from hal_in_the_way([*others, *later_hal(config)])
+    yield from hal_in_the_way(config, [*others, *later_hal(config)])
 
 
 def pins_taken(
@@ -237,9 +239,31 @@ def substituted(text: str, config: Config) -> str:
     return FROM_INI.sub(lambda named: config.ini.get(named[1], named[2]) or "", text)
 
 
-def hal_in_the_way(lines: list[HalLine]) -> Iterator[ConfigFinding]:
+def signals(lines: Iterable[HalLine]) -> dict[str, str]:
+    """Return the signal of each pin that HAL lines connect."""
+    found = {}
+    for text, _ in lines:
+        command, *words = ARROW.sub(" ", text).split() or [""]
+        if command == "linkps":
+            words.reverse()
+        if command in ("net", "linkps", "linksp") and words:
+            found.update(dict.fromkeys(words[1:], words[0]))
+    return found
+
+
+def hal_in_the_way(config: Config, lines: list[HalLine]) -> Iterator[ConfigFinding]:
     cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
     yield from pins_taken(lines, GUARD_PINS, "is the kinematics'", cure)
+    guard = signals(hal_lines(ROOT / GUARD_HAL))
+    for text, location in lines:
+        for pin, signal in signals([HalLine(substituted(text, config), location)]).items():
+            if pin not in GUARD_PINS and guard.get(pin, signal) != signal:
+                yield problem(
+                    "pin-taken",
+                    f"{location}: {text}: {pin} is {guard[pin]} to the kinematics, and "
+                    "HAL connects a pin to one signal: LinuxCNC does not start",
+                    f"call the signal {guard[pin]} in your HAL files, not {signal}",
+                )
     for text, location in lines:
         module = LOADS_KINEMATICS.match(text)
         if module and module[1] != FACE_KINEMATICS:

@@ -25,6 +25,7 @@ from g12.tools.install.lathe.kinematics_rules import (
     hal_lines,
     names,
     pins_taken,
+    signals,
 )
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
@@ -116,18 +117,6 @@ def read_pins(path: Path) -> Pins:
         raise UsageError(f"{path}: {', '.join(missing)}: missing")
     numbers = {key: entries.get(key.lower(), default) for key, default in NUMBERS.items()}
     return Pins({key: entries[key] for key in DRIVE if key in entries}, numbers)
-
-
-def signals(lines: Iterable[HalLine]) -> dict[str, str]:
-    """Return the signal of each pin that HAL lines connect."""
-    found = {}
-    for text, _ in lines:
-        command, *words = text.split() or [""]
-        if command == "linkps":
-            words.reverse()
-        if command in ("net", "linkps", "linksp") and words:
-            found.update(dict.fromkeys(words[1:], words[0]))
-    return found
 
 
 def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
