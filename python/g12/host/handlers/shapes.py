@@ -7,9 +7,6 @@ passes the values of its motion to the sub. G13.4 restores the modes before G12.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Generic, NamedTuple, TypeVar
-
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal
@@ -31,83 +28,70 @@ from g12.section.line import BlockLocation
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import holes, polygon, round_pocket, slot
-from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
+from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
 from g12.shapes.holes import HoleMachine
 
 check_at_start = check_ini
-AnyMachine = TypeVar("AnyMachine")
-
-
-class Shape(NamedTuple, Generic[AnyMachine]):
-    """A shape: the names of its entries, and its planner for a machine."""
-
-    entries: tuple[str, ...]
-    plan: Callable[[ShapeEntries, AnyMachine], ShapePlan]
-
-
-SHAPE_CALLS: dict[str, Shape[ShapeMachine]] = {
-    "polar_polygon": Shape(polygon.POLYGON_ENTRIES, polygon.plan_polygon),
-    "polar_slot": Shape(slot.SLOT_ENTRIES, slot.plan_slot),
-    "polar_pocket": Shape(round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
+SHAPE_CALLS = {  # names of the entries, planner
+    "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
+    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
+    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
 }
-HOLE_CALLS: dict[str, Shape[HoleMachine]] = {
-    "face_holes": Shape(holes.FACE_HOLES, holes.plan_face_holes),
-    "side_holes": Shape(holes.SIDE_HOLES, holes.plan_side_holes),
-    "face_hole_at": Shape(holes.FACE_HOLE_AT, holes.plan_face_hole_at),
+HOLE_CALLS = {
+    "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
+    "side_holes": (holes.SIDE_HOLES, holes.plan_side_holes),
+    "face_hole_at": (holes.FACE_HOLE_AT, holes.plan_face_hole_at),
 }
 
 
 @messages.handler
 def polar_shape(self, **words):
-    """Check the shape of the calling sub, and set the locals of its motion: G12.4."""
-    level = self.call_level - 1  # the sub's
+    """Check the shape of the calling sub, and set the locals of its motion: G12.4.
+
+    Holes run in G61 as drilling cycles do. With blended rapids C would turn before the tool is out
+    of its hole, or before the move that precedes the call has ended.
+    """
+    level, state = self.call_level - 1, state_of(self)  # the sub's
     name = shape_at_work(self)
     if MACHINE.switches_kinematics and self.task and face_in_force():
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
     setup = polar_section_setup(start)
+    names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
+    entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
+    prepare = hole_locals if name in HOLE_CALLS else shape_locals
+    set_locals_at(self, level, prepare(self, entries, start, setup))
+    cycle_state.note_modes(self)
     if name in HOLE_CALLS:
-        return prepare_holes(self, level, name, start, setup)
-    entries = named_entries(self, name, SHAPE_CALLS[name].entries, level)
-    machine = shape_machine(setup)
-    plan = SHAPE_CALLS[name].plan(entries, machine)
+        state.path, state.spindle = path_control(self), self.active_spindle
+    self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
+    return INTERP_OK
+
+
+def shape_locals(
+    interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
+) -> dict[str, float]:
+    machine, (_, planner) = shape_machine(setup), SHAPE_CALLS[entries.code]
+    plan = planner(entries, machine)
     check_nearest(entries, plan.extent, machine)
     stay_in_travel(entries, plan.extent, setup)
     own: dict[str, float] = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
     # on a wrapped axis a sign is the direction of the turn, and 360 is refused
-    if self.c_axis_wrapped:
+    if interp.c_axis_wrapped:
         own["start_angle"] = plan.locals["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
-    set_locals_at(self, level, {**plan.locals, **own, **section_codes(entries)})
-    cycle_state.note_modes(self)
-    self.execute(STOP_HERE)
-    return INTERP_OK
+    return {**plan.locals, **own, **section_codes(entries)}
 
 
-def named_entries(interp: Interp, name: str, names: tuple[str, ...], level: int) -> ShapeEntries:
-    return ShapeEntries(name, names, locals_at(interp, level), cycle_state.snapshot(interp))
-
-
-def prepare_holes(
-    interp: Interp, level: int, name: str, start: SectionStart, setup: SectionSetup[PolarSettings]
-) -> int:
-    """Check holes and set the locals of their motion, which runs in G61 as drilling cycles do.
-
-    With blended rapids C would turn before the tool is out of its hole, or before the move that
-    precedes the call has ended.
-    """
-    entries = named_entries(interp, name, HOLE_CALLS[name].entries, level)
+def hole_locals(
+    interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
+) -> dict[str, float]:
     close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
-    machine = hole_machine(interp, start, setup)
-    plan = HOLE_CALLS[name].plan(entries, machine)
+    machine, (_, planner) = hole_machine(interp, start, setup), HOLE_CALLS[entries.code]
+    plan = planner(entries, machine)
     stay_in_travel(entries, plan.extent, setup)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
     x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
-    set_locals_at(interp, level, {**plan.locals, **x_words, **own})
-    cycle_state.note_modes(interp)
-    state = state_of(interp)
-    state.path, state.spindle = path_control(interp), interp.active_spindle
-    interp.execute(f"{STOP_HERE}G61")
-    return INTERP_OK
+    return {**plan.locals, **x_words, **own}
 
 
 def hole_machine(
