@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a planned section hands to the interpreter, block by block."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from g12.errors import Refusal
 from g12.host.section.output import STOP_HERE, Action, PathControl, SectionOutput
 from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
+from support.section_starts import START
 
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 LINE = [(10.0, 0.5, 0.0, 250.0), (11.0, 1.0, 0.0, 260.0)]
@@ -79,8 +82,8 @@ class Canon:
 
 
 def emission_of(interp):
-    lengths = dict(blending=0.0025, initial=0.0254, machine_unit=1.0, x_factor=1.0)
-    return SectionOutput(interp, "G12.1", absolute="G90", canon=Canon(interp), **lengths)
+    setup = SimpleNamespace(tolerance=0.005, words=SimpleNamespace(beside=0.0))
+    return SectionOutput(interp, START, setup, absolute="G90", canon=Canon(interp))
 
 
 def handed_over(steps, interp=None, exact=()):

@@ -30,7 +30,6 @@ from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
 UNREMAPPED_M_CODES = (*range(3, 10), *range(100, 200))  # those of LinuxCNC and of M1xx files
-INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 TYPED = 1  # call level of a block outside any sub
 REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
 NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
@@ -126,17 +125,7 @@ def _section(
         raise start.location.refuse("the face is on already, by hand: G13.1 first")
     setup = kind.setup(start)
     drag = clamp_codes(start.location.refuse, MACHINE.settings.c_clamp_shapes)
-    output = SectionOutput(
-        interp,
-        start.location.code,
-        x_factor=2.0 if start.diameter else 1.0,
-        blending=setup.tolerance / 2,
-        initial=INITIAL_TOLERANCE / modes.millimetres_per_unit(interp),
-        machine_unit=start.machine_unit,
-        absolute=MODE_ABSOLUTE,
-        canon=emccanon,
-        beside=setup.words.beside,
-    )
+    output = SectionOutput(interp, start, setup, absolute=MODE_ABSOLUTE, canon=emccanon)
     return Section(
         kind.codes(start.location.code),
         setup,

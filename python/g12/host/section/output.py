@@ -18,7 +18,7 @@ switch there and back the machine has to stop, and the interpreter to wait for i
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
@@ -26,17 +26,20 @@ from g12.host import kinematics_switch
 from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp, state_of
 from g12.host.program_lines import error_text
 from g12.moves.feed import Segment
+from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.face import FaceMove, FaceSwitch, flows_into
 from g12.section.block_rules import G1
 from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes, decimal
+from g12.section.start import SectionStart
 
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 SWITCH_TOLERANCE = 1e-3  # program units or degrees
 SAME_TOLERANCE = 1e-9  # program units
 ELSEWHERE = (
@@ -143,29 +146,23 @@ class PathControl:
 class SectionOutput:
     """Hands steps to the interpreter.
 
-    ``code`` names the section in refusals. ``x_factor`` converts a radius value into an X word (2
-    under G7). ``blending``, ``initial`` (of G64 when LinuxCNC starts), ``machine_unit`` and
-    ``beside`` (of the tool from the X line) are in program units. ``absolute`` is the interpreter's
-    name of G90, ``canon`` its canonical functions.
+    ``absolute`` is the interpreter's name of G90, ``canon`` its canonical functions.
     """
 
     def __init__(
         self,
         interp: Interp,
-        code: str,
+        start: SectionStart,
+        setup: SectionSetup[Any],
         *,
-        x_factor: float,
-        blending: float,
-        initial: float,
-        machine_unit: float,
         absolute: int,
         canon: CanonModule,
-        beside: float = 0.0,
     ) -> None:
-        self.interp, self.code = interp, code
-        self.x_factor, self.absolute, self.canon = x_factor, absolute, canon
-        self.machine_unit, self.beside = machine_unit, beside
-        self.path = PathControl(interp, blending, initial)
+        self.interp, self.code = interp, start.location.code
+        self.x_factor, self.absolute, self.canon = 1.0 + start.diameter, absolute, canon
+        self.machine_unit, self.beside = start.machine_unit, setup.words.beside
+        initial = INITIAL_TOLERANCE * start.millimetre
+        self.path = PathControl(interp, setup.tolerance / 2, initial)
         self._wrapped = interp.c_axis_wrapped
         self._per_revolution = interp.feed_mode == PER_REVOLUTION
         self._begun = False
