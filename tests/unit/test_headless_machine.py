@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is told of a LinuxCNC that did not come up."""
+"""The report of a LinuxCNC that did not start."""
 
 from pathlib import Path
 

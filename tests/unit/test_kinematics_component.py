@@ -263,7 +263,7 @@ def test_a_program_is_held_by_hand_only(kinematics, request_, line, held):
 
 
 def by_hand(kinematics, radius, request=2.0, speed=150.0, tool_offset=0.0, **pins):
-    """Return the speed that is left of what is asked for, with the slide at a place."""
+    """Return the speed that the guard allows of a commanded one, with the slide at a radius."""
     kinematics.guard(request=0.0, tool_offset=tool_offset)
     kinematics.guard(request=request)
     kinematics.face(radius, 0, 0)

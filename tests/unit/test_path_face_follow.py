@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a move on the face asks of C and the slide, against what can be worked out by hand."""
+"""The demand of a move on the face on C and the slide, against formulas and finite differences."""
 
 import math
 

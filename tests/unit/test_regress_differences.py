@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which differences are found between two recordings, and how they are told."""
+"""The differences between two recordings, and their sentences."""
 
 import math
 import random

@@ -35,14 +35,13 @@ CLEAN_UP = 15.0  # s that LinuxCNC may take for it
 
 
 def running() -> list[str]:
-    names = {}
+    found = []
     for entry in filter(str.isdigit, os.listdir("/proc")):
-        try:
+        with contextlib.suppress(OSError):  # it has ended
             with open(f"/proc/{entry}/comm", encoding="utf-8") as file:
-                names[entry] = file.read().strip()
-        except OSError:  # it has ended
-            continue
-    return [f"{name} ({number})" for number, name in names.items() if LINUXCNC.match(name)]
+                name = file.read().strip()
+            found += [f"{name} ({entry})"] if LINUXCNC.match(name) else []
+    return found
 
 
 def refuse_beside_another() -> None:

@@ -13,6 +13,7 @@ import linuxcnc
 from g12.tools.headless.errors import MachineError, Timeout
 
 POLL_PERIOD = 0.01  # s
+HOMING = 60.0  # s, for the longest homing
 QUIET = 1.0  # s without a joint homing: nothing to home, or done
 STALLED = 5.0  # s without motion while a joint is homing: longer than any home switch takes
 JOINT_DECIMALS = 6  # of its position; less is noise
@@ -84,17 +85,17 @@ class Panel:
         self._do(self._command.state, linuxcnc.STATE_ON)
         self.wait(lambda stat: stat.enabled, GRACE, "machine power")
 
-    def home(self, timeout: float = 60.0) -> None:
+    def home(self) -> None:
         """Home all joints: in the INI's sequence, then those without one."""
         self._mode(linuxcnc.MODE_MANUAL)
         self._do(self._command.teleop_enable, 0)
-        self._home(-1, timeout)
+        self._home(-1)
         for joint in range(self.poll().joints):
             if not self._stat.homed[joint]:
-                self._home(joint, timeout)
+                self._home(joint)
         self.wait(self._homed, GRACE, "homing of every joint")
 
-    def _home(self, joint: int, timeout: float) -> None:
+    def _home(self, joint: int) -> None:
         """Home a joint, or all with -1; raise when homing makes no progress."""
         self._do(self._command.home, joint)
         homing_at = moved_at = time.monotonic()
@@ -112,7 +113,7 @@ class Panel:
                     raise MachineError(f"homing stands still at {self._joint_positions(stat)}")
             return self._homed(stat) or now - homing_at > QUIET
 
-        self.wait(over, timeout, "end of homing")
+        self.wait(over, HOMING, "end of homing")
 
     def _joint_positions(self, stat) -> str:
         joints = enumerate(zip(stat.joint_position[: stat.joints], stat.homed))

@@ -49,11 +49,10 @@ def run_to_end(panel: Panel, program: OpenedProgram | None) -> bool:
     """Home the machine, run the program, and return whether it ran to its end."""
     panel.enable()
     panel.home()
-    if program is None:
-        return not print_reports(panel, None)
-    panel.open(str(program.path))
-    panel.start()
-    panel.finish(LONGEST_PROGRAM)
+    if program:
+        panel.open(str(program.path))
+        panel.start()
+        panel.finish(LONGEST_PROGRAM)
     return not print_reports(panel, program)
 
 

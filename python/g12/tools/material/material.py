@@ -214,7 +214,7 @@ class Material:
         return any(self._cuts.near(each, levels, before) for each, _ in self._turned(region))
 
     def covers(self, points: np.ndarray, radius: float, below: float = -math.inf) -> bool:
-        """Tell whether all that a cutter sweeps below the top is solid or cut at some move.
+        """Return whether all that a cutter sweeps below the top is solid or cut at some move.
 
         The top may be higher than that of the material: ``below`` where there may be more.
         """
@@ -285,7 +285,7 @@ def _with_levels(points: np.ndarray, band: float) -> np.ndarray:
 
 
 def _points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.ndarray]:
-    """Return the tool's points (3,) along a portion at which it meets an area."""
+    """Return the tool's points (3,) along a portion at which it touches an area."""
     steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
     indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / RAPID_STEP))
     line = np.stack([np.interp(indices, steps, axis) for axis in portion.line.T], axis=1)

@@ -45,13 +45,12 @@ class Followed:
 
     def part_speed(self) -> np.ndarray:
         """Return the speed along the part, mm/s, of each sample."""
-        return speed(self.points, self.time)
+        if len(self.points) < 2:
+            return np.zeros(len(self.points))
+        return np.linalg.norm(np.gradient(self.points, self.time, axis=0), axis=1)
 
     def largest(self, moves: Sequence[int]) -> float:
         return float(self.deviation[np.isin(self.move, moves)].max(initial=0.0))
-
-    def worst(self, among: np.ndarray) -> int:
-        return int(np.flatnonzero(among)[np.argmax(self.deviation[among])])
 
 
 class Worst(NamedTuple):
@@ -69,7 +68,7 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
     at_feed = np.array([move.kind != "rapid" for move in moves], bool)[real.move]
     if not at_feed.any():
         return None
-    index = real.worst(at_feed)
+    index = int(np.argmax(np.where(at_feed, real.deviation, -1.0)))
     return Worst(
         index,
         float(real.deviation[index]),
@@ -138,13 +137,6 @@ def _on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
     ends = np.array([move.start[:3], move.end[:3]])
     at_end = np.min(np.linalg.norm(nearest[:, None] - ends, axis=2), axis=1) < 1e-9
     return np.where(at_end[:, None], nearest, exact)
-
-
-def speed(points: np.ndarray, time: np.ndarray) -> np.ndarray:
-    """Return the speed along points (n, 3) at given times; ends repeat their neighbour."""
-    if len(points) < 2:
-        return np.zeros(len(points))
-    return np.linalg.norm(np.gradient(points, time, axis=0), axis=1)
 
 
 def _positions(samples: Samples, unit: float) -> np.ndarray:

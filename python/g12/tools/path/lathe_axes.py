@@ -67,10 +67,10 @@ class LatheAxes(NamedTuple):
         tool, heading = complex(*place[:2]), complex(*direction[:2])
         radius = max(abs(tool), AT_POLE)
         slide = max(math.sqrt(max(0.0, radius**2 - self.beside**2)), AT_POLE)
-        seen = heading * tool.conjugate() * (slide + 1j * self.beside) / radius**2
-        moved = abs(seen.real + self.beside / slide * seen.imag)
+        turned = heading * tool.conjugate() * (slide + 1j * self.beside) / radius**2
+        moved = abs(turned.real + self.beside / slide * turned.imag)
         linear = max(moved, abs(direction[2])) / max(x, z)
-        return 1.0 / max(linear, abs(seen.imag) / (slide * c), LEAST)
+        return 1.0 / max(linear, abs(turned.imag) / (slide * c), LEAST)
 
 
 def lathe_axes(ini: Ini) -> LatheAxes:

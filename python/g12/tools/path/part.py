@@ -106,7 +106,7 @@ def part_of_program(ini: Ini, trace: Trace) -> Part:
 
 
 def _turns_part(move: Move) -> bool:
-    """Tell whether C turns a lathe's part in a move; a circle on the face ends where it begins."""
+    """Return whether C turns a lathe's part; a circle on the face ends where it begins."""
     circle = move.kind == "arc" and move.plane == FLAT
     return circle or any(move.start[axis] != move.end[axis] for axis in (Y, C))
 

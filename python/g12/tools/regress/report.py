@@ -36,10 +36,10 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
     for result in results:
         yield from lines_of_result(result)
     counts = Counter(result.verdict for result in results)
-    said = ", ".join(
-        f"{counts[verdict]} {say}" for verdict, say in VERDICT_TEXT.items() if counts[verdict]
+    listed = ", ".join(
+        f"{counts[verdict]} {text}" for verdict, text in VERDICT_TEXT.items() if counts[verdict]
     )
-    yield f"{counted_as(len(results), 'program')}: {said}"
+    yield f"{counted_as(len(results), 'program')}: {listed}"
 
 
 def lines_of_result(result: Result) -> Iterator[str]:
