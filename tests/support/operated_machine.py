@@ -94,7 +94,7 @@ class Machine(machine.Machine):
     def proof_of_run(self, text) -> Proof:
         """Run a program, which must end without an error; return the proof of its real motion.
 
-        Verify takes it for granted that the machine stands as it came up: see `reset`.
+        Verify assumes the state of the machine at its start: see `reset`.
         """
         samples = self.motion_of(text)
         assert samples.lost == 0

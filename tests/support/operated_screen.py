@@ -67,7 +67,7 @@ class OperatedPanel(Panel):
 
 
 class OperatedScreen(RecordingScreen):
-    """Answers what a test asks of LinuxCNC, HAL and the sampler too."""
+    """The requests of a test to LinuxCNC, HAL and the sampler too."""
 
     panel_kind = OperatedPanel
 
