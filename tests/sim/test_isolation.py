@@ -11,7 +11,7 @@ import pytest
 from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import StartupError
 from g12.tools.headless.namespaces import Isolated, has_namespaces
-from support.operated_machine import Machine
+from support.operated_machine import UnhomedMachine
 from support.sim_machines import SIM
 
 
@@ -57,5 +57,5 @@ def test_where_the_system_makes_namespaces_so_do_we():
 def test_a_milltask_that_does_not_come_up_is_named():
     nobody = {"TASK": {"TASK": "yes"}}
     named = pytest.raises((StartupError, Timeout), match=r"no milltask within 5 s|inihal")
-    with named, Machine(SIM / "mill_mm.ini", overrides=nobody, home=False) as machine:
+    with named, UnhomedMachine(SIM / "mill_mm.ini", overrides=nobody) as machine:
         machine.stat()

@@ -42,7 +42,7 @@ IN_INCHES = (
     "G20 G7 G18 G90 G94 G64 P0.0002", "F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
     "G1 X-2 C0", "G13.1", "M2",
 )  # fmt: skip
-SOON = 2.0  # s until the machine is back from the face; a busy computer is told late
+SOON = 2.0  # s until the machine is back from the face; a busy computer reports it late
 
 
 running = kept_machine("lathe_mm_kinematics")
@@ -84,13 +84,12 @@ def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
 
 
 def test_a_long_move_beside_the_pole_is_segments_only_near_it(lathe):
-    run = lathe.run_text([*ROUGHLY, "G1 X10 C-60 F3000 G61", "C60", "X45 C0", "G13.1", "M2"])
-    assert run.error is None
-    beside = run.samples.line == 5
-    x, c = run.samples.axes["X"], np.radians(run.samples.axes["C"])
+    samples = lathe.motion_of([*ROUGHLY, "G1 X10 C-60 F3000 G61", "C60", "X45 C0", "G13.1", "M2"])
+    beside = samples.line == 5
+    x, c = samples.axes["X"], np.radians(samples.axes["C"])
     assert np.abs(x * np.cos(c) - 10)[beside].max() <= 0.006
     assert beside.sum() * 0.001 <= 4.9  # 4.05 s on a quiet computer; segments alone take 5.5 s
-    keeps_its_limits(run.samples)
+    keeps_its_limits(samples)
     if not exceeds_limits_itself(lathe):
         assert np.abs(np.diff(c, 2)).max() * 1e6 <= np.radians(3600) * 1.01
 
@@ -169,18 +168,16 @@ def off_the_corners(samples):
 )
 def test_exact_paths_and_stops_on_the_face(lathe, exact, sharp):
     square = [SQUARE[0], f"G9 {SQUARE[1]}", *SQUARE[2:]] if exact == "G9" else [exact, *SQUARE]
-    run = lathe.run_text([*ROUGHLY, *square, "G13.1", "M2"])
-    assert run.error is None
-    assert (off_the_corners(run.samples) < 0.001).tolist() == [bool(corner) for corner in sharp]
-    assert off_the_corners(run.samples).max() <= 0.052  # G64 P0.05
+    samples = lathe.motion_of([*ROUGHLY, *square, "G13.1", "M2"])
+    assert (off_the_corners(samples) < 0.001).tolist() == [bool(corner) for corner in sharp]
+    assert off_the_corners(samples).max() <= 0.052  # G64 P0.05
 
 
 def test_the_tolerance_that_linuxcnc_starts_with_rounds_no_corner(lathe):
-    """LinuxCNC starts with 0.001 in; one without a G64 asks for no such corners."""
+    """LinuxCNC starts with 0.001 in; a program without G64 commands no such corners."""
     begun = [ROUGHLY[0].replace("P0.05 Q0", "P0.0254 Q0"), *ROUGHLY[1:]]
-    run = lathe.run_text([*begun, *SQUARE, "G13.1", "M2"])
-    assert run.error is None
-    assert off_the_corners(run.samples).max() < 0.005  # POLAR_TOLERANCE
+    samples = lathe.motion_of([*begun, *SQUARE, "G13.1", "M2"])
+    assert off_the_corners(samples).max() < 0.005  # POLAR_TOLERANCE
 
 
 def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(lathe):
@@ -192,9 +189,8 @@ def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(lathe):
 
 def test_blocks_that_wait_cut_a_section_in_two(lathe):
     waiting = [line for block in SQUARE for line in (block, "M66 P0 L0")]
-    run = lathe.run_text([*ROUGHLY, *waiting, "G13.1", "M2"])
-    assert run.error is None
-    assert off_the_corners(run.samples).max() <= 0.001
+    samples = lathe.motion_of([*ROUGHLY, *waiting, "G13.1", "M2"])
+    assert off_the_corners(samples).max() <= 0.001
     assert place(lathe) == (40, 0, 360)
 
 
@@ -267,6 +263,13 @@ def test_run_from_line_is_refused_elsewhere(lathe, away):
     assert not on_the_face(lathe)
 
 
+def start_on_the_face(machine, program):
+    """Start a program and wait until its section is on the face."""
+    machine.open_text(program)
+    machine.start()
+    machine.wait_for(lambda _: on_the_face(machine))
+
+
 def face_accelerations(machine):
     return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
 
@@ -276,10 +279,8 @@ def face_accelerations(machine):
 def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
     chance = random.Random(interrupt)
     for program in ((own, *CIRCLE_AND_SQUARE), (own, *SECTION)):
-        lathe.open_text(program)
         lathe.sample()
-        lathe.start()
-        lathe.wait_for(lambda _: on_the_face(lathe))
+        start_on_the_face(lathe, program)
         time.sleep(chance.uniform(0, 2))
         lathe.estop() if interrupt == "estop" else lathe.abort()
         lathe.enable()
@@ -312,9 +313,7 @@ CIRCLE_NEAR = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G3 I-10 F3000
 
 
 def test_a_section_has_its_own_acceleration(lathe):
-    lathe.open_text(CIRCLE_NEAR)
-    lathe.start()
-    lathe.wait_for(lambda _: on_the_face(lathe))
+    start_on_the_face(lathe, CIRCLE_NEAR)
     there = face_accelerations(lathe)
     assert there[0] == there[1] < 707
     lathe.wait_idle()
@@ -337,11 +336,9 @@ def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):
 @pytest.mark.parametrize(("inside", "free"), [("M52 P0", True), ("M52 P1", False)])
 def test_m52_between_moves_on_the_face_acts_until_the_next_change(lathe, own, inside, free):
     section = [*CIRCLE_NEAR[:2], own, "G12.1", "G3 I-10 F2000", inside, "G3 I-10", "G13.1", "M2"]
-    lathe.open_text(section)
     lathe.feed_override(2.0)
     lathe.sample()
-    lathe.start()
-    lathe.wait_for(lambda _: on_the_face(lathe))
+    start_on_the_face(lathe, section)
     lathe.wait_idle()
     lathe.feed_override(1.0)
     samples = lathe.samples()
@@ -354,10 +351,9 @@ def test_m52_between_moves_on_the_face_acts_until_the_next_change(lathe, own, in
 
 
 def test_the_feed_is_turned_up_as_far_as_c_follows(lathe):
-    lathe.open_text([*CIRCLE_NEAR[:-2], *["G3 I-10"] * 4, *CIRCLE_NEAR[-2:]])
-    lathe.start()
     lathe.feed_override(2.0)
-    lathe.wait_for(lambda _: on_the_face(lathe) and lathe.get("motion.current-vel") > 49)
+    start_on_the_face(lathe, [*CIRCLE_NEAR[:-2], *["G3 I-10"] * 4, *CIRCLE_NEAR[-2:]])
+    lathe.wait_for(lambda _: lathe.get("motion.current-vel") > 49)
     most = lathe.get("polar-xzc.most-override")
     assert 1.0 <= most < 1.2
     lathe.wait_for(lambda _: lathe.get("motion.current-vel") == pytest.approx(50 * most))
@@ -374,9 +370,8 @@ def test_c_and_the_slide_keep_their_limits_at_any_override():
     chance = random.Random(3)
     with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as machine:
         for feed in (2000, 3000):
-            machine.open_text([block.replace("F3000", f"F{feed}") for block in CIRCLE_NEAR])
-            machine.start()
-            machine.wait_for(lambda _: on_the_face(machine))
+            circle = [block.replace("F3000", f"F{feed}") for block in CIRCLE_NEAR]
+            start_on_the_face(machine, circle)
             machine.sample()
             while on_the_face(machine):
                 machine.feed_override(chance.choice([0.5, 1.0, 1.5]))

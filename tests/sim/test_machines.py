@@ -132,12 +132,12 @@ def screen():
 def test_its_screen_comes_up_with_the_sample_previewed(ini, screen):
     component = "gmoccapy" if ini in GMOCCAPY else "axisui"
     started = f"until halcmd -s show comp {component} | grep -q {component}; do sleep 0.2; done"
+    command = f"linuxcnc -r {ini} & {started}; sleep 3; echo up; wait"
     isolated = Isolated()
     try:
         isolated.launch(
-            ["sh", "-c", f"linuxcnc -r {ini} & {started}; sleep 3; echo up; wait"],
+            ["env", f"DISPLAY={screen}", "LIBGL_ALWAYS_SOFTWARE=1", "sh", "-c", command],
             copies={ini.parent: {}},
-            environment={"DISPLAY": screen, "LIBGL_ALWAYS_SOFTWARE": "1"},
         )
         end = time.monotonic() + XVFB_START
         while "up\n" not in isolated.log() and isolated.exit_code() is None:

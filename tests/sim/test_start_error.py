@@ -3,14 +3,14 @@
 
 import time
 
-from support.operated_machine import Machine
+from support.operated_machine import UnhomedMachine
 from support.sim_machines import SIM
 
 SECONDS = 10.0
 
 
 def first_error(machine):
-    """Return the first thing the operator is told."""
+    """Return the first error that the operator gets."""
     end = time.monotonic() + SECONDS
     while time.monotonic() < end:
         for error in machine.errors():
@@ -21,5 +21,5 @@ def first_error(machine):
 
 def test_a_wrong_setting_is_shown_when_linuxcnc_comes_up():
     overrides = {"G12": {"CLEARING": "squares"}}
-    with Machine(SIM / "mill_mm.ini", overrides=overrides, home=False) as machine:
+    with UnhomedMachine(SIM / "mill_mm.ini", overrides=overrides) as machine:
         assert first_error(machine) == "g12: [G12] CLEARING = squares: must be rings or spiral"

@@ -115,6 +115,13 @@ class Machine(machine.Machine):
         self.errors(), self.messages()
 
 
+class UnhomedMachine(Machine):
+    """A machine in e-stop."""
+
+    def _get_ready(self) -> None:
+        pass
+
+
 def kept_machine(name, kind=Machine, **options):
     """Return a fixture: a simulated machine, for as long as `machine_scope` says."""
 

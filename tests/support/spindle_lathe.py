@@ -31,10 +31,10 @@ class SpindleLathe(Machine):
     least that C may command.
     """
 
-    def _start(self, timeout):
+    def _start(self):
         self._pins = {**self._pins, **PINS}
         self.axes = "".join(self._pins)
-        super()._start(timeout)
+        super()._start()
 
     def is_c(self):
         """Tell whether the spindle is C."""

@@ -37,6 +37,7 @@ from g12.tools.preview.tracer import (
 
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
 ANSWER_MARGIN = 10.0  # s that an answer may take beyond the requested timeout
+START = 60.0  # s that LinuxCNC may take to start
 LOG_LINES = 60
 INI_ERROR = re.compile(r"\.ini:(\d+): error: (.*)")  # of LinuxCNC 2.10
 FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the same text
@@ -93,9 +94,8 @@ class Machine:
     """A headless LinuxCNC, running, switched on and homed inside its ``with`` block.
 
     ``overrides`` and ``tools`` as for ``trace.Tracer``; ``parameters`` is the content of the var
-    file at the start (``{5221: 10.0}`` is G54 X10 in machine units) or a var file. ``home=False``
-    leaves the machine in e-stop.  ``timeout`` in seconds is for the start. ``screen_module``
-    answers inside LinuxCNC; Python looks for it in ``screen_folders``.
+    file at the start (``{5221: 10.0}`` is G54 X10 in machine units) or a var file.
+    ``screen_module`` answers inside LinuxCNC; Python looks for it in ``screen_folders``.
     """
 
     screen_module = "g12.tools.headless.recording_screen"
@@ -108,8 +108,6 @@ class Machine:
         overrides: Overrides | None = None,
         tools: Tools = None,
         parameters: Parameters = None,
-        home: bool = True,
-        timeout: float = 60.0,
     ) -> None:
         self._isolated = Isolated()
         self._connection: Connection | None = None
@@ -117,9 +115,8 @@ class Machine:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
             self.mm, self._pins = self.ini.mm, position_pins(self.ini)
             self.axes = "".join(self._pins)
-            self._start(timeout)
-            if home:
-                self._get_ready()
+            self._start()
+            self._get_ready()
         except BaseException:
             self.close()
             raise
@@ -164,9 +161,6 @@ class Machine:
             self._connection.close()
         self._isolated.close()
 
-    def log(self) -> str:
-        return self._isolated.log()
-
     def _samples(self, rows: bytes, lost: int) -> Samples:
         columns = np.frombuffer(rows).reshape(-1, len(self.axes) + 4).T
         velocity, requested, line, kind = columns[len(self.axes) :]
@@ -196,7 +190,7 @@ class Machine:
             }
         )
 
-    def _start(self, timeout: float) -> None:
+    def _start(self) -> None:
         address = str(self.folder / "run" / "socket")
         screen = RECORDING_SCREEN.format(
             folders=self.screen_folders,
@@ -216,8 +210,8 @@ class Machine:
                 copies={path.parent: {path.name: self.ini.text}},
                 covers={real_dialogue: dialogue} if real_dialogue else None,
             )
-            self._connection = self._accept(listener, time.monotonic() + timeout)
-        self._receive(timeout)
+            self._connection = self._accept(listener, time.monotonic() + START)
+        self._receive(START)
 
     def _get_ready(self) -> None:
         try:
@@ -237,7 +231,9 @@ class Machine:
         raise self._startup_error("LinuxCNC did not come up in time")
 
     def _startup_error(self, what: str) -> StartupError:
-        return StartupError(f"{self.ini.path}: {startup_error(what, self.log(), self.ini)}")
+        return StartupError(
+            f"{self.ini.path}: {startup_error(what, self._isolated.log(), self.ini)}"
+        )
 
     # Requests to the recording screen.
 

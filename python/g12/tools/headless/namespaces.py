@@ -62,18 +62,16 @@ class Isolated:
         command: Sequence[str],
         copies: Mapping[Path, Mapping[str, str]],
         covers: Mapping[str, Path] | None = None,
-        environment: Mapping[str, str] | None = None,
     ) -> None:
         """Start ``command``.
 
         ``copies`` are directories that are replaced by private copies, with texts for some of their
-        files. ``covers`` are files that replace others. ``environment`` adds variables; those of a
-        screen are not passed on otherwise. Without namespaces it waits until another program's turn
-        ends.
+        files. ``covers`` are files that replace others. Without namespaces it waits until another
+        program's turn ends.
         """
         job: dict[str, Any] = {
             "command": list(command),
-            "environment": {**self._environment(), **(environment or {})},
+            "environment": self._environment(),
             "copies": {str(directory): dict(files) for directory, files in copies.items()},
             "covers": {covered: str(file) for covered, file in (covers or {}).items()},
             "scratch": str(self.folder),
