@@ -96,20 +96,6 @@ def test_another_file_in_front_of_the_sub(tmp_path, capsys):
     assert trace_text(POCKET, ini).moves[0].end[0] == 99
 
 
-def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
-    event = "".join(f"REMAP = {line.text}\n" for line in features.remaps_of("circle-mill"))
-    own = "PATH_PREPEND = mine\n"
-    text = with_lines(with_lines(GOOD, "RS274NGC", event), "PYTHON", own)
-    ini = write_config(
-        tmp_path,
-        text.replace(f"{ROOT}/python/toplevel.py", "mine/toplevel.py"),
-        mine__toplevel_py="import remap, oword\n",
-        mine__oword_py="def circle_mill(self, *entries):\n    return 0.0\n",
-    )
-    assert kinds(ini, capsys) == ["shadowed"]
-    assert trace_text(["F100", "o<circle_mill> call [7]", "M2"], ini).moves == []
-
-
 def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
     folder = tmp_path / "my mill"
     folder.mkdir()

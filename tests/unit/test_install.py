@@ -47,6 +47,14 @@ def small_package(monkeypatch):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(PACKAGE))
 
 
+@pytest.fixture
+def ini(tmp_path):
+    """Return the INI of a mill with haas installed."""
+    path = write_config(tmp_path)
+    put_in(path, "haas")
+    return path
+
+
 def own_python(folder):
     return {"remap": {"mine": "remap"}, "remap_file": str(folder / "python" / "remap.py")}
 
@@ -54,9 +62,7 @@ def own_python(folder):
 # INI files.
 
 
-def test_the_lines_stand_at_the_end_of_their_section(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_the_lines_stand_at_the_end_of_their_section(ini):
     text = ini.read_text()
     section = text[text.index("[RS274NGC]") : text.index("[TRAJ]")]
     assert section == (
@@ -103,9 +109,7 @@ def test_what_the_user_changed_since_survives_uninstall(tmp_path):
     assert not (tmp_path / "g12").exists()
 
 
-def test_a_path_that_the_user_added_to_ours_survives_uninstall(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_a_path_that_the_user_added_to_ours_survives_uninstall(ini):
     ini.write_text(ini.read_text().replace("g12/ngc\n", "g12/ngc:mine\n"))
     take_out(ini)
     assert ini.read_text() == MILL.replace("mill.var\n", f"mill.var\n{PATH}mine\n")
@@ -116,12 +120,8 @@ def test_a_second_feature_joins_the_first(tmp_path):
     with restored(ini):
         put_in(ini, "haas")
         put_in(ini, "circle-mill", package=tmp_path / "g12" / "python" / "g12")
-        assert re.findall("^REMAP = (G.*?) ", ini.read_text(), re.M) == [
-            "G12",
-            "G13",
-            "G12.2",
-            "G13.2",
-        ]
+        codes = re.findall("^REMAP = (G.*?) ", ini.read_text(), re.MULTILINE)
+        assert codes == ["G12", "G13", "G12.2", "G13.2"]
         assert len(IniText(ini).blocks()) == 3
 
 
@@ -177,9 +177,7 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
         (BEGIN_MARK, 2, f'the line "{BEGIN_MARK}"'),
     ],
 )
-def test_a_marker_without_its_other_one_is_refused(tmp_path, capsys, marker, count, missed):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_a_marker_without_its_other_one_is_refused(tmp_path, ini, capsys, marker, count, missed):
     ini.write_text(ini.read_text().replace(marker, "# gone", count))
     before = content_of(tmp_path)
     with pytest.raises(IniError, match=missed):
@@ -232,9 +230,8 @@ def test_a_users_remap_gets_one_line_and_loses_it_again(tmp_path):
 def test_a_hand_made_import_is_enough(tmp_path):
     ini, python = own_config(tmp_path)
     ours = dict.fromkeys(features.functions_of("haas"), "g12.remap")
-    put_in(
-        ini, "haas", **{**python, "remap": ours, "package": tmp_path / "tools" / "python" / "g12"}
-    )
+    package = tmp_path / "tools" / "python" / "g12"
+    put_in(ini, "haas", **{**python, "remap": ours, "package": package})
     assert "by g12 install" not in (tmp_path / "python" / "remap.py").read_text()
     assert "SUBROUTINE_PATH = tools/ngc" in ini.read_text()
     assert not (tmp_path / "g12").exists()
@@ -311,16 +308,13 @@ def test_a_line_of_the_users_own_is_not_brought_up_to_date(tmp_path):
 # The copy of the package.
 
 
-def test_the_copy_is_checked_by_sha256sum(tmp_path):
-    put_in(write_config(tmp_path), "haas")
+def test_the_copy_is_checked_by_sha256sum(tmp_path, ini):
     copy = tmp_path / "g12"
     subprocess.run(["sha256sum", "--check", "--strict", "MANIFEST"], cwd=copy, check=True)
     assert content_of(copy).keys() == {*PACKAGE, "MANIFEST"}
 
 
-def test_edited_files_of_the_copy_survive_uninstall_and_are_reported(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_edited_files_of_the_copy_survive_uninstall_and_are_reported(tmp_path, ini):
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
     (tmp_path / "g12" / "python" / "__pycache__").mkdir()
     assert any("but for what you changed: ngc/g12_haas.ngc" in line for line in take_out(ini))
@@ -331,9 +325,7 @@ def test_edited_files_of_the_copy_survive_uninstall_and_are_reported(tmp_path):
         put_in(ini, "haas")
 
 
-def test_a_copy_whose_list_is_missing_stays_and_one_behind_a_link_is_not_the_configs(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_a_copy_whose_list_is_missing_stays_and_one_behind_a_link_is_not_the_configs(tmp_path, ini):
     shutil.move(tmp_path / "g12" / "ngc", tmp_path / "elsewhere")
     (tmp_path / "g12" / "ngc").symlink_to(tmp_path / "elsewhere")
     with pytest.raises(UsageError):
@@ -408,8 +400,7 @@ def newer(monkeypatch, files):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
 
 
-def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_path, monkeypatch):
-    put_in(write_config(tmp_path), "haas")
+def test_an_interrupted_update_takes_no_new_file_for_an_edited_one(tmp_path, ini, monkeypatch):
     newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
     installation.bring_copy_up_to_date(tmp_path / "g12")
@@ -417,8 +408,7 @@ def test_an_update_that_was_interrupted_takes_no_new_file_for_an_edited_one(tmp_
     assert package_copy.edited(tmp_path / "g12") == []
 
 
-def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
-    put_in(write_config(tmp_path), "haas")
+def test_no_edit_is_ever_lost(tmp_path, ini, monkeypatch):
     copy = tmp_path / "g12"
     haas = copy / "ngc" / "g12_haas.ngc"
     for version in ("two", "three"):
@@ -441,9 +431,7 @@ def test_no_edit_is_ever_lost(tmp_path, monkeypatch):
     assert sum("your version" in line for line in said) == 2
 
 
-def test_a_damaged_copy_is_mended(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_a_damaged_copy_is_mended(tmp_path, ini):
     whole = content_of(tmp_path)
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").unlink()
     (tmp_path / "g12" / "python" / "remap.py").write_bytes(b"")
@@ -461,8 +449,7 @@ def test_the_copy_that_only_a_users_module_names_is_missed_too(tmp_path):
     assert installation.missing_files(IniText(ini))
 
 
-def test_a_copy_does_not_mend_itself(tmp_path, monkeypatch):
-    put_in(write_config(tmp_path), "haas")
+def test_a_copy_does_not_mend_itself(tmp_path, ini, monkeypatch):
     copy = tmp_path / "g12"
     monkeypatch.setattr(features, "ROOT", copy)
     (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
@@ -491,9 +478,7 @@ def test_a_list_with_anything_else_in_it_is_refused_first(tmp_path, line, capsys
     assert content_of(tmp_path) == before
 
 
-def test_the_copy_stays_while_the_users_lines_need_it(tmp_path):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_the_copy_stays_while_the_users_lines_need_it(tmp_path, ini):
     text = ini.read_text()
     remap = next(line for line in text.splitlines() if line.startswith("REMAP"))
     moved = text.replace(f"{remap}\n", "").replace("[RS274NGC]\n", f"[RS274NGC]\n{remap}\n")
@@ -508,9 +493,7 @@ def test_the_copy_stays_while_the_users_lines_need_it(tmp_path):
     assert not (tmp_path / "g12").exists()
 
 
-def test_an_uninstall_that_failed_can_be_run_again(tmp_path, monkeypatch):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_an_uninstall_that_failed_can_be_run_again(tmp_path, ini, monkeypatch):
     real = package_copy.remove_files
 
     def fails(folder, names):
@@ -623,18 +606,6 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
     assert "haas and yasnac exclude each other" in capsys.readouterr().err
 
 
-def test_every_feature_has_a_next_step():
-    begins = {"polar": "G13.1", "cylinder": "G7.1 C0", "haas": "G12", "polar-shapes": "o<polar_po",
-              "spindle-c": "home, M254", "polar-kinematics": "home, G0", "forms": "fill in",
-              "programs-haas-mill": "open a .nc program of haas-mill"}  # fmt: skip
-    assert all(features.first_step(name).startswith(step) for name, step in begins.items())
-
-
-def test_two_dialects_at_once(tmp_path, capsys):
-    assert install.main([str(write_config(tmp_path)), "--with", "haas", "yasnac"]) == 2
-    assert "haas and yasnac exclude each other" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -664,9 +635,7 @@ def test_what_nobody_reads_is_done_to_its_end(tmp_path, monkeypatch):
     assert content_of(tmp_path) == before
 
 
-def test_a_dry_run_of_uninstall_shows_and_writes_nothing(tmp_path, capsys):
-    ini = write_config(tmp_path)
-    put_in(ini, "haas")
+def test_a_dry_run_of_uninstall_shows_and_writes_nothing(tmp_path, ini, capsys):
     before = content_of(tmp_path)
     assert uninstall.main([str(ini), "--dry-run"]) == 0
     assert "-REMAP = G12 " in capsys.readouterr().out
