@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Holes with C on the stock interpreter: modes, clamp, a tool beside X, and 300 random bad calls.
+"""Holes with C on the stock interpreter: modes, clamp, a tool beside X, refusals.
 
 What valid calls drill is proved in test_verify_holes.py.
 """
-
-import random
 
 import numpy as np
 import pytest
@@ -141,38 +139,25 @@ def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):
     assert error.text.startswith("face_holes line 6: circle_diameter 0 must be greater")
 
 
-def test_300_random_bad_calls_move_nothing(lathe):
-    chance = random.Random(28)
-    bad = {
-        "count": [0, -1, 361, 2.5, LEFT], "circle_diameter": [0, -5, 9000, LEFT],
-        "first_angle": [361, -400], "step_angle": [400, -361], "depth": [0, -1, LEFT, 2000],
-        "retract": [0, -2, LEFT], "feed": [-1], "peck": [1e-5, -1e-5], "dwell": [-0.1],
-        "kind": [-1, 4, 0.5, 2], "z": [LEFT, -600, 900], "surface_diameter": [0, -4, 60, LEFT],
-        "x": [900, 2e6], "c": [-500, 1e9],
-    }  # fmt: skip
-    for _ in range(300):
-        name = chance.choice(list(CALLS))
-        wrong = chance.choice(list(CALLS[name]))
-        text = call(name, **{wrong: chance.choice(bad[wrong])})
-        traced = lathe.trace_text(program(text))
-        assert traced.error and traced.error.line == 6, text
-        assert traced.error.text.startswith(f"{name} line 6: ") and len(traced.error.text) <= 255
-        assert len(traced.moves) == 1, text
-
-
 @pytest.mark.parametrize(
-    ("blocks", "rule"),
+    ("block", "entries", "rule"),
     [
-        (["G93"], "needs G94 or G95, not G93"),
-        (["G92 X61"], "X0 must be the spindle's axis"),
-        (["G19"], "needs G18 or G17, not G19"),
-        (["G0 Z-1"], "Z-1: the tool must be above the face at Z0"),
-        (["T0 M6"], "no tool is loaded"),
+        ("G93", {}, "needs G94 or G95, not G93"),
+        ("G92 X61", {}, "X0 must be the spindle's axis"),
+        ("G19", {}, "needs G18 or G17, not G19"),
+        ("G0 Z-1", {}, "Z-1: the tool must be above the face at Z0"),
+        ("T0 M6", {}, "no tool is loaded"),
+        ("", dict(count=2.5), "count 2.5 must be a whole number"),
+        ("", dict(feed=-1), "feed -1 must be greater than 0"),
+        ("", dict(depth=2000), "the Z axis would go to -2000 mm, beyond its limit -500 mm"),
+        ("", dict(circle_diameter=9000), "the X axis would go to 4500 mm (radius), beyond its"),
+        ("", dict(kind=2), "kind 2 taps a left-hand thread"),
     ],
 )
-def test_where_no_hole_can_be_made(lathe, blocks, rule):
-    traced = lathe.trace_text(program(*blocks, call("face_holes")))
+def test_where_no_hole_can_be_made(lathe, block, entries, rule):
+    traced = lathe.trace_text(program(block, call("face_holes", **entries)))
     assert traced.error.text.startswith(f"face_holes line 7: {rule}")
+    assert traced.error.line == 7 and not [m for m in traced.moves if m.line == 7]
 
 
 @pytest.mark.parametrize("name", [*HOLES, *SHAPES])

@@ -136,42 +136,30 @@ def test_a_wrapped_axis_winds_the_same_way():
     assert [round(move.end[5]) for move in traced.moves[len(plain) :]] == [710, 730, 380]
 
 
+OWN = ("G12.1 modalgroup=1 python=polar_on", "G13.1 modalgroup=1 python=polar_off")
+OTHER = remaps(ROOT / "configs" / "include" / "polar_g12_3.inc")
+
+
 @pytest.mark.parametrize("machine", ["lathe_mm", "lathe_mm_kinematics"])
-def test_the_other_pair_of_codes(machine):
-    pair = remaps(ROOT / "configs" / "include" / "polar_g12_3.inc")
-    overrides = {"RS274NGC": {"REMAP": (*pair, "M33 modalgroup=10 ngc=m33")}}
+@pytest.mark.parametrize(("pairs", "codes"), [((*OWN, *OTHER), ".1 .3"), (OTHER, ".3")])
+def test_the_other_pair_of_codes_alone_and_beside_the_usual_one(machine, pairs, codes):
+    overrides = {"RS274NGC": {"REMAP": (*pairs, "M33 modalgroup=10 ngc=m33")}}
     with Tracer(SIM / f"{machine}.ini", overrides=overrides) as lathe:
-        traced = lathe.trace_text([line.replace(".1", ".3") if line in ("G12.1", "G13.1") else line
-                                   for line in section("G1 X12", "U-2")])  # fmt: skip
-        assert ends(traced) == [(12, 0), (10, 0)]
-        assert ends(lathe.trace_text([FIRST, "G13.3", "F100", "G1 X15", "M2"])) == [(15, 0)]
-        refused = lathe.trace_text(
-            ["G12.3" if line == "G12.1" else line for line in section("G1 X12")[:-2]]
-        )
-    assert refused.error.text == "G12.3 line 6: G13.3 is missing: the program ends before it"
-
-
-def test_both_pairs_of_codes_on_one_machine():
-    pairs = [f"G{on}.{pair} modalgroup=1 python=polar_{name}"
-             for pair in (1, 3) for on, name in ((12, "on"), (13, "off"))]  # fmt: skip
-    lines = [*pairs, "M33 modalgroup=10 ngc=m33"]
-    with Tracer(SIM / "lathe_mm.ini", overrides={"RS274NGC": {"REMAP": lines}}) as lathe:
 
         def with_codes(on, off, *body):
-            program = section(*body)
-            return lathe.trace_text(
-                [{"G12.1": on, "G13.1": off}.get(line, line) for line in program]
-            )
+            named = {"G12.1": f"G12{on}", "G13.1": off}
+            return lathe.trace_text([named.get(line, line) for line in section(*body)])
 
-        for on in ("G12.1", "G12.3"):
-            for off in ("G13.1", "G13.3"):
-                assert ends(with_codes(on, off, "G1 X12", "U-2")) == [(12, 0), (10, 0)]
-            refused = with_codes(on, "M9", "G1 X12")
-            assert refused.error.text.startswith(f"{on} line 8: G13{on[3:]} is missing")
-            refused = with_codes(on, "G13.1", "G12.3")
-            assert (
-                refused.error.text == f"{on} line 6: the section is already on: G13{on[3:]} ends it"
-            )
+        for on in codes.split():
+            for off in codes.split():
+                found = with_codes(on, f"G13{off}", "G1 X12", "U-2")
+                assert ends(found) == [(12, 0), (10, 0)]
+            text = with_codes(on, "M9", "G1 X12").error.text
+            assert text.startswith(f"G12{on} line 8: G13{on} is missing")
+            text = with_codes(on, f"G13{on}", f"G12{codes[-2:]}").error.text
+            assert text == f"G12{on} line 6: the section is already on: G13{on} ends it"
+            safe = lathe.trace_text([FIRST, f"G13{on}", "F100", "G1 X15", "M2"])
+            assert ends(safe) == [(15, 0)]
 
 
 # ---------------------------------------------------------------- the machine's INI

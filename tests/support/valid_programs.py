@@ -9,7 +9,6 @@ import cmath
 import itertools
 import math
 
-from g12.tools.dynapath import program_from_events
 from g12.tools.machine.ini import read_ini
 from support.sim_machines import SIM
 
@@ -221,31 +220,6 @@ def _add_code(text, event):
         words.append(f"Q{text.n(abs(event['L']))}")
         words.append("" if event["L"] > 0 else "L0")
     text.add(text.shuffled("G13.2" if event["G"] else "G12.2", *words))
-
-
-def dynapath(chance, count):
-    """Return event text in mm; W and F are carried on from event to event."""
-    text, lines = Text(chance, "mm"), []
-    for k in range(count):
-        x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
-        event = _event(text, 5.0, x, y)
-        if k and chance.random() < 0.3:
-            event["F"] = None
-        if event["L"] and event["L"] < 0:
-            event["L"] = f"/{text.n(-event['L'])}"
-        words = (
-            letter + (value if isinstance(value, str) else text.n(value))
-            for letter, value in event.items()
-            if value is not None
-        )
-        lines.append(f"N{10 * k}(4){''.join(words)}$")
-    return "\n".join([*lines, ""])
-
-
-def dynapath_program(chance, count):
-    """Return what LinuxCNC gets of event text, with rapids that do not round off their corners."""
-    first = ["T4 M6", "G21 G64 P0.01", "G0 X0 Y0 Z20", ""]
-    return "\n".join(first) + program_from_events(dynapath(chance, count), "mm")
 
 
 # ---------------------------------------------------------------- polar sections
@@ -539,7 +513,6 @@ MACHINES = {
     "yasnac traverse": "mill_yasnac_mm",
     "mitsubishi": "mill_mitsubishi_mm",
     "circle mill": "mill_mm",
-    "dynapath": "mill_mm",
     "polar": "lathe_mm",
     "polar inch": "lathe_inch",
     "polar kinematics": "lathe_mm_kinematics",
@@ -575,8 +548,6 @@ def valid_program(kind, chance, count):
     """Return a program of ``count`` pockets or sections of a kind of `MACHINES`."""
     what, more = kind.split()[0], kind.split()[1:]
     unit = "inch" if MACHINES[kind].endswith("inch") else "mm"
-    if what == "dynapath":
-        return dynapath_program(chance, count)
     if what == "polar":
         return polar_program(chance, unit, count, more[0] if more else "")
     if what == "shapes":
