@@ -21,7 +21,7 @@ from g12.tools.commands.arguments import (
     number_from,
     one_line,
 )
-from g12.tools.progress import Report, working
+from g12.tools.progress import working
 from g12.tools.regress.record_and_check import RecordRequest, check, record
 from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result, Terms
 from g12.tools.regress.report import json_report, text_report
@@ -50,39 +50,26 @@ exit code: 0 as recorded, 1 something changed, 2 wrong use
 def command_parser() -> Parser:
     parser = Parser(prog="g12 regress", description=DESCRIPTION)
     actions = parser.add_subparsers(dest="action", required=True, metavar="record | check")
-    _add_record(actions)
-    _add_check(actions)
+    text = "program or folder with programs (default: all that are recorded)"
+    recording = actions.add_parser("record", help="record what programs do", epilog=RECORD_EXAMPLES)
+    recording.set_defaults(run=run_record)
+    recording.add_argument("programs", nargs="*", type=Path, metavar="PROGRAM", help=text)
+    _add_path(recording, "--ini", "INI file of the machine")
+    _add_path(recording, "--tools", "tool table in place of the INI's")
+    _add_path(recording, "--var", VAR_HELP)
+    checking = actions.add_parser("check", help="report what changed", epilog=CHECK_EXAMPLES)
+    checking.set_defaults(run=run_check)
+    checking.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
+    _add_path(checking, "--programs", "folder with other versions of the programs", "DIR")
+    _add_path(checking, "--ini", "INI file in place of the recorded one")
+    _add_path(checking, "--tools", "tool table in place of the recorded one")
+    _add_path(checking, "--picture", "draw each change, in this folder", "DIR")
+    for action in (recording, checking):
+        _add_common(action)
     return parser
 
 
-def _add_record(actions) -> None:
-    parser = actions.add_parser("record", help="record what programs do", epilog=RECORD_EXAMPLES)
-    parser.set_defaults(run=run_record)
-    parser.add_argument(
-        "programs",
-        nargs="*",
-        type=Path,
-        metavar="PROGRAM",
-        help="program or folder with programs (default: all that are recorded)",
-    )
-    _add_file(parser, "--ini", "INI file of the machine")
-    _add_file(parser, "--tools", "tool table in place of the INI's")
-    _add_file(parser, "--var", VAR_HELP)
-    _add_common(parser)
-
-
-def _add_check(actions) -> None:
-    parser = actions.add_parser("check", help="report what changed", epilog=CHECK_EXAMPLES)
-    parser.set_defaults(run=run_check)
-    parser.add_argument("names", nargs="*", metavar="PROGRAM", help="default: all recorded")
-    _add_file(parser, "--programs", "folder with other versions of the programs", "DIR")
-    _add_file(parser, "--ini", "INI file in place of the recorded one")
-    _add_file(parser, "--tools", "tool table in place of the recorded one")
-    _add_file(parser, "--picture", "draw each change, in this folder", "DIR")
-    _add_common(parser)
-
-
-def _add_file(parser: argparse.ArgumentParser, name: str, text: str, metavar: str = "FILE") -> None:
+def _add_path(parser: argparse.ArgumentParser, name: str, text: str, metavar: str = "FILE") -> None:
     parser.add_argument(name, type=Path, metavar=metavar, help=text)
 
 
@@ -105,16 +92,12 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 @one_line("regress")
 def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
-    with working("") as report, Recorders() as recorders:
-        found, notes, good = options.run(options, _terms(options, report), recorders)
-    _print(found, notes, options.json, good)
-    return GOOD if good else FINDING
-
-
-def _terms(options: argparse.Namespace, report: Report) -> Terms:
     pictures = getattr(options, "picture", None)
     values = (options.tolerance, options.feed_tolerance, options.timeout, options.jobs, pictures)
-    return Terms(*values, report)
+    with working("") as report, Recorders() as recorders:
+        found, notes, good = options.run(options, Terms(*values, report), recorders)
+    print(json_report(found, notes, good) if options.json else "\n".join(text_report(found, notes)))
+    return GOOD if good else FINDING
 
 
 def run_record(
@@ -133,8 +116,3 @@ def run_check(
     others = {"programs": options.programs, "ini": options.ini, "tools": options.tools}
     found, notes = check(options.directory, options.names, recorders, **others, terms=terms)
     return found, notes, all(result.verdict == SAME for result in found)
-
-
-def _print(found: list[Result], notes: list[str], as_json: bool, good: bool) -> None:
-    lines = [json_report(found, notes, good)] if as_json else text_report(found, notes)
-    print("\n".join(lines))

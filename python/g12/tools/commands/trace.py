@@ -35,20 +35,14 @@ exit code: 0 the program came to its end, 1 it did not, 2 wrong use
 
 def line_of(move: Move, digits: int) -> str:
     """Return a move as text: line, kind, what changes, centre of an arc, feed."""
-    words = [
-        f"{axis}{end:.{digits}f}" for axis, end in zip(AXIS_LETTERS, move.end) if _moves(move, axis)
-    ]
+    axes = zip(AXIS_LETTERS, move.start, move.end)
+    words = [f"{axis}{end:.{digits}f}" for axis, start, end in axes if start != end]
     if move.kind == "arc":
         words += [f"{name}{value:.{digits}f}" for name, value in zip("IJK", move.centre)]
         words.append(f"turns {move.turns:+d} G{move.plane}")
     if move.feed:
         words.append(f"F{move.feed:.6g} {move.feed_mode}")
     return f"{move.block:6d} {move.kind:5} {' '.join(words)}"
-
-
-def _moves(move: Move, axis: str) -> bool:
-    index = AXIS_LETTERS.index(axis)
-    return move.start[index] != move.end[index]
 
 
 def command_parser() -> Parser:

@@ -12,6 +12,7 @@ from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import Scene, scene_of_proof
 from g12.tools.units import Unit, clock, plain
 from g12.tools.verify.proof import Proof, prove
+from g12.tools.verify.report import in_columns
 from g12.tools.verify.result.cut import MeasuredCut
 
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
@@ -39,11 +40,10 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
     unit = scene.unit
     lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]
     if proof.pockets:
-        lines += table(POCKET_HEADS, [pocket_row(cut, unit) for cut in proof.pockets])
+        lines += table(POCKET_HEADS, *(pocket_row(cut, unit) for cut in proof.pockets))
     if proof.sections:
         allowed = proof.tolerances.polar
-        rows = [section_row(cut, allowed, unit) for cut in proof.sections]
-        lines += table(SECTION_HEADS, rows)
+        lines += table(SECTION_HEADS, *(section_row(cut, allowed, unit) for cut in proof.sections))
     found = (each for each in proof.judged if each.is_finding)
     lines += [f"  line {each.line}: {proof.text(each, unit)}" for each in found]
     return "\n".join(lines)
@@ -78,9 +78,5 @@ def section_row(cut: MeasuredCut, allowed: float, unit: Unit) -> tuple[str, ...]
     )
 
 
-def table(heads: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
-    widths = [max(map(len, column)) for column in zip(heads, *rows)]
-    return [
-        "  " + "  ".join(f"{text:{width}}" for text, width in zip(row, widths)).rstrip()
-        for row in (heads, *rows)
-    ]
+def table(*rows: Sequence[str]) -> list[str]:
+    return [f"  {line}" for line in in_columns(rows)]

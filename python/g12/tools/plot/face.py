@@ -43,10 +43,9 @@ ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: number, height, gap
 
 
 class History(NamedTuple):
-    """The axes over time, arrays of one value per moment: X (radius), Z, C, speeds.
+    """The axes over time, arrays of one value per moment: X (radius), Z, C, speeds, whether rapid.
 
-    Seconds, mm, degrees, degrees/s, mm/min; ``programmed`` is the programmed feed along the part,
-    NaN in rapids.
+    Seconds, mm, degrees, degrees/s, mm/min along the part.
     """
 
     time: np.ndarray
@@ -55,7 +54,6 @@ class History(NamedTuple):
     c: np.ndarray
     c_speed: np.ndarray
     feed: np.ndarray
-    programmed: np.ndarray
     rapid: np.ndarray
 
 
@@ -136,8 +134,7 @@ def programmed_history(scene: Scene) -> History:
     rapid = rapids_at(scene, path.move)
     first = path.vertices(first_shown(scene)).start
     time, z = path.time - path.time[first], path.positions[:, Z]
-    columns = (time, x, z, c, c_speed, feed, np.where(rapid, np.nan, feed), rapid)
-    return History(*(column[first:] for column in columns))
+    return History(*(column[first:] for column in (time, x, z, c, c_speed, feed, rapid)))
 
 
 def rapids_at(scene: Scene, moves: np.ndarray) -> np.ndarray:
@@ -149,11 +146,9 @@ def real_history(scene: Scene) -> History:
     real = scene.real
     time = real.time - real.time[0]
     c_speed = np.abs(np.gradient(real.positions[:, C], time))
-    rapid = rapids_at(scene, real.move)
-    feeds = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
-    programmed = np.where(rapid, np.nan, feeds[real.move]) * scene.override / 100.0
     x, z, c = (real.positions[:, axis] for axis in (X, Z, C))
-    return History(time, x, z, c, c_speed, real.part_speed() * 60, programmed, rapid)
+    rapid = rapids_at(scene, real.move)
+    return History(time, x, z, c, c_speed, real.part_speed() * 60, rapid)
 
 
 def draw_depths(
@@ -175,12 +170,14 @@ def draw_depths(
 
 def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:
     """Draw the feed along the part, of moves at feed only."""
-    unit = scene.unit.mm
+    feeds = [(history.feed, drawn)]
     if scene.real is not None:
-        programmed = {"color": style.PATH, "linewidth": 2.2, "drawstyle": "steps-pre"}
-        axes.plot(history.time, history.programmed / unit, **programmed)
-    feed = np.where(history.rapid, np.nan, history.feed)
-    axes.plot(history.time, feed / unit, drawstyle="steps-pre", **drawn)
+        of_moves = np.array([scene.path.part_feed(index) for index in range(len(scene.moves))])
+        programmed = of_moves[scene.real.move] * scene.override / 100.0
+        feeds.insert(0, (programmed, {"color": style.PATH, "linewidth": 2.2}))
+    for feed, line in feeds:
+        shown = np.where(history.rapid, np.nan, feed) / scene.unit.mm
+        axes.plot(history.time, shown, drawstyle="steps-pre", **line)
     axes.set_ylim(0, 1.15 * axes.get_ylim()[1])
 
 

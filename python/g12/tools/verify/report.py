@@ -111,9 +111,7 @@ def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = Fals
     findings = [each for each in judged if each.is_finding or (strict and each.is_note)]
     notes = [each for each in judged if each.is_note and not strict]
     others = [each for each in judged if each.is_not_judged]
-    cuts = (
-        _paragraphs_of(proof, unit) if full else ["\n".join(_in_columns(_cut_lines(proof, unit)))]
-    )
+    cuts = _paragraphs_of(proof, unit) if full else ["\n".join(in_columns(_cut_lines(proof, unit)))]
     messages = (m._replace(line=proof.user_line(m.line)) for m in proof.subject.trace.messages)
     parts = [
         _zero_text(proof, unit),
@@ -296,7 +294,7 @@ def verdict(findings: int, notes: int, not_judged: int) -> str:
     return f"verdict: {', '.join(filter(None, counts))}"
 
 
-def _in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
+def in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
     """Yield rows with their columns below each other."""
     rows = list(rows)
     widths = [max(map(len, column)) for column in zip(*rows)]
