@@ -171,14 +171,6 @@ def test_an_axis_that_is_not_commanded_starts_where_it_ends(mill, system, change
     assert second.start == first.end
 
 
-def test_tools_can_be_given_by_diameter(ini):
-    blocks = "T7 M6\nG41.1 D#5410\nG1 X10 Y0 F100\nX20\nM2"
-    traced = trace_text(blocks, ini, tools={7: 4.0})
-    assert traced.error is None
-    assert traced.moves[-1].end[1] == near(2.0)
-    assert traced.moves[-1].tool == 7
-
-
 @pytest.mark.parametrize(
     ("block", "feed", "mode"),
     [
@@ -292,19 +284,7 @@ def test_every_program_starts_clean(mill):
     assert mill.trace_text("G20\nG53 G0 Z0").position[2] == near(0.0)
 
 
-def test_a_program_without_an_end_is_an_error_only_as_a_file(mill, tmp_path):
-    program = tmp_path / "open.ngc"
-    program.write_text("G0 X1\n")
-    assert mill.trace_text("G0 X1\n").error is None
-    assert "no percent sign" in mill.trace(program).error.text
-
-
 # The machine.
-
-
-def test_overrides_reach_the_handlers(ini):
-    traced = trace_text("G88.6 I1", ini, overrides={"G12": {"WORD": "fancy"}})
-    assert traced.messages[0].text == "fancy"
 
 
 def test_nothing_is_written_beside_the_ini(ini):

@@ -58,6 +58,11 @@ def groove():
     return hand.line(c=90).line(z=-10, c=180).line(c=270).rapid(x=24)
 
 
+def both(hand, ini=MILL):
+    shown = scene(hand, ini)
+    return shown, plan_view.milled_levels(shown)
+
+
 def on_surface(shown):
     return replace(shown, seen=Seen(surface=20.0))
 
@@ -100,7 +105,7 @@ def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
 
 
 def test_levels_go_down_and_each_has_the_area_swept():
-    levels = plan_view.milled_levels(scene(pocket()))
+    _, levels = both(pocket())
     assert [level.z for level in levels] == pytest.approx([-2, -4])
     for level in levels:
         assert level.area.bounds == pytest.approx((37, -13, 63, 13), abs=0.02)
@@ -113,16 +118,13 @@ def test_half_turns_of_a_helix_belong_to_the_floor_that_they_lead_to():
     shallow = hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
     hand = shallow.rapid(z=1).rapid(x=150).line(z=-1).arc(1, 153, 0, x=156)
     hand.arc(1, 150, 0, x=144, z=-2.5).arc(1, 150, 0, x=156, z=-5).arc(1, 150, 0)
-    levels = plan_view.milled_levels(scene(hand))
+    _, levels = both(hand)
     assert [level.z for level in levels] == pytest.approx([-1, -2, -4, -5])
     assert levels[2].area.bounds[2] < 100 < levels[3].area.bounds[0]
-
-
-def test_a_helix_on_a_lathes_face_belongs_to_its_floor():
-    way = [Hand().rapid(x=9, z=1)]
+    on_face = Hand().rapid(x=9, z=1)
     for step in range(1, 9):
-        way.append(way[-1].line(c=45.0 * step, z=1 - step / 2))
-    levels = plan_view.milled_levels(scene(way[-1].line(c=400.0), LATHE))
+        on_face.line(c=45.0 * step, z=1 - step / 2)
+    _, levels = both(on_face.line(c=400.0), LATHE)
     assert [level.z for level in levels] == pytest.approx([-3])
 
 
@@ -136,16 +138,11 @@ def test_drilling_sweeps_holes():
     assert len(level.area.geoms) == 2
 
 
-def test_a_lathe_program_that_leaves_c_alone_is_turning():
-    assert not scene(turned(), LATHE).path.part.turning
-    assert scene(flats(), LATHE).path.part.turning
-
-
 def test_each_tool_sweeps_with_its_own_diameter():
     hand = Hand().line(x=100)
     hand.tool = 2
     hand.rapid(y=50).line(x=0)
-    area = plan_view.milled_levels(scene(hand))[0].area
+    area = both(hand)[1][0].area
     assert not area.contains(Point(50, 4)) and area.contains(Point(50, 2.9))
     assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
 
@@ -154,10 +151,9 @@ def test_many_depths_become_bands():
     hand = Hand()
     for step in range(100):
         hand.line(x=100 * (step % 2), z=-step / 10)
-    levels = plan_view.milled_levels(scene(hand))
+    shown, levels = both(hand)
     assert len(levels) <= plan_view.BANDS
     assert len(plan_view.few(levels)) == plan_view.MOST_SHOWN_LEVELS
-    shown = scene(hand)
     floors = [f"swept at Z{shown.unit.text(level.z)}" for level in (levels[0], levels[-1])]
     for room in (14, 9, 2):
         said = [entry.get_label() for entry in plan_view.legend_entries(shown, levels, room)]
@@ -174,36 +170,27 @@ def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
     assert high[0] > 70 and low[0] < 37
 
 
-def upright():
-    """Return a circle of radius 20 in the ZX plane about X0 Z0, and a rapid."""
-    return Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5)
-
-
-def test_the_view_and_the_depths_hold_circles_of_other_planes():
-    low, high = plan_view.bounds_of(*both(upright()))
+def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
+    """It is one of radius 20 in the ZX plane about X0 Z0."""
+    shown, levels = both(Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5))
+    low, high = plan_view.bounds_of(shown, levels)
     assert low[2] < -20 and high[2] > 20
-    assert [round(level.z, 3) for level in both(upright())[1]] == [0.0, -20.0]
-
-
-def test_the_side_of_an_upright_circle_is_what_a_flat_cutter_removes():
-    level = both(upright())[1][-1]
-    side = removed_at(level, 30.0)
+    assert [round(level.z, 3) for level in levels] == [0.0, -20.0]
+    side = removed_at(levels[-1], 30.0)
     assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=0.01)
     assert side.contains(Point(0, -19.9)) and side.contains(Point(22.9, 5))
     assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
 
 
 def test_a_floor_is_removed_up_to_the_top():
-    (level,) = both(Hand().line(x=50, z=0).rapid(z=-2).line(x=60))[1][-1:]
-    assert removed_at(level, 0.0).bounds == pytest.approx((47, -2, 63, 0), abs=0.01)
+    _, levels = both(Hand().line(x=50, z=0).rapid(z=-2).line(x=60))
+    assert removed_at(levels[-1], 0.0).bounds == pytest.approx((47, -2, 63, 0), abs=0.01)
 
 
 def test_a_tool_without_a_diameter_is_only_its_centre():
-    hand = Hand(tool=8).line(x=5)
-    shown = scene(hand)
-    assert plan_view.cutter_text(shown, 8) == "T8 has no diameter: tool centre only"
-    assert plan_view.cutter_text(shown, 1) == "cutter T1, ⌀ 6 mm"
-    assert plan_view.cutter_text(shown, 0) == "no tool: tool centre only"
+    shown, only = scene(Hand(tool=8).line(x=5)), "tool centre only"
+    texts = [f"no tool: {only}", "cutter T1, ⌀ 6 mm", f"T8 has no diameter: {only}"]
+    assert [plan_view.cutter_text(shown, tool) for tool in (0, 1, 8)] == texts
 
 
 def test_there_and_back_again_is_drawn_once():
@@ -256,17 +243,12 @@ def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     assert [each.values["path"][0][0] for each in shown.seen.rapids] == [pytest.approx(shown_at)]
 
 
-def test_uncut_material_is_in_the_legend_and_the_view():
-    shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)),)))
-    assert warned(shown) == ["uncut material"]
+def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_view():
+    found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
+    shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)), found)))
+    assert warned(shown) == ["uncut material", "finding in line 3"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
-
-
-def test_a_finding_with_a_place_has_a_sign():
-    found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
-    shown = replace(scene(pocket()), seen=Seen(findings=(found,)))
-    assert warned(shown) == ["finding in line 3"]
 
 
 def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view():
@@ -288,16 +270,9 @@ def test_every_height_is_written_however_near_they_are(count):
     for level in range(count):
         hand.line(z=-0.1 * (level + 1)).line(x=100 * (level % 2))
     hand.line(z=-90)
-    figure = picture_of(scene(hand))
-    side = figure.axes[1]
-    texts = [text.get_text() for text in side.texts]
+    texts = [text.get_text() for text in picture_of(scene(hand)).axes[1].texts]
     assert texts[:2] == ["Z−90", f"Z{plain(-0.1 * count, 3)}"]
     assert len(texts) == count + 1
-
-
-def both(hand, ini=MILL):
-    shown = scene(hand, ini)
-    return shown, plan_view.milled_levels(shown)
 
 
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
