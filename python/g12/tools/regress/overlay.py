@@ -20,6 +20,8 @@ from g12.tools.regress.differences import Difference
 from g12.tools.regress.recording_text import Recording
 from g12.tools.units import UNITS, Unit
 
+Paths = list[list[np.ndarray]]  # (n, 3) on the part: unchanged, only recorded, only now
+
 DRAWN_CHORD_ERROR = 0.005
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.3, 1.0, 0.65, 0.55
 LARGEST_PLAN = np.array([7.0, 5.6])  # of the larger view, across and up
@@ -41,14 +43,6 @@ STYLES = (  # colour, width, order: same, was, now
 )
 
 
-class Paths(NamedTuple):
-    """Polylines (n, 3) on the part: unchanged, only recorded, only now."""
-
-    same: list[np.ndarray]
-    was: list[np.ndarray]
-    now: list[np.ndarray]
-
-
 class DrawnPaths(NamedTuple):
     """The paths of two recordings: moves at feed, rapids, the largest gap.
 
@@ -59,11 +53,6 @@ class DrawnPaths(NamedTuple):
     rapids: Paths
     gap: Gap | None
     around: Paths
-
-    @property
-    def points(self) -> np.ndarray:
-        lines = [line for paths_ in (self.feeds, self.rapids) for some in paths_ for line in some]
-        return np.concatenate(lines) if lines else np.zeros((1, 3))
 
 
 class View:
@@ -100,7 +89,9 @@ class View:
 
 def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], part: Part) -> Figure:
     drawn = drawn_of(was, now, found, part)
-    view = View(drawn.points, UNITS[now.facts["units"]], part.turning)
+    lines = [line for some in (*drawn.feeds, *drawn.rapids) for line in some]
+    points = np.concatenate(lines or [np.zeros((1, 3))])
+    view = View(points, UNITS[now.facts["units"]], part.turning)
     name = now.facts["program"].rpartition(" ")[0]
     figure = style.new_figure(view.width, view.height, name, subtitle(found))
     for axes, pair in view.panels(figure):
@@ -124,12 +115,12 @@ def drawn_of(was: Recording, now: Recording, found: Sequence[Difference], part: 
     new = {index for difference in found for index in difference.now}
     moves = (_moves(now, new, False), _moves(was, old, True), _moves(now, new, True))
     feeds, rapids = (
-        Paths(*(paths(part, _rapid(some, fast), DRAWN_CHORD_ERROR) for some in moves))
+        [paths(part, _rapid(some, fast), DRAWN_CHORD_ERROR) for some in moves]
         for fast in (False, True)
     )
     gap = gap_of(was, now, found, part)
-    near = (_near(part, some, gap) if gap else [] for some in moves)
-    return DrawnPaths(feeds, rapids, gap, Paths(*near))
+    near = [_near(part, some, gap) if gap else [] for some in moves]
+    return DrawnPaths(feeds, rapids, gap, near)
 
 
 def _reach(gap: Gap) -> float:

@@ -18,14 +18,8 @@ from g12.tools.regress.recorder import (
 )
 from g12.tools.units import counted_as
 
-VERDICT_TEXT = {
-    NEW: "new",
-    SAME: "as recorded",
-    CHANGED: "changed",
-    ADDED: "added",
-    MISSING: "missing",
-    FAILED: "failed",
-}
+VERDICTS = (NEW, SAME, CHANGED, ADDED, MISSING, FAILED)
+REASONS = {ADDED: "it is not recorded", MISSING: "it was recorded"}
 MOST_FINDINGS = 20  # of a program, in text; JSON has every one
 MOST_NAMED_LINES = 4
 
@@ -36,19 +30,15 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
     for result in results:
         yield from lines_of_result(result)
     counts = Counter(result.verdict for result in results)
-    listed = ", ".join(
-        f"{counts[verdict]} {text}" for verdict, text in VERDICT_TEXT.items() if counts[verdict]
-    )
-    yield f"{counted_as(len(results), 'program')}: {listed}"
+    texts = ((verdict, "as recorded" if verdict == SAME else verdict) for verdict in VERDICTS)
+    listed = [f"{counts[verdict]} {text}" for verdict, text in texts if counts[verdict]]
+    yield f"{counted_as(len(results), 'program')}: {', '.join(listed)}"
 
 
 def lines_of_result(result: Result) -> Iterator[str]:
-    if result.verdict == NEW:
-        yield f"{result.program}: new, {result.summary}"
-    if result.verdict == ADDED:
-        yield f"{result.program}: added, it is not recorded"
-    if result.verdict == MISSING:
-        yield f"{result.program}: missing, it was recorded"
+    reason = result.summary if result.verdict == NEW else REASONS.get(result.verdict)
+    if reason:
+        yield f"{result.program}: {result.verdict}, {reason}"
     for finding in result.findings[:MOST_FINDINGS]:
         yield from _finding(result.program, finding)
     if len(result.findings) > MOST_FINDINGS:
