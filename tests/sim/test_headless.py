@@ -14,7 +14,6 @@ import pytest
 from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import StartupError
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
-from g12.tools.headless.run import run_anyhow
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package
 
@@ -70,15 +69,6 @@ def test_modes_behind_a_real_run_are_those_of_the_trace(machine):
 def test_program_stops_are_passed_over(machine):
     result = machine.run_text(["G21 G0 X1", "M0", "G0 X2", "M1", "G0 X3", "M2"])
     assert result.position[0] == pytest.approx(3.0)
-
-
-def test_tools_and_parameters_are_the_ones_given(tmp_path):
-    program = tmp_path / "program.ngc"
-    program.write_text("G21 T7 M6\n(DEBUG, #5410)\nG0 X1\nM2\n")
-    result = run_anyhow(program, SIM / "mill_mm.ini", {7: 3.5}, {5221: 10.0})
-    assert result.error is None
-    assert result.messages[0].text == "3.500000"
-    assert result.position[0] == pytest.approx(11.0)
 
 
 # Control.

@@ -16,25 +16,39 @@ from g12.tools.preview.moves import Error
 from support.sim_machines import ROOT, SIM
 
 
+@pytest.fixture
+def g12_run(tmp_path, capsys):
+    """Run a text by ``g12 run``; return exit code, lines and errors, with PROGRAM for its path."""
+
+    def run_text(text, *words, machine="mill_mm"):
+        program, ini = tmp_path / "part.ngc", SIM / f"{machine}.ini"
+        program.write_text(text)
+        code = main.main(["run", str(program), "--ini", str(ini), *map(str, words)])
+        said = capsys.readouterr()
+        return code, said.out.splitlines(), said.err.replace(str(program), "PROGRAM")
+
+    return run_text
+
+
 @pytest.mark.parametrize(
     ("machine", "text", "code", "out", "error"),
     [
         (
-            "mill_inch.ini",
+            "mill_inch",
             "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n",
             0,
             ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
             "running part.ngc in real time, 0.2 s without acceleration\n",
         ),
         (
-            "lathe_mm.ini",
+            "lathe_mm",
             "M2\n",
             0,
             ["ends at X0 Z0 C0 (machine position, mm and degrees)"],
             "running part.ngc in real time, 0.0 s without acceleration\n",
         ),
         (
-            "mill_mm.ini",
+            "mill_mm",
             "G21 G90 F3000\nG1 C5\nM2\n",
             1,
             [],
@@ -43,56 +57,45 @@ from support.sim_machines import ROOT, SIM
         ),
     ],
 )
-def test_what_a_run_says(tmp_path, capsys, machine, text, code, out, error):
-    program = tmp_path / "part.ngc"
-    program.write_text(text)
-    assert main.main(["run", str(program), "--ini", str(SIM / machine)]) == code
-    said = capsys.readouterr()
-    lines = said.out.splitlines()
-    assert lines[: len(out)] == out
+def test_what_a_run_says(g12_run, machine, text, code, out, error):
+    ended, lines, errors = g12_run(text, machine=machine)
+    assert (ended, lines[: len(out)], errors) == (code, out, error)
     assert [line.partition(" ")[2] for line in lines[len(out) :]] == ["s in motion"] * bool(out)
-    assert said.err.replace(str(program), "PROGRAM") == error
 
 
-def test_a_run_that_is_refused_on_its_way_says_where_it_stopped(tmp_path, capsys):
-    program = tmp_path / "part.ngc"
-    program.write_text("G21 G90 F3000\nT1 M6\nG1 X5\nG12 I20 Z-1 D6\nM66 E0 L0\nG12 R5\nM2\n")
-    assert main.main(["run", str(program), "--ini", str(SIM / "mill_mm.ini")]) == 1
-    said = capsys.readouterr()
-    message, place, seconds = said.out.splitlines()
+def test_a_run_that_is_refused_on_its_way_says_where_it_stopped(g12_run):
+    text = "G21 G90 F3000\nT1 M6\nG1 X5\nG12 I20 Z-1 D6\nM66 E0 L0\nG12 R5\nM2\n"
+    code, (message, place, seconds), errors = g12_run(text)
+    assert code == 1
     assert message == ("message: G12: the cycle uses D6, diameter 20; the loaded tool T1 has 6.35")
     assert place == "stopped at X5 Y0 Z-1 (machine position, mm)"
     assert float(seconds.removesuffix(" s in motion")) > 0
-    assert ": G12 line 6: R5 is not a word of this cycle" in said.err
+    assert ": G12 line 6: R5 is not a word of this cycle" in errors
 
 
-def test_a_run_starts_with_the_offsets_of_a_var_file(tmp_path, capsys):
-    program, stored = tmp_path / "part.ngc", tmp_path / "shop.var"
-    program.write_text("G21 G90 G54 F3000\nG1 X1\nM2\n")
+def test_a_run_starts_with_the_tools_and_offsets_of_files(g12_run, tmp_path):
+    stored, table = tmp_path / "shop.var", tmp_path / "shop.tbl"
     stored.write_text("5220\t1\n5221\t10\n")
-    words = ["run", str(program), "--ini", str(SIM / "mill_mm.ini"), "--var", str(stored)]
-    assert main.main(words) == 0
-    assert "ends at X11 Y0 Z0 (machine position, mm)" in capsys.readouterr().out
+    table.write_text("T7 P1 D3.5\n")
+    text = "G21 G90 G54 F3000\nT7 M6\n(DEBUG, #5410)\nG1 X1\nM2\n"
+    code, lines, _ = g12_run(text, "--var", stored, "--tools", table)
+    place = "ends at X11 Y0 Z0 (machine position, mm)"
+    assert (code, lines[:2]) == (0, ["message: 3.500000", place])
 
 
-def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(tmp_path, capsys):
-    program = tmp_path / "part.ngc"
-    program.write_text("")
-    assert main.main(["run", str(program), "--ini", str(SIM / "mill_mm.ini")]) == 1
-    running, said = capsys.readouterr().err.splitlines()
-    assert running == "running part.ngc in real time"
-    assert f"of {program} " in said
-    assert f"can't open {program}" in said
+def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(g12_run):
+    code, _, errors = g12_run("")
+    assert code == 1
+    assert errors.startswith("running part.ngc in real time\n")
+    assert "of PROGRAM " in errors
+    assert "can't open PROGRAM" in errors
 
 
-def test_a_run_with_an_override_tells_it_and_how_long_it_will_take(tmp_path, capsys):
-    program = tmp_path / "part.ngc"
-    program.write_text("G21 G90 F600\nG1 X50\nM2\n")  # 5 s at 100 %
-    words = ["run", str(program), "--ini", str(SIM / "mill_mm.ini"), "--override", "500"]
-    assert main.main(words) == 0
-    said = capsys.readouterr()
-    assert said.err == "running part.ngc at 500 % feed, 1.0 s without acceleration\n"
-    assert 1.0 < float(said.out.splitlines()[-1].split()[0]) < 1.5
+def test_a_run_with_an_override_tells_it_and_how_long_it_will_take(g12_run):
+    code, lines, errors = g12_run("G21 G90 F600\nG1 X50\nM2\n", "--override", 500)  # 5 s at 100 %
+    assert errors == "running part.ngc at 500 % feed, 1.0 s without acceleration\n"
+    assert code == 0
+    assert 1.0 < float(lines[-1].split()[0]) < 1.5
 
 
 def test_an_interrupted_run_is_one_line(tmp_path, start):
