@@ -14,6 +14,17 @@ ToolTableEntry: TypeAlias = Any  # of the tool table
 
 PER_MINUTE, INVERSE_TIME, PER_REVOLUTION = 0, 1, 2  # feed_mode
 PLANE_CODES = {1: XY, 2: YZ, 3: XZ}  # plane
+MOVE_WORDS = "ABCDHIJKRUVWXYZ"
+WORD_FIELDS = {  # of a block: flag and value
+    letter: (f"{letter.lower()}_flag", f"{letter.lower()}_number")
+    for letter in "ABCDEFHIJKLPQRSTUVWXYZ"
+} | {"D": ("d_flag", "d_number_float")}
+
+
+def words_in(block: ParsedBlock, letters: str) -> dict[str, float]:
+    """Return those of the words that a block has."""
+    fields = ((letter, *WORD_FIELDS[letter]) for letter in letters)
+    return {letter: getattr(block, value) for letter, flag, value in fields if getattr(block, flag)}
 
 
 class PackageState:

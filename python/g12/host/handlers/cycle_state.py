@@ -16,6 +16,7 @@ from g12.host.interp import (
     Interp,
     ParsedBlock,
     state_of,
+    words_in,
 )
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, main_program
@@ -47,15 +48,7 @@ HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 INCREMENTAL_MODE = 1  # distance_mode
 
 # every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
-WORD_FIELDS = [
-    (
-        letter,
-        f"{letter.lower()}_flag",
-        "d_number_float" if letter == "D" else f"{letter.lower()}_number",
-    )
-    for letter in "ABCDEHIJKPQRUVWXYZ"
-]
-NO_L = -1  # a block's l_number without an L word
+CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
 
 
 def words_of_block(interp: Interp) -> Words:
@@ -64,11 +57,7 @@ def words_of_block(interp: Interp) -> Words:
     Refuses a second code that reads them.
     """
     block = interp.blocks[interp.remap_level]
-    values = {
-        letter: getattr(block, field) for letter, flag, field in WORD_FIELDS if getattr(block, flag)
-    }
-    if block.l_number != NO_L:
-        values["L"] = block.l_number
+    values = words_in(block, CYCLE_WORDS)
     if block.radius_flag:
         values["@"] = block.radius
     if block.theta_flag:

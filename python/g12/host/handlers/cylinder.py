@@ -9,12 +9,12 @@ from g12.cylinder.plan import CylinderSettings, plan
 from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
 from g12.errors import BlockRefusal
 from g12.host import messages
+from g12.host.interp import MOVE_WORDS, words_in
 from g12.host.machine import MACHINE
 from g12.host.section.kind import (
     NOT_IN_MDI,
     SectionKind,
     check_ini,
-    has_move_words,
     is_typed,
     run_section,
 )
@@ -33,7 +33,7 @@ def cylinder_mode(self, **words) -> Iterator[int]:
         if is_typed(self):
             raise BlockRefusal(code, NOT_IN_MDI)
         yield from run_section(self, CYLINDER_SECTION)
-    elif has_move_words(block, but=RADIUS):
+    elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
         raise BlockRefusal(code, f"{RADIUS}0 must be alone in its block")
 
 

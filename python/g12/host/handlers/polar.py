@@ -9,14 +9,13 @@ from pathlib import Path
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.handlers import face_by_hand
-from g12.host.interp import Interp
+from g12.host.interp import MOVE_WORDS, Interp, words_in
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import (
     NOT_IN_MDI,
     SectionKind,
     check_ini,
-    has_move_words,
     is_typed,
     run_section,
 )
@@ -57,7 +56,8 @@ def polar_off(self, **words) -> Iterator[int]:
     ON_ABORT_COMMAND, to which LinuxCNC appends the reason.
     """
     block = self.blocks[self.remap_level]
-    if has_move_words(block) or (block.p_flag and not (MACHINE.face or MACHINE.settings.c_clamp)):
+    after_aborts = MACHINE.face or MACHINE.settings.c_clamp
+    if words_in(block, MOVE_WORDS) or (block.p_flag and not after_aborts):
         raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
     if block.p_flag:
         after_abort(self)

@@ -14,7 +14,7 @@ from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
 from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
-from g12.host.interp import Interp, ParsedBlock, state_of
+from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
@@ -57,11 +57,6 @@ def check_ini() -> None:
 def is_typed(interp: Interp) -> bool:
     """Return whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
     return messages.in_mdi(interp) and interp.call_level == TYPED
-
-
-def has_move_words(block: ParsedBlock, but: str = "") -> bool:
-    """Return whether a block that only ends a section has words of a move, other than ``but``."""
-    return any(getattr(block, f"{word}_flag") for word in "abcdhijkruvwxyz" if word != but.lower())
 
 
 def following_lines(interp: Interp) -> ProgramLines:

@@ -9,6 +9,7 @@ program reads them from #5420, #<_x> or #<_feed>.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import chain
 from math import radians
 from operator import attrgetter, itemgetter
 
@@ -17,7 +18,14 @@ from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.errors import number
-from g12.host.interp import PER_MINUTE, PER_REVOLUTION, Interp, ParsedBlock
+from g12.host.interp import (
+    PER_MINUTE,
+    PER_REVOLUTION,
+    WORD_FIELDS,
+    Interp,
+    ParsedBlock,
+    words_in,
+)
 from g12.host.program_lines import ProgramLines, error_text
 from g12.host.section.output import BLOCK_END, Action
 from g12.section import block_rules
@@ -31,21 +39,14 @@ ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 SECTION_MOTIONS = (block_rules.G0, block_rules.G1, block_rules.G2, block_rules.G3)
 MOST_FEED = 1e9  # program units per minute
 
-WORD_ATTRIBUTES = [
-    (letter, f"{letter.lower()}_flag", f"{letter.lower()}_number") for letter in "XCZIJRKFSPQLE"
-]
-PLAIN_LETTERS = "XCZIJR"
-PLAIN_FLAGS_AND_VALUES = [name for word in WORD_ATTRIBUTES[:6] for name in word[1:]]
-plain_words = attrgetter("f_flag", "f_number", "motion_to_be", *PLAIN_FLAGS_AND_VALUES)
+SECTION_WORDS, PLAIN_LETTERS = "XCZIJRKFSPQLE", "XCZIJR"
+PLAIN_FIELDS = chain.from_iterable(WORD_FIELDS[letter] for letter in PLAIN_LETTERS)
+plain_words = attrgetter(*WORD_FIELDS["F"], "motion_to_be", *PLAIN_FIELDS)
 
 
 def block_of(parsed: ParsedBlock) -> SectionBlock:
-    words = {
-        letter: getattr(parsed, value)
-        for letter, flag, value in WORD_ATTRIBUTES
-        if getattr(parsed, flag)
-    }
-    return SectionBlock(tuple(parsed.g_modes), tuple(parsed.m_modes), parsed.motion_to_be, words)
+    modes = tuple(parsed.g_modes), tuple(parsed.m_modes)
+    return SectionBlock(*modes, parsed.motion_to_be, words_in(parsed, SECTION_WORDS))
 
 
 class SectionReader:

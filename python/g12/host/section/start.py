@@ -6,7 +6,14 @@ from __future__ import annotations
 from interpreter import MODE_INCREMENTAL
 
 from g12.host import messages, modes
-from g12.host.interp import INVERSE_TIME, PER_REVOLUTION, PLANE_CODES, Interp, ParsedBlock
+from g12.host.interp import (
+    INVERSE_TIME,
+    PER_REVOLUTION,
+    PLANE_CODES,
+    Interp,
+    ParsedBlock,
+    words_in,
+)
 from g12.host.program_lines import without_line
 from g12.host.section.reader import block_of
 from g12.host.spindle_c import missing_code
@@ -16,7 +23,7 @@ from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.start import SectionStart
 
-OTHER_WORDS = "abdhktuvwy"
+OTHER_WORDS = "ABDHKTUVWY"
 G96 = 960
 
 
@@ -61,8 +68,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
 
 
 def is_alone(block: ParsedBlock, words: str = "") -> bool:
-    others = any(getattr(block, f"{word}_flag") for word in OTHER_WORDS)
-    return alone(block_of(block), words) and not others
+    return alone(block_of(block), words) and not words_in(block, OTHER_WORDS)
 
 
 def _offsets(interp: Interp) -> dict[str, float]:
