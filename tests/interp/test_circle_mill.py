@@ -77,10 +77,10 @@ def test_f_of_the_call_is_modal_p_and_v_are_not(inch):
 def test_parameters_and_globals_are_left_alone(inch):
     numbers = list(range(1, 31))
     set_them = [f"#{number} = {number * 1.5}" for number in numbers]
-    traced = cut(inch, *set_them, call(**ENTRIES), f"G13.2 {CODE_WORDS}", numbered=numbers)
-    assert traced.numbered == {number: number * 1.5 for number in numbers}
+    prints = [f"(print,#{number})" for number in numbers]
+    traced = cut(inch, *set_them, call(**ENTRIES), f"G13.2 {CODE_WORDS}", *prints)
+    assert traced.printed.split() == [f"{number * 1.5:.6f}" for number in numbers]
     assert traced.globals == {}
-    assert traced.printed == ""
 
 
 # ---------------------------------------------------------------- modal entries

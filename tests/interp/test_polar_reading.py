@@ -45,9 +45,9 @@ def cut(lathe, *body, **around):
 
 def test_numbered_and_global_parameters_go_in_and_out(lathe):
     body = ["G1 X#1", "#1=9", "X#1", "#<_deep>=3", "C#<_deep>", "#2=[#1 + #<_deep>]"]
-    traced = lathe.trace_text(section(*body, before=["#1=12"], after=["X#2"]), numbered=[1, 2])
+    traced = lathe.trace_text(section(*body, before=["#1=12"], after=["X#2", "(print,#1 #2)"]))
     assert ends(traced)[:3] == [(12, 0), (9, 0), (9, 3)]
-    assert traced.numbered == {1: 9, 2: 12}
+    assert traced.printed.split() == ["9.000000", "12.000000"]
     assert traced.globals["_deep"] == 3
 
 

@@ -261,9 +261,8 @@ def test_modes_and_variables_after_the_program(mill):
 
 
 def test_parameters_are_reported(mill):
-    traced = mill.trace_text("#<_mine> = 3\n#100 = 4", numbered=[100, 5221], parameters={5221: 7.0})
-    assert traced.globals == {"_mine": 3.0}
-    assert traced.numbered == {100: 4.0, 5221: 7.0}
+    traced = mill.trace_text("#<_mine> = 3\n(print,#5221)", parameters={5221: 7.0})
+    assert (traced.globals, traced.printed) == ({"_mine": 3.0}, "7.000000\n")
 
 
 def test_setup_comes_first_and_is_not_reported(mill):
@@ -277,9 +276,9 @@ def test_every_program_starts_clean(mill):
     fresh = mill.trace_text("G1 X1 F10")
     dirty = "T1 M6\nG20\nG43 G91 G61 G18 F99 S9\nG92 X5\nG10 L2 P1 X3 R30\n#<_left> = 1\n#5 = 5"
     assert mill.trace_text(dirty).error is None
-    again = mill.trace_text("G1 X1 F10", numbered=[5])
+    again = mill.trace_text("G1 X1 F10\n(print,#5)")
     assert (again.moves, again.modes, again.state) == (fresh.moves, fresh.modes, fresh.state)
-    assert (again.globals, again.numbered) == ({}, {5: 0.0})
+    assert (again.globals, again.printed) == ({}, "0.000000\n")
     assert mill.trace_text("T2 M6\nG43 Z1 G1 F100").error is None
     assert mill.trace_text("G20\nG53 G0 Z0").position[2] == near(0.0)
 

@@ -126,11 +126,11 @@ def near_each(rows):
 def test_the_haas_page_on_g10_unedited(tracers):
     text = translation(MANUALS / "haas_g10.nc", "haas-mill", "--units", "inch")
     variables = ("#4011", "#4012", "#4491", "#4492", "[0 - #5422]")
-    after = [f"#{number}={value}" for number, value in enumerate(variables, 100)]
+    after = [line for value in variables for line in (f"#100={value}", "(print,#100)")]
     text = text.rsplit("M2", 1)[0] + "\n".join(["G0 G54 X0", "G43 H5", *after, ""])
-    traced = tracers("haas-mill").trace_text(text, parameters={5221: 1.0}, numbered=range(100, 105))
+    traced = tracers("haas-mill").trace_text(text, parameters={5221: 1.0})
     assert traced.error is None
-    assert [traced.numbered[n] for n in range(100, 105)] == near((10.0, 8.0, 10.0, 20.0, 2.5))
+    assert list(map(float, traced.printed.split())) == near((10.0, 8.0, 10.0, 20.0, 2.5))
     assert traced.moves[-1].end[0] == near(7 * 25.4)
 
 

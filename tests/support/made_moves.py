@@ -60,7 +60,7 @@ class Hand:
         return self
 
     def trace(self):
-        nothing = {"state": {}, "globals": {}, "numbered": {}}
+        nothing = {"state": {}, "globals": {}}
         return Trace(
             moves=self.moves,
             messages=[],
@@ -69,7 +69,6 @@ class Hand:
             modes=METRIC,
             printed="",
             position=self.at,
-            seconds=0.0,
             diameters={1: 6.0, 2: 10.0},
             **nothing,
         )

@@ -184,9 +184,8 @@ class Trace:
     block that succeeded, M2 included. ``state`` has the interpreter's own variables in program
     units (motion_mode, plane, feed_rate …), after the refused block if there was one. ``printed``
     is the text of ``(print, …)`` and of Python, ``position`` the end of the last move, ``globals``
-    the global named parameters after the program, ``numbered`` the requested parameters,
-    ``seconds`` the interpreter's time. ``events`` include the messages. ``files`` are those of
-    subs outside the program that execute a remapped code with motion. ``diameters`` and
+    the global named parameters after the program. ``events`` include the messages. ``files`` are
+    those of subs outside the program that execute a remapped code with motion. ``diameters`` and
     ``lengths`` (along Z) are those of the tool table, in mm by tool number.
     """
 
@@ -199,8 +198,6 @@ class Trace:
     printed: str
     position: Position
     globals: dict[str, float]
-    numbered: dict[int, float]
-    seconds: float
     files: tuple[str, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
     lengths: Mapping[int, float] = field(default_factory=dict)

@@ -83,7 +83,6 @@ class Tracer:
         *,
         setup: Iterable[str] = (),
         parameters: Parameters = None,
-        numbered: Iterable[int] = (),
         timeout: float = 60.0,
         alone: bool = False,
         watch_offsets: bool = False,
@@ -92,17 +91,15 @@ class Tracer:
 
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
-        machine units) or a var file; without them all are 0.  ``numbered`` are those to report
-        after the program.  ``timeout`` is in seconds.  ``alone`` discards the state of the
-        machine's Python modules after the program. With ``watch_offsets`` an event before each
-        message lists the work offsets, of G54 to G59.3 and G92, that have changed since the
-        previous message.
+        machine units) or a var file; without them all are 0.  ``timeout`` is in seconds.
+        ``alone`` discards the state of the machine's Python modules after the program. With
+        ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
+        G92, that have changed since the previous message.
         """
         request = {
             "program": str(Path(program).absolute()),
             "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
-            "numbered": list(numbered),
             "alone": alone,
             "watch_offsets": watch_offsets,
         }
@@ -258,8 +255,7 @@ def _trace(answer: dict, mm: float) -> Trace:
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
-        **{key: answer[key] for key in ("state", "printed", "position", "seconds")},
-        **{key: answer[key] for key in ("globals", "numbered")},
+        **{key: answer[key] for key in ("state", "printed", "position", "globals")},
         files=tuple(answer["files"]),
         diameters=diameters,
         lengths=lengths,

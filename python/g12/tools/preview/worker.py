@@ -2,9 +2,9 @@
 """The process of ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
 
 It imports nothing of the package, because the machine's INI decides which copy of ``g12`` the
-interpreter imports. A request is a dict with ``program``, ``setup``, ``parameter_file`` and
-``numbered``; the answer is a dict that ``trace`` converts to a Trace.  Every program gets a new
-interpreter object, as in a GUI that opens a program again.
+interpreter imports. A request is a dict with ``program``, ``setup`` and ``parameter_file``; the
+answer is a dict that ``trace`` converts to a Trace.  Every program gets a new interpreter object,
+as in a GUI that opens a program again.
 """
 
 import bisect
@@ -15,7 +15,6 @@ import re
 import select
 import shutil
 import signal
-import time
 import traceback
 from collections.abc import Sequence
 from multiprocessing.connection import Connection
@@ -538,9 +537,7 @@ def record_errors_of_handlers() -> None:
 def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
     canon = Canon(machine, tools, request)
     setup = [f"({FRESH})", "G49", *machine["setup"], *request["setup"], f"({START})"]
-    started = time.perf_counter()
     error = interpreted(canon, request["program"], setup)
-    seconds = time.perf_counter() - started
     return {
         "moves": canon.moves,
         "messages": canon.messages,
@@ -549,7 +546,6 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
         "files": sorted(canon.files),
         "tool_sizes": tool_sizes(len(tools)),
         "position": canon.position,
-        "seconds": seconds,
         **state_after(request, canon.length),
     }
 
@@ -583,7 +579,6 @@ def state_after(request: dict, length: tuple) -> dict:
         "mcodes": list(this.active_m_codes)[1:],
         "settings": list(this.active_settings)[1:],
         "globals": {name: this.params[name] for name in sorted(names)},
-        "numbered": {number: this.params[number] for number in request["numbered"]},
         "state": {name: getattr(this, name) for name in STATE_VARIABLES},
     }
 
@@ -605,7 +600,6 @@ def blank(directory: str) -> dict:
         "program": files["blank.ngc"],
         "parameter_file": files["blank.var"],
         "setup": [],
-        "numbered": [],
     }
 
 
