@@ -8,7 +8,7 @@ Behind both stands a bare word, so that the motion and distance modes show, and 
 import pytest
 
 from g12.tools.translate.program import translate_program
-from support.foreign_programs import assert_same_part, control_of, tracer_of
+from support.foreign_programs import assert_same_part, control_of, kept_tracers
 
 MILL = "G20 G17 G90 G94 G98 G54 G0 X1. Y1. Z1. S100 F9.\n"
 TURN = "G21 G18 G54 G0 X50. Z5. C0 F.2 S100 M3\n"
@@ -153,14 +153,6 @@ CONSTRUCTS = [
 ]  # fmt: skip
 
 
-@pytest.fixture(scope="module")
-def tracers():
-    opened = {}
-    yield lambda control: opened.setdefault(control, tracer_of(control))
-    for tracer in opened.values():
-        tracer.close()
-
-
 def translated_part(control, blocks):
     """Return the translation of blocks without what the control holds at the start, and no end."""
     kind = control_of(control).machine
@@ -171,6 +163,9 @@ def translated_part(control, blocks):
     assert result.refused == []
     start, *lines = result.text.splitlines()
     return [start, *(line for line in lines if not (line.startswith("M2 (") and not subs))]
+
+
+tracers = kept_tracers()
 
 
 @pytest.mark.parametrize(("control", "foreign", "own"), CONSTRUCTS)

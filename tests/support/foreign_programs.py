@@ -2,6 +2,7 @@
 """Programs of other controls for tests: their machines, their options, and what they cut."""
 
 import json
+from contextlib import ExitStack
 from functools import cache
 from itertools import groupby
 
@@ -24,7 +25,7 @@ MACHINES = {
     "mazak-lathe": "lathe_mm",
     "okuma-lathe": "lathe_mm",
 }
-BUILDERS_CODES = (135, 154, 155, 200, 202, 203, 205, 110, 109, 146, 13, 12)
+BUILDERS_CODES = (133, 135, 154, 155, 200, 202, 203, 205, 110, 109, 146, 13, 12)
 control_of = cache(read_control)
 OPTIONS = json.loads((FOREIGN / "options.json").read_text(encoding="utf-8"))
 
@@ -35,7 +36,6 @@ def tracer_of(control, tools=None):
     overrides = {}
     if control.endswith("lathe"):
         codes = [f"M{number} modalgroup=10 ngc=m35" for number in BUILDERS_CODES]
-        codes += ["M133 modalgroup=10 ngc=m35"]
         overrides = {
             "RS274NGC": {"REMAP": [*read_ini(ini).all("RS274NGC", "REMAP"), *codes]},
             "TRAJ": {"SPINDLES": 2},
@@ -43,11 +43,22 @@ def tracer_of(control, tools=None):
     return Tracer(ini, overrides=overrides, tools=tools)
 
 
+def kept_tracers():
+    """Return a fixture: a function for the Tracer of a control's machine, opened once a module."""
+
+    @pytest.fixture(scope="module")
+    def tracers():
+        with ExitStack() as stack:
+            yield cache(lambda control: stack.enter_context(tracer_of(control)))
+
+    return tracers
+
+
 def translation(path, control, *options):
     """Return what the command prints for a program, without printing it."""
     requested = translate.parsed(["--control", str(control), str(path), *options])
     return translate.translated(
-        requested, translate.changed(translate.read_control(requested.control), requested)
+        requested, translate.changed(read_control(requested.control), requested)
     )
 
 
@@ -68,15 +79,9 @@ def assert_same_part(one, other):
     """Assert that two traces are the same moves at the same feeds, with the same events between."""
     left, right = path_of(one), path_of(other)
     for number, (a, b) in enumerate(zip(left, right)):
-        assert a[0] == b[0], (number, a, b)
-        for value, expected in zip(a[1:], b[1:]):
-            assert value == (
-                expected if isinstance(expected, str) or expected is None else near(expected)
-            ), (
-                number,
-                a,
-                b,
-            )
+        for value, expected in zip(a, b):
+            exact = isinstance(expected, str) or expected is None
+            assert value == (expected if exact else near(expected)), (number, a, b)
     assert len(left) == len(right), (left[len(right) :], right[len(left) :])
     assert events(one) == events(other), (events(one), events(other))
 
