@@ -343,6 +343,13 @@ def test_a_pass_may_touch_the_tip_of_another():
         assert refusal(stacked(3.0, (-1.0, spike), (-3.0, outer))) == ""
 
 
+def test_a_crossing_that_an_inside_corner_keeps_the_tool_from_is_no_gouge():
+    """The third level crosses the first on the drawing; the tool turns back in front of it."""
+    first = [0.8 + 27.5j, -11.3 - 25.6j, -19 + 27j]
+    second, third = [first[-1], 5.4 - 1j], [5.4 - 1j, -24 + 1.8j, 12 - 14j]
+    assert refusal(stacked(2.0, (5.0, first), (1.8, second), (-2.8, third))) == ""
+
+
 WALL = [-40 - 30j, -40 + 0j, -11.5 + 0j, -11.5 + 30j]  # its corner is where the tool rounds BOSS
 
 

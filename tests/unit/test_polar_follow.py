@@ -9,8 +9,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import can_follow
+from g12.polar.follow import MoveDemands
 from support.face_moves import LIMITS, arcs, line, lines, motion
+
+
+def can_follow(move, limits):
+    return MoveDemands(move, limits).can_be_followed()
 
 
 @pytest.mark.parametrize(("slide_speed", "able"), [(52.0, True), (51.99, False)])

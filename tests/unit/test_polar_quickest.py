@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Mark, Plunge
-from g12.polar.follow import FaceLimits, can_follow
+from g12.polar.follow import FaceLimits, MoveDemands
 from g12.polar.quickest import ACCELERATION_SHARES, quickest
 from support import planned_moves
 from support.growth import growth
@@ -44,8 +44,9 @@ def test_a_circle_nearer_to_the_pole_is_whole_on_a_softer_face(feed):
     made = made_of([whole], QUICK)
     assert made.path == [whole]
     (share,) = shares_of(made)
-    assert can_follow(whole, QUICK, share)
-    assert not any(can_follow(whole, QUICK, one) for one in ACCELERATION_SHARES if one > share)
+    can_follow = MoveDemands(whole, QUICK).can_be_followed
+    assert can_follow(share)
+    assert not any(can_follow(one) for one in ACCELERATION_SHARES if one > share)
 
 
 def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
@@ -133,5 +134,5 @@ def test_all_of_the_path_is_made_and_followed(path, limits):
     assert length_of(made.path) == pytest.approx(length_of(path))
     for share, run in groupby(zip(made.path, shares_of(made)), lambda one: one[1]):
         for move, _ in run:
-            assert not share or can_follow(move, limits, share)
+            assert not share or MoveDemands(move, limits).can_be_followed(share)
             assert share or move.feed in [one.feed for one in path]

@@ -76,6 +76,7 @@ class _OwnWalls:
         # At the ends of an open contour there may be no material: its ramps may cut there.
         self._sweep = Sweep([*own.passes, *(own.ramps if own.closing.closed else ())])
         self._later: Pass | None = None  # the last one found that only repeats the pass for a wall
+        self._has_leads = False
 
     def check(self) -> None:
         own, closing = self._own, self._own.closing
@@ -94,7 +95,8 @@ class _OwnWalls:
                 self._refuse(line, worst.line)
             if worst and not closing.crossing:
                 self._note(line, worst.line, "cut into each other: one is taken for a lead")
-        self._check_crossings()
+        if self._later or self._has_leads:  # otherwise what crosses is not machined
+            self._check_crossings()
 
     def _refuse(self, one: int, other: int) -> NoReturn:
         """Refuse two lines; where one leads to or from a closed contour the side may be wrong."""
@@ -145,6 +147,7 @@ class _OwnWalls:
         else:
             at_end = index in (0, len(own.moves) - 1)
             lead = not closing.closed and at_end and self._is_deeper(cutting, point)
+        self._has_leads |= lead
         corner_before = by == index > 0  # the corner before a move belongs to both
         line = own.moves[index - 1].line if corner_before else cutting.move.line
         return _Gouge(line, lead, by == RAMP)

@@ -23,7 +23,6 @@ acceleration by p times C's.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from math import ceil, copysign, inf, pi, sqrt
 from typing import NamedTuple
 
@@ -69,45 +68,41 @@ class Demand(NamedTuple):
     slowness: float
 
 
-def demands_of(move: PlaneMove, limits: FaceLimits) -> Sequence[Demand]:
-    """Return the demands at the points of a move that are checked, its ends among them."""
-    return [_demand(move, at, limits) for at in (0.0, *shares_to_check(move.curve))]
+class MoveDemands:
+    """What a move on the face demands at the ``points`` that are checked, its ends among them."""
 
+    def __init__(self, move: PlaneMove, limits: FaceLimits) -> None:
+        curve = move.curve
+        self._feed, self._bend, self._most = move.feed, 0.0, limits.acceleration
+        if isinstance(curve, Arc):
+            self._bend, self._most = 1.0 / curve.radius, limits.round_acceleration
+        self.points = [_demand(move, at, limits) for at in (0.0, *shares_to_check(curve))]
 
-def followed(move: PlaneMove, demand: Demand, limits: FaceLimits, share: float = 1.0) -> float:
-    """Return the highest feed per minute that C and the slide can follow at a point.
+    def highest_feed(self, point: Demand, share: float = 1.0) -> float:
+        """Return the highest feed per minute that C and the slide can follow at a point.
 
-    They can follow any lower feed too. ``share`` is the share of the planner's acceleration that is
-    in use. The feed is inf where the planner itself limits it.
-    """
-    bend, most = 0.0, share * limits.acceleration
-    if isinstance(move.curve, Arc):
-        bend, most = 1.0 / move.curve.radius, share * limits.round_acceleration
-    square = demand.fastest * demand.fastest
-    for p, q in demand.axes:
-        at_rest = q * most
-        if at_rest > FOLLOW_SLACK:
-            return 0.0
-        both = p * p + q * q * bend * bend
-        under = p * p - both * (1.0 - at_rest * at_rest)
-        if both > LEAST_SQUARE and under >= 0.0:
-            square = min(square, max(0.0, p - sqrt(under)) / both)
-    if square * bend >= most:
-        return inf
-    return 60.0 * max(0.0, sqrt(square) - OVERSHOOT * most)
+        They can follow any lower feed too. ``share`` is the share of the planner's acceleration
+        that is in use. The feed is inf where the planner itself limits it.
+        """
+        bend, most = self._bend, share * self._most
+        square = point.fastest * point.fastest
+        for p, q in point.axes:
+            at_rest = q * most
+            if at_rest > FOLLOW_SLACK:
+                return 0.0
+            both = p * p + q * q * bend * bend
+            under = p * p - both * (1.0 - at_rest * at_rest)
+            if both > LEAST_SQUARE and under >= 0.0:
+                square = min(square, max(0.0, p - sqrt(under)) / both)
+        if square * bend >= most:
+            return inf
+        return 60.0 * max(0.0, sqrt(square) - OVERSHOOT * most)
 
-
-def can_follow(move: PlaneMove, limits: FaceLimits, share: float = 1.0) -> bool:
-    """Return whether C and the slide can follow a move on the face, wherever it is stopped."""
-    return can_follow_at(move, demands_of(move, limits), limits, share)
-
-
-def can_follow_at(
-    move: PlaneMove, demands: Sequence[Demand], limits: FaceLimits, share: float
-) -> bool:
-    return all(
-        FOLLOW_SLACK * followed(move, demand, limits, share) >= move.feed for demand in demands
-    )
+    def can_be_followed(self, share: float = 1.0) -> bool:
+        """Return whether C and the slide can follow the move, wherever it is stopped."""
+        return all(
+            FOLLOW_SLACK * self.highest_feed(point, share) >= self._feed for point in self.points
+        )
 
 
 def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:

@@ -20,7 +20,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from g12.compensation.contour import PathElement, PlaneMove
-from g12.polar.follow import Demand, FaceLimits, can_follow, can_follow_at, demands_of, followed
+from g12.polar.follow import Demand, FaceLimits, MoveDemands
 
 # of the INI's acceleration
 ACCELERATION_SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)
@@ -53,7 +53,7 @@ class OnFace(NamedTuple):
 
 
 class _TimedElement(NamedTuple):
-    """An element of the path with its demands; without any it is no move in the plane.
+    """An element of the path with its demands; without them it is no move in the plane.
 
     ``corner``: a corner follows. ``in_segments`` is the approximate time in segments, in seconds.
     """
@@ -61,7 +61,7 @@ class _TimedElement(NamedTuple):
     move: PathElement
     stop: bool
     length: float = 0.0
-    demands: Sequence[Demand] = ()
+    demands: MoveDemands | None = None
     corner: bool = False
     in_segments: float = 0.0
 
@@ -87,7 +87,7 @@ def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimi
     elements = [_element(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
     best, least, chosen = list[_Span](), 0.0, 0.0
     for share in ACCELERATION_SHARES:
-        spans = _worth_it([span for one in elements for span in _spans(one, limits, share)])
+        spans = _worth_it([span for one in elements for span in _spans(one, share)])
         seconds = _seconds(spans, share * limits.round_acceleration)
         if not best or seconds < least - GAIN:
             best, least, chosen = spans, seconds, share
@@ -102,12 +102,13 @@ def _element(
 ) -> _TimedElement:
     if not isinstance(move, PlaneMove):
         return _TimedElement(move, stop)
-    demands, length = demands_of(move, limits), move.length
+    demands, length = MoveDemands(move, limits), move.length
     corner = True
     if isinstance(following, PlaneMove):
         turn = following.curve.direction(0.0) - move.curve.direction(1.0)
         corner = abs(turn) >= STRAIGHT_ON
-    return _TimedElement(move, stop, length, demands, corner, length * _mean_slowness(demands))
+    in_segments = length * _mean_slowness(demands.points)
+    return _TimedElement(move, stop, length, demands, corner, in_segments)
 
 
 def _mean_slowness(demands: Sequence[Demand]) -> float:
@@ -118,23 +119,24 @@ def _mean_slowness(demands: Sequence[Demand]) -> float:
     )
 
 
-def _spans(element: _TimedElement, limits: FaceLimits, share: float) -> list[_Span]:
+def _spans(element: _TimedElement, share: float) -> list[_Span]:
     """Return an element in spans, each with a feed that C and the slide follow along all of it."""
     move, demands = element.move, element.demands
-    if not isinstance(move, PlaneMove):
+    if not isinstance(move, PlaneMove) or not demands:
         return [_Span(element, 0.0, 1.0, 1.0)]
-    if can_follow_at(move, demands, limits, share):
+    if demands.can_be_followed(share):
         return [_Span(element, 0.0, 1.0, move.feed)]
+    points = demands.points
     levels = [
-        _feed_share(CAREFUL * followed(move, demand, limits, share / CAREFUL) / move.feed)
-        for demand in demands
+        _feed_share(CAREFUL * demands.highest_feed(point, share / CAREFUL) / move.feed)
+        for point in points
     ]
     feeds = [
-        _worth(move.feed * min(levels[k : k + 2]), demands[k : k + 2])
-        for k in range(len(demands) - 1)
+        _worth(move.feed * min(levels[k : k + 2]), points[k : k + 2])
+        for k in range(len(points) - 1)
     ]
     spans = []
-    for feed, run in groupby(zip(feeds, demands, demands[1:]), itemgetter(0)):
+    for feed, run in groupby(zip(feeds, points, points[1:]), itemgetter(0)):
         steps = list(run)
         spans.append(_Span(element, steps[0][1].at, steps[-1][2].at, feed))
     return spans
@@ -194,18 +196,18 @@ def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceS
     stretches: list[FaceStretch | None] = []
     for on_face, run in _stretches(spans):
         moves = [move for move in map(_move_of, run) if isinstance(move, PlaneMove)]
-        more = (one for one in ACCELERATION_SHARES if one > share)
-        able = (one for one in more if all(can_follow(move, limits, one) for move in moves))
-        stretch = _most(moves, limits, next(able, share)) if on_face else None
-        stretches += [stretch] * len(run)
+        stretches += [_highest(moves, limits, share) if on_face else None] * len(run)
     return stretches
 
 
-def _most(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceStretch:
+def _highest(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceStretch:
+    demands = [MoveDemands(move, limits) for move in moves]
+    more = (one for one in ACCELERATION_SHARES if one > share)
+    share = next((one for one in more if all(each.can_be_followed(one) for each in demands)), share)
     overrides = (
-        followed(move, demand, limits, share) / move.feed
-        for move in moves
-        for demand in demands_of(move, limits)
+        each.highest_feed(point, share) / move.feed
+        for move, each in zip(moves, demands)
+        for point in each.points
     )
     return FaceStretch(share, max(1.0, min(limits.override, *overrides)))
 
@@ -224,10 +226,10 @@ def _seconds(spans: list[_Span], acceleration: float) -> float:
 
 
 def _in_segments(span: _Span) -> float:
-    element = span.element
-    if (span.first, span.last) == (0.0, 1.0):
+    element, demands = span.element, span.element.demands
+    if (span.first, span.last) == (0.0, 1.0) or not demands:
         return element.in_segments
-    there = [demand for demand in element.demands if span.first <= demand.at <= span.last]
+    there = [point for point in demands.points if span.first <= point.at <= span.last]
     return element.length * _mean_slowness(there)
 
 
