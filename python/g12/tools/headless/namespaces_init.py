@@ -84,10 +84,8 @@ def mirror(directory: str, files: dict[str, str], copy: bool) -> None:
             continue
         try:
             mirror_entry(entry, target, copy)
-        except OSError:
-            if os.path.lexists(
-                entry.path
-            ):  # other processes may remove theirs from /tmp at any time
+        except OSError:  # other processes may remove theirs from /tmp at any time
+            if os.path.lexists(entry.path):
                 raise
     for name, text in files.items():
         write_text(os.path.join(directory, name), text)
@@ -109,11 +107,8 @@ def mirror_entry(entry: os.DirEntry, target: str, copy: bool) -> None:
 
 def copy_file(source: str, target: str) -> None:
     """Copy contents and permissions; a file that cannot be read is left out."""
-    if not os.access(source, os.R_OK):
-        return
-    with open(source, "rb") as original, open(target, "wb") as copied:
-        copied.write(original.read())
-    os.chmod(target, stat.S_IMODE(os.stat(source).st_mode))
+    if os.access(source, os.R_OK):
+        shutil.copy(source, target)
 
 
 def prepare(job: dict) -> None:

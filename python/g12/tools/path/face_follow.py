@@ -28,7 +28,7 @@ Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the fi
 
 
 class FaceDemand(NamedTuple):
-    """Accelerations of slide and C, their speeds, the centripetal acceleration of an arc."""
+    """Multiples of the limits: accelerations of slide and C, their speeds, an arc's X and Y."""
 
     slide: float
     c: float

@@ -158,9 +158,7 @@ def spindle_angles(points: np.ndarray, c: np.ndarray, beside: float = 0.0) -> np
     off_line = (on_face.imag[1:] != 0.0) | (on_face.imag[:-1] != 0.0)
     changed = np.diff(c)
     changed = changed - 360.0 * np.round(changed / 360.0)  # counts whole turns on the face
-    beyond = (
-        on_face.real[1:] * on_face.real[:-1] < 0.0
-    )  # the spindle's angle for a point on the face
+    beyond = on_face.real[1:] * on_face.real[:-1] < 0.0  # X changes its sign
     off_line |= beyond & (changed != 0.0)
     steps = np.where(off_line, np.where(changed != 0.0, 0.0, turned), changed)
     return c[0] + np.append(0.0, np.cumsum(steps))
