@@ -20,6 +20,8 @@ class Words:
     any machine is refused at once.
     """
 
+    positive_rule = "must be greater than 0"
+
     def __init__(self, code: str, values: dict[str, float], context: Context) -> None:
         self.code, self.context = code, context
         self._remaining = dict(values)
@@ -81,7 +83,7 @@ class Words:
     def _positive(self, letter: str) -> float:
         value = self._remaining.pop(letter)
         if not value > 0:
-            raise self.refuse_word(letter, value, "must be greater than 0")
+            raise self.refuse_word(letter, value, self.positive_rule)
         return value
 
     def _whole(self, letter: str, least: int, most: int | None) -> int:

@@ -15,6 +15,7 @@ from g12.request.common import LEFT_OUT, steps_between
 from g12.request.context import Context
 from g12.request.words import Words
 
+PASS_ENTRIES = ("depth_per_pass", "allowance", "feed", "plunge_feed")
 CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid
 WIDEST = 0.75  # of the cutter's diameter: greatest stepover
 MOST_SHAPE_PASSES = 10_000  # more are a mistyped depth_per_pass
@@ -28,7 +29,9 @@ class ShapeEntries(Words):
     def __init__(
         self, code: str, names: Sequence[str], values: Mapping[str, float], context: Context
     ) -> None:
-        self._count = len(names)
+        # LinuxCNC makes an entry 0 if the call is too short
+        call = f"a call has {len(names)} entries, {number(LEFT_OUT)} leaves one out"
+        self.positive_rule = f"{self.positive_rule} ({call})"
         given = {name: values[name] for name in names if values[name] != LEFT_OUT}
         super().__init__(code, given, context)
 
@@ -36,14 +39,6 @@ class ShapeEntries(Words):
     def written(letter: str, value: float) -> str:
         """Return an entry as messages name it: ``width 8``."""
         return f"{letter} {number(value)}"
-
-    def require_positive(self, letter: str, meaning: str) -> float:
-        """Return an entry above zero; refuse a call without it."""
-        return self._above_zero(letter, self.require(letter, meaning))
-
-    def positive(self, letter: str, default: float) -> float:
-        value = self.take(letter)
-        return default if value is None else self._above_zero(letter, value)
 
     def from_zero(self, letter: str) -> float:
         """Return an entry that is zero or more, zero if it is left out."""
@@ -58,13 +53,6 @@ class ShapeEntries(Words):
             rule = f"must lie between -{number(MOST_ANGLE)} and {number(MOST_ANGLE)}"
             raise self.refuse_word(letter, value, rule)
         return value
-
-    def _above_zero(self, letter: str, value: float) -> float:
-        """Return a value above zero; LinuxCNC makes it 0 if the call is too short."""
-        if value > 0:
-            return value
-        call = f"a call has {self._count} entries, {number(LEFT_OUT)} leaves one out"
-        raise self.refuse_word(letter, value, f"must be greater than 0 ({call})")
 
 
 class ShapeMachine(NamedTuple):
@@ -131,7 +119,7 @@ class ShapePlan(NamedTuple):
 def levels_of(entries: ShapeEntries) -> Levels:
     """Return the levels: depth and depth_per_pass."""
     depth = entries.require_positive("depth", "how deep, from the face at Z0")
-    most = entries.positive("depth_per_pass", depth)
+    most = entries.take_positive("depth_per_pass") or depth
     levels = max(1, steps_between(0.0, depth, most, entries.context.rounding))
     if levels > MOST_SHAPE_PASSES:
         rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_SHAPE_PASSES}"
@@ -142,7 +130,7 @@ def levels_of(entries: ShapeEntries) -> Levels:
 def feed_of(entries: ShapeEntries) -> float:
     """Return the entry feed, by default the active F."""
     context = entries.context
-    feed = entries.positive("feed", context.feed)
+    feed = entries.take_positive("feed") or context.feed
     if not feed > 0:
         raise entries.refuse("feed is missing, and no F is active")
     if context.per_revolution and not context.speed:
@@ -152,7 +140,7 @@ def feed_of(entries: ShapeEntries) -> float:
 
 def feeds_of(entries: ShapeEntries, machine: ShapeMachine) -> Feeds:
     feed = feed_of(entries)
-    return Feeds(feed, entries.positive("plunge_feed", feed * machine.plunge_share))
+    return Feeds(feed, entries.take_positive("plunge_feed") or feed * machine.plunge_share)
 
 
 def heights_of(entries: ShapeEntries) -> Heights:

@@ -29,6 +29,7 @@ from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
     CLEAR_MM,
+    PASS_ENTRIES,
     Extent,
     ShapeEntries,
     ShapeMachine,
@@ -42,18 +43,8 @@ from g12.shapes.entries import (
     rounds_between,
 )
 
-POLYGON_ENTRIES = (
-    "sides",
-    "across_flats",
-    "depth",
-    "stock_diameter",
-    "corner_radius",
-    "depth_per_pass",
-    "allowance",
-    "feed",
-    "plunge_feed",
-    "angle",
-)
+FORM_ENTRIES = ("sides", "across_flats", "depth", "stock_diameter", "corner_radius")
+POLYGON_ENTRIES = (*FORM_ENTRIES, *PASS_ENTRIES, "angle")
 TWO_FLATS = 2  # sides: two flats, which have no corner
 MOST_SIDES = 100  # more are a circle
 FLUSH = 1e-6  # greatest rounding difference between the sub's arithmetic and this one

@@ -15,6 +15,7 @@ from __future__ import annotations
 from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
+    PASS_ENTRIES,
     Extent,
     ShapeEntries,
     ShapeMachine,
@@ -27,16 +28,7 @@ from g12.shapes.entries import (
 )
 from g12.shapes.rings import ClearingRings, clearing_rings, half_turns_in_all, ramp_of
 
-ROUND_POCKET_ENTRIES = (
-    "x",
-    "c",
-    "diameter",
-    "depth",
-    "depth_per_pass",
-    "allowance",
-    "feed",
-    "plunge_feed",
-)
+ROUND_POCKET_ENTRIES = ("x", "c", "diameter", "depth", *PASS_ENTRIES)
 
 
 def plan_round_pocket(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:

@@ -16,6 +16,7 @@ from __future__ import annotations
 from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
+    PASS_ENTRIES,
     Extent,
     ShapeEntries,
     ShapeMachine,
@@ -27,16 +28,7 @@ from g12.shapes.entries import (
 )
 from g12.shapes.rings import clearing_rings, half_turns_in_all, ramp_of
 
-SLOT_ENTRIES = (
-    "width",
-    "length",
-    "depth",
-    "depth_per_pass",
-    "allowance",
-    "feed",
-    "plunge_feed",
-    "angle",
-)
+SLOT_ENTRIES = ("width", "length", "depth", *PASS_ENTRIES, "angle")
 
 
 def plan_slot(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
