@@ -37,6 +37,7 @@ def remapped(include):
 
 MACHINES = {  # each dialect on a machine in inches and one in mm
     "haas inch": ("mill_inch", HAAS_TOOLS, None),
+    "haas helix": ("mill_inch", HAAS_TOOLS, {"G12": {"ENTRY": "helix"}}),
     "haas mm": ("mill_mm", scaled(HAAS_TOOLS, INCH), None),
     "yasnac inch": ("mill_inch", scaled(METRIC_TOOLS, 1 / INCH), remapped("yasnac")),
     "yasnac mm": ("mill_yasnac_mm", METRIC_TOOLS, None),
@@ -136,6 +137,7 @@ REFUSED = [  # what a block says by itself is in unit/test_cycles.py
     ("haas inch", AT, "G95 S0 F.1 G12 I.5 Z-1 D1",
      "needs a spindle speed for feed per revolution (G95)"),
     ("haas inch", AT, "G41 D1 G12 I.5 Z-1", "brings its own cutter compensation: program G40"),
+    ("haas helix", AT, "G12 I.13 Z-2 D1", "a helix of radius 0.005 needs "),
     *(("haas inch", AT, f"{other} G12 I.5 K1 Z-1 D1{more}",
        f"{other.split()[0]} cannot be in the same block")
       for other, more in (("G43.1 X1", ""), ("G64 P.1", ""), ("G43", " H2"), ("M6 T2", ""),

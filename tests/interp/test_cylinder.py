@@ -10,7 +10,7 @@ from itertools import groupby
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import feed_moves, lines
+from support.polar_programs import feed_moves
 from support.sim_machines import PROGRAMS, SIM, kept_tracer
 
 R = 20.0
@@ -99,28 +99,12 @@ def test_off_outside_a_section_does_nothing(lathe):
     assert ends(traced) == [(0, 5, 0)]
 
 
-def test_line_numbers_inside_and_behind(lathe):
-    traced = lathe.trace_text(section("G1 Z-5", "(note)", "G3 K3", after=["G1 Z5"]))
-    assert lines(traced) == [6, 8, 10]
-
-
 def test_rapids_as_feeds_where_they_are_allowed():
     with opened(POLAR_G0="feed", POLAR_G0_FEED="4000") as tracer:
         moves = feed_moves(tracer.trace_text(section("G0 C90", "G1 C0")))
     assert [seconds(move) for move in moves] == pytest.approx(
         [math.pi / 2 * R / feed * 60 for feed in (4000, 250)]
     )
-
-
-def test_a_wrapped_axis_winds_too():
-    with Tracer(SIM / "lathe_mm.ini", overrides={"AXIS_C": {"WRAPPED_ROTARY": "1"}}) as tracer:
-        traced = tracer.trace_text(section("G1 C400", "C-100"))
-    assert [end[2] for end in ends(traced)] == [400, -100]
-
-
-def test_waiting_for_an_input_cuts_the_section_in_two(lathe):
-    traced = lathe.trace_text(section("G1 Z-5 C30", "M66 P0 L0", "C60", "G2 J5"))
-    assert ends(traced) == [(22, -5, 30), (22, -5, 60), (22, -5, 60)]
 
 
 def test_the_sample_of_the_simulated_lathe_is_the_cam_groove(lathe):

@@ -4,8 +4,6 @@
 Modes, units and refusals are in test_cycles.py, the geometry in test_valid_programs.py.
 """
 
-import re
-
 import pytest
 
 from g12.tools.preview.tracer import Tracer
@@ -143,20 +141,3 @@ def test_half_of_the_feed_down_and_all_of_it_elsewhere(entry, block, first, feed
     }  # fmt: skip
     assert (down, plane) == pytest.approx((feed / 2 * INCH, feed * INCH))
     assert found.modes.feed == pytest.approx(feed)
-
-
-@pytest.mark.parametrize(
-    ("words", "fits"),
-    [
-        ("I.252 Z-2 D1", r"I from (\S+) fits"),
-        ("I.252 Z-99 D1", r"(\S+) down fits at most"),
-        ("I.001 Z-2 D0", r"I from (\S+) fits"),
-    ],
-)
-def test_a_helix_that_hardly_comes_down_is_refused_and_told_what_fits(helical, words, fits):
-    error = helical.trace_text(program(f"G12 {words}")).error
-    assert error.text.startswith("G12 line 3: a helix of radius 0.00")
-    assert error.text.endswith(", or [G12] ENTRY = plunge") and len(error.text) < 256
-    value = float(re.search(f"the most is 1000: {fits}", error.text)[1])
-    better = f"I.5 Z-{value - 0.1} D1" if "down" in fits else re.sub(r"I\S+", f"I{value}", words)
-    assert pocket(helical, f"G12 {better}")[1]

@@ -266,15 +266,6 @@ def rough_radii(numbers):
     return [first + index * step for index in range(numbers["further"] + 1)]
 
 
-def x_of_pocket(diameters, x):
-    return numbers_of("polar_pocket", LATHE._replace(diameters=diameters), x=x)["away"]
-
-
-def test_x_of_a_pocket_is_a_diameter_where_x_words_are():
-    assert x_of_pocket(True, 20) == math.hypot(10, 3)
-    assert x_of_pocket(False, 20) == math.hypot(20, 3)
-
-
 CLEARED = [
     (shape, tool, {name: size}, allowance)
     for shape, name in (("polar_slot", "width"), ("polar_pocket", "diameter"))
