@@ -90,8 +90,13 @@ def _centred(
 ) -> list[tuple[PathElement, ...]]:
     """Return for each move the moves of the tool's centre."""
     steps = _steps(contour, moves)
+    last = steps[-1]
+    if last.ramp:
+        contour.refuse(
+            last.move.line, f"{_code(last.move)} needs a block of the contour after its G1"
+        )
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
-    joints.append(_Joint(_path_end(contour, steps), 0j))
+    joints.append(_Joint(last.parallel.end, last.parallel.end))
     cuts = []
     for k, step in enumerate(steps):
         joint, end = joints[k], joints[k + 1].end_before
@@ -118,15 +123,6 @@ def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
     return steps
 
 
-def _path_end(contour: Contour, steps: list[_Step]) -> complex:
-    step = steps[-1]
-    if step.ramp:
-        contour.refuse(
-            step.move.line, f"{_code(step.move)} needs a block of the contour after its G1"
-        )
-    return step.parallel.end
-
-
 def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Joint:
     """Return the joint between two moves that follow each other in the plane."""
     if a is not None and a.ramp and not b.compensated:
@@ -134,13 +130,10 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Jo
             b.move.line,
             f"G40 follows {_code(a.move)} of line {a.move.line} with nothing between them to cut",
         )
-    if a is None or not a.compensated:
-        point = b.parallel.start
-        return _Joint(point, point)
-    if not b.compensated:
-        point = a.parallel.end
-        return _Joint(point, point)
-    return _corner(contour, a, b, tolerance)
+    if a is not None and a.compensated and b.compensated:
+        return _corner(contour, a, b, tolerance)
+    point = a.parallel.end if a is not None and a.compensated else b.parallel.start
+    return _Joint(point, point)
 
 
 def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:

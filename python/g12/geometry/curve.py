@@ -112,6 +112,14 @@ class Arc(NamedTuple):
             return angle / (sweep or 1.0)
         return 0.0 if abs(point - self.start) <= abs(point - self.end) else 1.0
 
+    def share_towards(self, point: complex) -> float:
+        """Return the share at which the arc is in the direction of a point from its centre.
+
+        Above 1 where that is beyond its end, and 1 of a full circle for its start.
+        """
+        turn = 1 if self.sweep > 0.0 else -1
+        return sweep_between(self.start, point, self.centre, turn) / self.sweep
+
     def share_between(self, point: complex, least: float, most: float) -> float:
         """Return the share nearest to a point among those between two shares."""
         start, there = self.start - self.centre, point - self.centre

@@ -76,14 +76,10 @@ def rapid_feed_of(start: SectionStart, settings: Settings) -> float | None:
 
 def travel(start: SectionStart, axes: dict[str, Axis]) -> SoftLimits:
     """Return the limits of X, Z and C for moves in program coordinates."""
-    unit = "in" if is_inch(start.machine_unit / start.millimetre) else "mm"
-    return SoftLimits(axes, _scales(start), unit)
-
-
-def _scales(start: SectionStart) -> dict[str, AxisScale]:
-    """Return how the program's X, Z and C become machine coordinates."""
     factors = {"X": 1 / start.machine_unit, "Z": 1 / start.machine_unit, "C": 1.0}
-    return {
+    scales = {
         letter: AxisScale(factor, start.offsets[letter] * factor)
         for letter, factor in factors.items()
     }
+    unit = "in" if is_inch(start.machine_unit / start.millimetre) else "mm"
+    return SoftLimits(axes, scales, unit)

@@ -27,7 +27,7 @@ from math import ceil, copysign, inf, pi, sqrt
 from typing import NamedTuple
 
 from g12.compensation.contour import SAME_POINT, PlaneMove
-from g12.geometry.curve import Arc, Curve, sweep_between
+from g12.geometry.curve import Arc, Curve
 from g12.polar.beside import along_and_around, slide_at
 from g12.polar.pole import POLE
 
@@ -145,16 +145,10 @@ def shares_to_check(curve: Curve) -> list[float]:
     count = CHECKED
     if isinstance(curve, Arc):
         count *= ceil(abs(curve.sweep) / (pi / 2))
-        special = [_share_towards(curve, point) for point in (POLE, 2 * curve.centre)]
+        special = [curve.share_towards(point) for point in (POLE, 2 * curve.centre)]
     else:
         special = [curve.length_to(POLE) / curve.length]
         far = abs(curve.start) / curve.length
         if far > 2.0:  # C hardly turns on a short line far from the pole
             count = ceil(2.0 * count / far)
     return sorted({k / count for k in range(1, count + 1)} | {k for k in special if 0.0 < k < 1.0})
-
-
-def _share_towards(arc: Arc, point: complex) -> float:
-    """Return the share of an arc at which it is in the direction of a point from its centre."""
-    turn = 1 if arc.sweep > 0.0 else -1
-    return sweep_between(arc.start, point, arc.centre, turn) / arc.sweep

@@ -106,7 +106,6 @@ class _SlideAndSpindle(StepMaker):
         super().__init__(contour, MachinePosition(x, c + degrees(self.angle), z))
         self._settings, self._entry = settings, c
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
-        self._laws: dict[tuple[float, float], Law] = {}
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
         settings = self._settings
@@ -169,14 +168,6 @@ class _SlideAndSpindle(StepMaker):
             self._run(move.line, "XC", [segment], True)
 
     def _law(self, feed: float, deviation: float) -> Law:
-        law = self._laws.get((feed, deviation))
-        if law is None:
-            settings = self._settings
-            hold = 0.5 / (feed / 60.0) ** 2
-            law = self._laws[feed, deviation] = Law(
-                deviation,
-                RIPPLE,
-                hold * settings.x_acceleration,
-                hold * radians(settings.c_acceleration),
-            )
-        return law
+        settings, hold = self._settings, 0.5 / (feed / 60.0) ** 2
+        c_hold = hold * radians(settings.c_acceleration)
+        return Law(deviation, RIPPLE, hold * settings.x_acceleration, c_hold)

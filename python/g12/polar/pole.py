@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from math import asin, sqrt
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
-from g12.geometry.curve import Arc, Line, sweep_between
+from g12.geometry.curve import Arc, Line
 
 POLE = 0j
 FLAT_SHARE = 0.2  # of the pole_radius: greatest deviation from an arc of the radii that replace it
@@ -65,8 +65,7 @@ def _arc_passes(arc: Arc, pole_radius: float) -> list[float]:
     """Return the share of an arc at which it passes the pole, if it does within ``pole_radius``."""
     if abs(abs(arc.centre) - arc.radius) > pole_radius:
         return []
-    turn = 1 if arc.sweep > 0.0 else -1
-    share = sweep_between(arc.start, POLE, arc.centre, turn) / arc.sweep
+    share = arc.share_towards(POLE)
     return [share] if share < 1.0 else []
 
 
