@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from enum import IntEnum
 
 import hal
-import linuxcnc
 
 from g12.errors import BlockRefusal, number
 from g12.host.interp import PLANE_CODES, Interp, state_of
@@ -43,10 +42,9 @@ class FaceRequest(IntEnum):
     NO_MOVES = 3
 
 
-def face_in_force() -> bool:
-    status = linuxcnc.stat()
-    status.poll()
-    return bool(status.din[FACE_INPUT])
+def face_in_force(interp: Interp) -> bool:
+    """Return whether the machine is on the face now; in a preview it never is."""
+    return MACHINE.switches_kinematics and interp.task and MACHINE.digital_input(FACE_INPUT)
 
 
 def modes_before_face(interp: Interp) -> str:

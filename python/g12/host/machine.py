@@ -41,6 +41,13 @@ class RunningMachine:
         for part in parts:
             getattr(self, part)
 
+    @staticmethod
+    def digital_input(number: int) -> bool:
+        """Return an input of motion as it is now."""
+        status = linuxcnc.stat()
+        status.poll()
+        return bool(status.din[number])
+
     @functools.cached_property
     def settings(self) -> Settings:
         return settings_from_ini(ini_file())

@@ -7,7 +7,6 @@ wait, so the interpreter is never ahead of that state.
 
 from __future__ import annotations
 
-import linuxcnc
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal, number
@@ -53,9 +52,7 @@ def in_section(interp: Interp) -> bool:
 
 
 def is_c() -> bool:
-    status = linuxcnc.stat()
-    status.poll()
-    return bool(status.din[INPUT])
+    return MACHINE.digital_input(INPUT)
 
 
 def missing_code(interp: Interp) -> str:

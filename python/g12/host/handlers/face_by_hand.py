@@ -65,7 +65,7 @@ def switch_off(interp: Interp) -> Iterator[int]:
         raise BlockRefusal(code, "needs G40 before it")
     by_hand = _unlock(interp)
     restore_modes_before_face(interp)
-    if by_hand or kinematics_switch.face_in_force():
+    if by_hand or kinematics_switch.face_in_force(interp):
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
         frame = CallFrame(interp, home.filename if home else messages.NO_FILE)

@@ -81,7 +81,7 @@ def run_by_hand(interp: Interp) -> Iterator[int]:
     start = start_of_section(interp, 0)
     if not MACHINE.switches_kinematics:
         raise BlockRefusal(start.location.code, NOT_IN_MDI)
-    if face_in_force():
+    if face_in_force(interp):
         raise BlockRefusal(start.location.code, "is already on")
     yield from face_by_hand.switch_on(interp, start, polar_section_setup(start).words.beside)
 

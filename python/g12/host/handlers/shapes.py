@@ -53,7 +53,7 @@ def polar_shape(self, **words):
     """
     level, state = self.call_level - 1, state_of(self)  # the sub's
     name = shape_at_work(self)
-    if MACHINE.switches_kinematics and self.task and face_in_force():
+    if face_in_force(self):
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
     start = start_of_shape(self, name)
     setup = polar_section_setup(start)

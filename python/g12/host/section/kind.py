@@ -116,7 +116,7 @@ def _section(
 ) -> Section:
     """Return the section; refuse to begin it where it cannot."""
     start = start_of_section(interp, program.shown_line, kind.letters)
-    if MACHINE.switches_kinematics and interp.task and face_in_force():
+    if face_in_force(interp):
         raise start.location.refuse("the face is on already, by hand: G13.1 first")
     setup = kind.setup(start)
     drag = clamp_codes(start.location.refuse, MACHINE.settings.c_clamp_shapes)
