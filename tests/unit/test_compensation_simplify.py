@@ -65,14 +65,6 @@ def depth(contour, walls, radius, lines):
     return radius - outline.distance(LineString(walls))
 
 
-def test_short_moves_in_a_row_keep_their_shape():
-    arc = [30 + 20 * cmath.exp(1j * math.radians(180 - k * 0.002)) for k in range(5000)]
-    points = [(z.real, z.imag) for z in arc]
-    contour = programmed(*points, (40, 30), side=41, radius=5.0, start=(5.0, -5.0))
-    made = tool_points(contour, range(3, 90))
-    assert abs(abs(made - 30) - 25).max() < 0.0055
-
-
 @pytest.mark.parametrize("side", [41, 42])
 @pytest.mark.parametrize(("radius", "chord"), [(40, 0.025), (12, 0.02)])
 def test_fine_points_with_few_decimals_are_cut(side, radius, chord):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What of a compensated contour is a wall, at which points it is looked at, which passes count."""
+"""Where a compensated contour begins and ends, which moves repeat each other."""
 
 import math
 
@@ -9,19 +9,12 @@ from g12.compensation.compensated import (
     CompensatedContour,
     PathOfMove,
     compensated_contours,
-    greatest_levels,
     in_plane,
 )
-from g12.compensation.contour import Contour, Plunge
+from g12.compensation.contour import Contour
 from support.planned_moves import arc, line
 
 TOLERANCE, RADIUS = 0.005, 3.0
-
-
-def walls_of(*moves, paths=((),) * 3):
-    """Return a contour of moves that are all under compensation."""
-    cuts = [PathOfMove(move, path, True) for move, path in zip(moves, paths)]
-    return CompensatedContour(Contour(50.0, 0.0), cuts, [], TOLERANCE)
 
 
 @pytest.mark.parametrize(
@@ -56,39 +49,11 @@ def test_moves_are_one_in_the_plane_if_ends_centre_and_sweep_are_the_same():
         assert in_plane(again) == in_plane(move)
 
 
-def test_of_repeated_passes_the_deepest_is_kept_for_the_first_of_its_moves():
-    high, low = line(0.0, 0.0, 9.0, 0.0, -1.0, -1.0), line(0.0, 0.0, 9.0, 0.0, 0.0, -2.0)
-    other = line(0.0, 1.0, 9.0, 1.0)
-    for one, again in ((high, low), (low, high)):
-        paths = [(one,), (Plunge(5, 9.0, 0.0, 1.0), other), (again,)]
-        made = walls_of(one, other, again, paths=paths).passes
-        assert [(each.move_index, each.move) for each in made] == [(0, low), (1, other)]
-        assert len(made[0].levels) == 2
-
-
-def test_a_repeated_move_is_as_high_as_any_of_them():
-    first, other = line(0.0, 0.0, 9.0, 0.0, -3.0, -2.0), line(9.0, 0.0, 9.0, 5.0, -2.0, -2.0)
-    for again in (first._replace(z0=-1.0), first._replace(z1=-1.0)):
-        assert greatest_levels([first, other, again]) == {0: -1.0, 1: -2.0}
-        assert greatest_levels([again, other, first]) == {0: -1.0, 1: -2.0}
-
-
-def test_what_comes_down_or_goes_up_along_moves_is_not_through_the_air():
-    """It counts how high a level begins after the one before, and how it ends."""
-    ends = [(0.0, 0.0), (9.0, 0.0), (9.0, 9.0), (0.0, 9.0), (0.0, 5.0)]
-    for heights, material in (
-        ([(-1, -1), (5, 5), (5, 5), (-1, -1)], {0, 3}),
-        ([(-1, -1), (5, 5), (5, -3), (-1, -1)], {0, 1, 2, 3}),
-        ([(-1, -1), (-3, 5), (5, 5), (-1, -1)], {0, 1, 2, 3}),
-        ([(-1, -1), (5, -3), (-3, 5), (-1, -1)], {0, 3}),
-    ):
-        moves = [line(*one, *other, *z) for one, other, z in zip(ends, ends[1:], heights)]
-        assert set(greatest_levels(moves)) == material
-
-
 def test_beyond_the_ends_of_an_open_contour_nobody_knows():
     """Before, after and beside an angle, and on its own lines."""
-    angle = walls_of(line(0, 10, 0, 0, offset=RADIUS), line(0, 0, 20, 0, offset=RADIUS))
+    moves = line(0, 10, 0, 0, offset=RADIUS), line(0, 0, 20, 0, offset=RADIUS)
+    cuts = [PathOfMove(move, (), True) for move in moves]
+    angle = CompensatedContour(Contour(50.0, 0.0), cuts, [], TOLERANCE)
     beyond = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
     assert [angle.clearance(point)[1] for point in beyond] == [True] * 6
     heights = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}

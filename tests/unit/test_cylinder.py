@@ -148,7 +148,6 @@ def test_the_settings_of_a_section_are_in_program_units():
 @pytest.mark.parametrize(
     ("settings", "found", "word", "value"),
     [
-        ({}, {}, "c_scale", pytest.approx(20 * math.pi / 180)),
         ({"cylinder_word": "diameter"}, {}, "c_scale", pytest.approx(10 * math.pi / 180)),
         ({"polar_x": "diameter"}, {}, "x_scale", 1.0),
         ({}, {"diameter": True}, "diameter", True),
@@ -206,11 +205,6 @@ def test_one_code_switches_on_and_off():
 def test_increments_are_rewritten(raw, text, relative):
     line = split_line(raw, CYLINDER_WORDS)
     assert (line.text, line.relative, line.rewritten) == (text, relative, bool(relative))
-
-
-def test_which_lines_are_plain():
-    lines = ("G3 Z1 C2 R3", "x-1.5 F200", "K1", "Z1 W1", "G2 J5")
-    assert [bool(CYLINDER_WORDS.plain(raw)) for raw in lines] == [True] * 2 + [False] * 3
 
 
 WORDS = "the section's words are Z, C, X, W, H and U"

@@ -68,14 +68,6 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
         assert before.end == pytest.approx(after.start)
 
 
-def test_the_quicker_segments_are_the_more_is_made_of_them():
-    def on_face(speed):
-        made = made_of([line((-90, 2), (90, 2), feed=3000.0)], QUICK._replace(segments_speed=speed))
-        return sum(part.length for part, share in zip(made.path, shares_of(made)) if share)
-
-    assert on_face(1.0) > on_face(20.0) > on_face(80.0)
-
-
 FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
 MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
 
