@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from g12.tools.commands import translate
+from g12.tools.machine.ini import read_ini
+from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import control_of, near, tracer_of
 from support.sim_machines import PROGRAMS, SIM
@@ -197,7 +198,7 @@ def test_the_spindle_becomes_c_by_the_machines_codes():
     path = SIM / "lathe_spindle_c_inch.ini"
     text = "%\nG20 M154\nG0 X2. Z1.\nM155\nM30\n"
     for ini, codes in ((path, ("M254", "M255")), (SIM / "lathe_inch.ini", ("(M154)", "(M155)"))):
-        control = translate.with_facts_of(control_of("haas-lathe"), translate.read_ini(ini))
+        control = on_machine(control_of("haas-lathe"), read_ini(ini))
         lines = translate_program(text, control).text.splitlines()
         assert (lines[1].split()[-1], lines[3]) == codes
 

@@ -13,6 +13,7 @@ from g12.tools.commands import translate
 from g12.tools.machine.ini import read_ini
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.blocks.lexer import program_text
+from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import control_of
 from support.growth import growth
@@ -32,23 +33,23 @@ def program(control, text):
     return f"(HEAD)\n{own}\n{rest if bar else text}\nM30\n", 2 + own.count("\n")
 
 
-def lines(control, text, **options):
+def lines(control, text):
     """Return the lines of a translation that must succeed."""
-    result = translate_program(text, control, **options)
+    result = translate_program(text, control)
     assert result.refused == []
     return result.text.splitlines()
 
 
-def lines_after(control, text, **options):
+def lines_after(control, text):
     """Return the lines after the head."""
     whole, head = program(control, text)
-    return lines(control, whole, **options)[head:]
+    return lines(control, whole)[head:]
 
 
-def refusal(control, text, **options):
+def refusal(control, text):
     """Return the first refusal of a program: its line after the head and its sentence."""
     whole, head = program(control, text)
-    result = translate_program(whole, control, **options)
+    result = translate_program(whole, control)
     assert (result.text, bool(result.refused)) == ("", True)
     return result.refused[0].line - head, result.refused[0].sentence
 
@@ -393,8 +394,12 @@ def test_diameters_of_c_and_the_speed_of_a_live_tool(tmp_path):
 
 def test_an_m_code_that_the_machine_knows_stays():
     known = frozenset(["M31", "M88", "M137"])
-    assert lines_after(HAAS, "M31\nM88\nM137", machine_codes=known)[:3] == ["M31", "M88", "M137"]
-    line, sentence = refusal(HAAS, "M88", machine_codes=frozenset())
+    assert lines_after(replace(HAAS, machine_codes=known), "M31\nM88\nM137")[:3] == [
+        "M31",
+        "M88",
+        "M137",
+    ]
+    line, sentence = refusal(replace(HAAS, machine_codes=frozenset()), "M88")
     assert (line, sentence[:24]) == (1, "M88 is the machine build")
 
 
@@ -441,23 +446,23 @@ TWO = "[TRAJ]\nSPINDLES = 2\nLINEAR_UNITS = mm\nCOORDINATES = XZC\n"
 
 
 @pytest.fixture
-def on_machine(tmp_path):
+def machine_of(tmp_path):
     """Return a function: a control on the machine of an INI's text."""
 
     def with_ini(name, text):
         (tmp_path / "m.ini").write_text(text)
-        return translate.with_facts_of(control_of(name), read_ini(tmp_path / "m.ini"))
+        return on_machine(control_of(name), read_ini(tmp_path / "m.ini"))
 
     return with_ini
 
 
 @pytest.mark.parametrize(("name", "text", "expected"), LIVE_TOOLS)
-def test_the_live_tool_is_a_spindle_of_the_machine(on_machine, name, text, expected):
-    second = on_machine(name, f"{TWO}[G12]\nLIVE_SPINDLE = 1\n")
+def test_the_live_tool_is_a_spindle_of_the_machine(machine_of, name, text, expected):
+    second = machine_of(name, f"{TWO}[G12]\nLIVE_SPINDLE = 1\n")
     assert lines_after(second, text)[:-1] == expected
-    first = on_machine(name, f"{TWO}[G12]\nLIVE_SPINDLE = 0\n")
+    first = machine_of(name, f"{TWO}[G12]\nLIVE_SPINDLE = 0\n")
     assert lines_after(first, text)[:-1] == [re.sub(r" \$\S+", "", line) for line in expected]
-    assert "say [G12] LIVE_SPINDLE" in refusal(on_machine(name, TWO), text)[1]
+    assert "say [G12] LIVE_SPINDLE" in refusal(machine_of(name, TWO), text)[1]
 
 
 def test_p_names_a_spindle_beside_m3_only():
@@ -476,28 +481,28 @@ def test_p_names_a_spindle_beside_m3_only():
         ),
     ],
 )
-def test_clamp_and_c_are_the_machines_own(on_machine, ini, expected):
-    control = on_machine("doosan-lathe", TWO + ini)
+def test_clamp_and_c_are_the_machines_own(machine_of, ini, expected):
+    control = machine_of("doosan-lathe", TWO + ini)
     assert lines_after(control, "M35\nM89\nM90\nM34")[:-1] == expected
     codes = frozenset(code for code in expected if code[0] == "M")
-    parted = lines_after(control, "M35 M89", machine_codes=codes)
+    parted = lines_after(replace(control, machine_codes=codes), "M35 M89")
     assert parted[:2] == (["M254", "M10 (line 3)"] if codes else ["(M35)(M89)", "M30"])
 
 
-def test_a_position_of_g28_that_was_never_set_is_reported(on_machine, tmp_path):
+def test_a_position_of_g28_that_was_never_set_is_reported(machine_of, tmp_path):
     ini = "[RS274NGC]\nPARAMETER_FILE = m.var\n[TRAJ]\nLINEAR_UNITS=mm\n"
     for value, note in (
         ("0.0", " (G28.1 was never set on this machine: machine zero)"),
         ("-1.5", ""),
     ):
         (tmp_path / "m.var").write_text(f"5161\t0.0\n5163\t{value}\n5181 0\n")
-        control = on_machine("haas-mill", ini)
+        control = machine_of("haas-mill", ini)
         assert lines_after(control, "G91 G28 Z0")[0] == f"G91 G28 Z0 G49{note}"
 
 
 def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     text = "G21\nM51\nG5.3 Y3.\nM52 M14\nG0 X1\nM30\n"
-    missing = translate_program(text, OKUMA, frozenset(("M14",))).missing
+    missing = translate_program(text, replace(OKUMA, machine_codes=frozenset(("M14",)))).missing
     choices = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
     assert [line for line in missing if line[0] != "["] == [
         'axes = "XZCY"', 'decimals = "least" # or "whole"', f'"G5.3" = {choices}',

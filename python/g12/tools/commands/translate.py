@@ -20,12 +20,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from g12.lengths import is_inch
-from g12.machine_ini import Remap, code_number, remap_lines
 from g12.tools.commands.arguments import GOOD, Parser, number_above, one_line
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.listing import listing_of
@@ -41,11 +39,8 @@ examples:
 
 exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
 """
-USER_M_CODE = re.compile(r"M(1[0-9]{2})")
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNIT_CODES = {"inch": "G20", "mm": "G21"}
-POLAR_HANDLERS = ("polar_on", "polar_off")
-CYLINDER_HANDLER = "cylinder_mode"
 PROGRESS_EVERY = 0.2  # s
 OTHERS_NAMED = 4
 
@@ -125,11 +120,10 @@ def translated(options: argparse.Namespace, control: Control) -> str:
     text = program_text(existing(options.program).read_bytes())
     path = options.ini or os.environ.get("INI_FILE_NAME")
     ini = read_ini(path) if path else None
-    codes = machine_codes(ini) if ini else None
-    control = with_facts_of(control, ini) if ini else control
+    control = on_machine(control, ini) if ini else control
     if ini and not options.units and not SAYS_UNITS.search(text):
         control = replace(control, start=(*control.start, units_code(ini)))
-    result = translate_program(text, control, codes, progress())
+    result = translate_program(text, control, progress())
     if result.refused:
         if result.missing:
             print(paste_text(result.missing, options.control), file=sys.stderr)
@@ -141,20 +135,6 @@ def paste_text(lines: Sequence[str], control: str) -> str:
     """Return the lines that a user's own control file needs for a program."""
     head = "what the control's file lacks for this program; a control of your own says it:"
     return "\n    ".join([head, f'based_on = "{control}"', *lines])
-
-
-def with_facts_of(control: Control, ini: Ini) -> Control:
-    """Return a control with the machine's own section codes and its unset positions of G28, G30."""
-    unset = {"unset": unset_positions(ini)}
-    reference = {**control.tables.get("reference", {}), **unset}
-    control = replace(control, tables={**control.tables, "reference": reference})
-    remaps = remap_lines(ini.all)
-    control = on_machine(control, ini.settings, remaps)
-    pair = polar_pair(remaps)
-    control = replace(control, polar_codes=pair) if pair else control
-    codes = [r.code for r in remaps if CYLINDER_HANDLER in r.handlers and r.code[0] == "G"]
-    word = ini.settings.cylinder_word
-    return replace(control, cylinder_code=(codes[0], word)) if codes else control
 
 
 def units_code(ini: Ini) -> str:
@@ -181,33 +161,6 @@ def lines_text(lines: list[str]) -> str:
     """Return line numbers as text."""
     named = ", ".join(lines[:OTHERS_NAMED]) + (" …" if lines[OTHERS_NAMED:] else "")
     return f"line{'s' if len(lines) > 1 else ''} {named}"
-
-
-def machine_codes(ini: Ini) -> frozenset[str]:
-    """Return a machine's M codes besides LinuxCNC's: REMAP lines and M1xx files."""
-    numbers = (remap.number for remap in remap_lines(ini.all))
-    remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
-    return frozenset(remapped | {name for folder in code_folders(ini) for name in codes_in(folder)})
-
-
-def code_folders(ini: Ini) -> list[Path]:
-    """Return the folders that LinuxCNC searches for M100 to M199."""
-    names = [ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "USER_M_PATH")]
-    paths = [path for name in names if name for path in name.split(":")]
-    return [ini.directory / os.path.expanduser(path) for path in paths]
-
-
-def codes_in(folder: Path) -> list[str]:
-    """Return the M codes with an executable file in a folder."""
-    files = folder.iterdir() if folder.is_dir() else ()
-    return [f.name for f in files if USER_M_CODE.fullmatch(f.name) and os.access(f, os.X_OK)]
-
-
-def polar_pair(remaps: list[Remap]) -> tuple[str, str] | None:
-    """Return the machine's own codes for polar mode on and off, None if it has none."""
-    found = {name: r.code for r in remaps for name in POLAR_HANDLERS if name in r.handlers}
-    good = all(code_number(found.get(name, ""))[0] == "G" for name in POLAR_HANDLERS)
-    return (found["polar_on"], found["polar_off"]) if good else None
 
 
 def progress() -> Callable[[float], None]:

@@ -37,15 +37,8 @@ class FollowedProgram:
     blocks.
     """
 
-    def __init__(
-        self,
-        structure: Structure,
-        control: Control,
-        machine_codes: frozenset[str] | None,
-        progress: Progress,
-    ) -> None:
-        self.structure, self.control = structure, control
-        self._machine_codes, self._progress = machine_codes, progress
+    def __init__(self, structure: Structure, control: Control, progress: Progress) -> None:
+        self.structure, self.control, self._progress = structure, control, progress
         count = len(structure.blocks)
         self.drafts: list[Draft | None] = [None] * count
         self.falls_off: set[int] = set()
@@ -81,7 +74,6 @@ class FollowedProgram:
             block,
             state,
             self.control,
-            self._machine_codes,
             index=index,
             programs=structure.entries,
             program=self._blocks_of[structure.programs[index]],
@@ -215,18 +207,13 @@ MOST_COPIES = 100
 MOST_BLOCKS = 200_000  # with the copies
 
 
-def followed_program(
-    structure: Structure,
-    control: Control,
-    machine_codes: frozenset[str] | None,
-    progress: Progress,
-) -> FollowedProgram:
+def followed_program(structure: Structure, control: Control, progress: Progress) -> FollowedProgram:
     for _ in range(DEEPEST_CALLS):
-        followed = FollowedProgram(structure, control, machine_codes, progress)
+        followed = FollowedProgram(structure, control, progress)
         if not _add_copies(followed):
             return followed
         find_ends(structure, control)
-    return FollowedProgram(structure, control, machine_codes, progress)
+    return FollowedProgram(structure, control, progress)
 
 
 def _add_copies(followed: FollowedProgram) -> bool:

@@ -71,10 +71,7 @@ CHOICES = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
 
 
 def missing_lines(
-    blocks: Iterable[ForeignBlock],
-    control: Control,
-    machine_codes: frozenset[str] | None,
-    settings: Iterable[tuple[str, str]],
+    blocks: Iterable[ForeignBlock], control: Control, settings: Iterable[tuple[str, str]]
 ) -> list[str]:
     """Return the lines; ``settings`` are the tables and lines that rules need."""
     tables: dict[str, list[str]] = {"": []}
@@ -87,7 +84,10 @@ def missing_lines(
         tables.setdefault(table, []).append(line)
     for code in sorted({w.code for w in words} - {""}, key=_number):
         meaning = control.meanings.get(code, "")
-        if not meaning or (meaning == "machine" and code not in (machine_codes or {code})):
+        if not meaning or (
+            meaning == "machine"
+            and not (control.machine_codes is None or control.is_machines(code))
+        ):
             name = f'"{code}"' if "." in code else code
             tables.setdefault(f"{code[0].lower()}_codes", []).append(f"{name} = {CHOICES}")
     top = tables.pop("")

@@ -1,47 +1,64 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Codes that differ between machines: the clamp of C, C itself, the spindle that drives the tool.
+"""A control on a machine: what the machine's INI says of the codes that differ between machines.
 
-A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the machine's INI defines its codes
-for them. A machine without a clamp, or whose C is always an axis, needs none.
+A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the INI defines the machine's codes for
+them. A machine without a clamp, or whose C is always an axis, needs none.
 """
 
+import os
+import re
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
-from g12.machine_ini import Remap
-from g12.settings import Settings
+from g12.machine_ini import Remap, remap_lines
+from g12.tools.machine.ini import Ini
+from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
 
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
+USER_M_CODE = re.compile(r"M(1[0-9]{2})")
 REFUSE_LIVE_TOOL = (
     "refuse: it is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's spindle that "
     "drives the tool (install --with programs-… sets it)"
 )
 
 
-def on_machine(control: Control, settings: Settings, remaps: Sequence[Remap]) -> Control:
-    """Return a control with the machine's own codes in place of those meanings."""
-    own_codes = {
-        **dict(zip(("clamp C", "unclamp C"), (f"M{code}" for code in settings.c_clamp))),
-        **{
-            meaning: remap.code
-            for meaning, name in SPINDLE_C.items()
-            for remap in reversed(remaps)  # the first counts
-            if name in remap.handlers or remap.keywords.get("ngc") == name
+def on_machine(control: Control, ini: Ini) -> Control:
+    """Return a control with the machine's own codes, spindle and unset positions of G28 and G30."""
+    settings, remaps = ini.settings, remap_lines(ini.all)
+    clamp = [f"M{code}" for code in settings.c_clamp]
+    own = dict(zip(("clamp C", "unclamp C"), clamp))
+    own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
+    live = settings.live_spindle
+    holes: dict[str, Any] = {"clamp": " ".join(clamp)} if clamp else {}
+    holes |= {"spindle": int(live)} if live else {}
+    of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}
+    polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))
+    cylinder = _code_of(remaps, "cylinder_mode", "G")
+    return replace(
+        control,
+        meanings={code: _meaning_here(m, own, live) for code, m in control.meanings.items()},
+        tables={
+            **control.tables,
+            **{n: {**control.tables.get(n, {}), **t} for n, t in of_machine.items()},
         },
-    }
-    meanings = {
-        code: _meaning_here(meaning, own_codes, settings.live_spindle)
-        for code, meaning in control.meanings.items()
-    }
-    tables = {**control.tables, "holes": {**control.tables.get("holes", {}), **_of_holes(settings)}}
-    return replace(control, meanings=meanings, tables=tables, live_spindle=settings.live_spindle)
+        machine_codes=_machine_codes(ini, remaps),
+        live_spindle=live,
+        polar_codes=polar if all(polar) else control.polar_codes,
+        cylinder_code=(cylinder, settings.cylinder_word) if cylinder else control.cylinder_code,
+    )
 
 
-def _of_holes(settings: Settings) -> dict[str, object]:
-    clamp = " ".join(f"M{code}" for code in settings.c_clamp)
-    found: dict[str, object] = {"clamp": clamp} if clamp else {}
-    return {**found, "spindle": int(settings.live_spindle)} if settings.live_spindle else found
+def _code_of(remaps: Sequence[Remap], name: str, letter: str = "") -> str:
+    """Return the code of the first REMAP line with a handler or a subroutine, "" if none has it."""
+    found = (
+        remap.code
+        for remap in remaps
+        if name in remap.handlers or remap.keywords.get("ngc") == name
+    )
+    return next((code for code in found if code.startswith(letter)), "")
 
 
 def _meaning_here(meaning: str, own_codes: dict[str, str], live: str) -> str:
@@ -55,3 +72,18 @@ def _meaning_here(meaning: str, own_codes: dict[str, str], live: str) -> str:
     first = live == "0"
     texts = {"$live": "" if first else f"${live}", "$all": "" if first else "$-1"}
     return " ".join(filter(None, (texts.get(text, text) for text in meaning.split())))
+
+
+def _machine_codes(ini: Ini, remaps: Sequence[Remap]) -> frozenset[str]:
+    """Return the machine's M codes besides LinuxCNC's: REMAP lines and M1xx files."""
+    numbers = (remap.number for remap in remaps)
+    remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
+    names = [ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "USER_M_PATH")]
+    paths = [path for name in names if name for path in name.split(":")]
+    folders = [ini.directory / os.path.expanduser(path) for path in paths]
+    files = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
+    return frozenset(remapped | {file.name for file in files if _is_code(file)})
+
+
+def _is_code(file: Path) -> bool:
+    return bool(USER_M_CODE.fullmatch(file.name)) and os.access(file, os.X_OK)

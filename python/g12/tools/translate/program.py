@@ -43,14 +43,10 @@ class Translation(NamedTuple):
 
 
 def translate_program(
-    text: str,
-    control: Control,
-    machine_codes: frozenset[str] | None = None,
-    progress: Callable[[float], None] = lambda share: None,
+    text: str, control: Control, progress: Callable[[float], None] = lambda share: None
 ) -> Translation:
     """Return the translation of a program's text.
 
-    ``machine_codes`` are the M codes that the machine knows by itself, None if that is not known;
     ``progress`` is called with the finished share, 0 to 1.
     """
     rows = source_lines(text)
@@ -59,14 +55,13 @@ def translate_program(
     followed = followed_program(
         structure,
         control,
-        machine_codes,
         lambda index: progress(READ + FOLLOWED * min(1, index / len(blocks))),
     )
     refused = sorted(set(_refusals(followed)))
     if refused:
         refusals = [draft.refusal for draft in followed.drafts if draft and draft.refusal]
         settings = [refusal.setting for refusal in refusals if refusal.setting]
-        return Translation("", refused, missing_lines(blocks, control, machine_codes, settings))
+        return Translation("", refused, missing_lines(blocks, control, settings))
     order = written_order(followed, len(rows))
     if order.circular:
         return Translation("", sorted(_circular_calls(followed, order.circular)))

@@ -45,7 +45,7 @@ MEANINGS = {
         "no thread chamfer", "rigid tapping", "tool change",
     ),
 }  # fmt: skip
-PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `machine_codes`
+PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `on_machine`
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$(?:[0-9]+|live|all)|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
@@ -136,6 +136,7 @@ class Control:
     sources: tuple[str, ...] = ()
     readings: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
+    machine_codes: frozenset[str] | None = None  # M codes of the machine itself, None: not known
     live_spindle: str = "1"  # LinuxCNC's spindle that drives the tool, "" unknown
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")  # LinuxCNC's, on and off
     cylinder_code: tuple[str, str] = ("G7.1", "radius")  # and what its C is: radius or diameter
@@ -170,6 +171,10 @@ class Control:
                 elif value != "own":
                     found[number] = value
         return found
+
+    def is_machines(self, code: str) -> bool:
+        """Whether the machine itself has an M code, by a REMAP line or an M1xx file."""
+        return code in (self.machine_codes or ())
 
     def value(self, table: str, key: str, default: object = "") -> Any:
         return self.tables.get(table, {}).get(key, default)

@@ -34,7 +34,6 @@ class Draft:
     block: ForeignBlock
     state: ModalState  # the modes, carried on by the rules
     control: Control
-    machine_codes: frozenset[str] | None = None  # M codes of the machine itself, None: not known
     _: KW_ONLY
     index: int = 0  # of the block, unique in the file
     programs: Container[int] = ()  # numbers of the file's programs

@@ -18,7 +18,7 @@ def keep_as_comments(draft: Draft) -> None:
     """Make comments of the codes that need nothing done, and of the words that are theirs."""
     for word in [word for word in draft.words if word.code]:
         meaning, *letters = draft.control.meanings.get(word.code, "").split(" ")
-        if meaning != "comment" or word.code in (draft.machine_codes or ()):
+        if meaning != "comment" or draft.control.is_machines(word.code):
             continue
         own = [w for w in draft.words if w.letter in letters]
         draft.drop([word, *own])
@@ -43,7 +43,7 @@ def _speed_by_p(draft: Draft) -> list[ForeignWord]:
     """Take a code whose P is a speed out, ``M133 P1500``; return LinuxCNC's words for it."""
     meanings = draft.control.meanings
     word = next((w for w in draft.words if "S=P" in meanings.get(w.text, "")), None)
-    if not word or word.text in (draft.machine_codes or ()):
+    if not word or draft.control.is_machines(word.text):
         return []
     draft.drop([word])
     speed = draft.take("P")
@@ -66,8 +66,8 @@ def _part_builders_codes(draft: Draft) -> None:
 def is_own(draft: Draft, word: ForeignWord) -> bool:
     """Whether a code is one that the machine has besides LinuxCNC's."""
     meaning = draft.control.meanings.get(word.code, "")
-    known = {word.code, meaning} & (draft.machine_codes or frozenset())
-    return bool(known and meaning not in RULES) or meaning in BUILDERS
+    known = draft.control.is_machines(word.code) or draft.control.is_machines(meaning)
+    return (known and meaning not in RULES) or meaning in BUILDERS
 
 
 def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
@@ -76,37 +76,21 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
         raise NotTranslated(f"{word.letter}{word.value}: a code must be a number")
     code, control = word.code, draft.control
     meaning = control.meanings.get(code, "")
-    known = code in (draft.machine_codes or ()) and meaning not in RULES
-    if known or meaning == "same":
-        return [word]
     if meaning in RULES:
-        return _owned_by_rule(draft, meaning, word)
-    if meaning in BUILDERS:
-        return _builders_code(draft, word)
-    return _replaced(code, meaning, control.name)
-
-
-def _owned_by_rule(draft: Draft, meaning: str, word: ForeignWord) -> list[ForeignWord]:
-    if meaning in draft.meanings:
-        raise NotTranslated(f"{draft.meanings[meaning].code} and {word.code} in one block")
-    draft.meanings[meaning] = word
-    return []
-
-
-def _builders_code(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
-    """Keep a machine builder's code; where the machine is known, it must know it."""
-    if draft.machine_codes is not None:
+        if meaning in draft.meanings:
+            raise NotTranslated(f"{draft.meanings[meaning].code} and {code} in one block")
+        draft.meanings[meaning] = word
+        return []
+    if meaning == "same" or control.is_machines(code):
+        return [word]
+    if meaning in BUILDERS and control.machine_codes is not None:
         raise NotTranslated(
-            f"{word.code} is the machine builder's, and this machine has neither a REMAP line nor "
+            f"{code} is the machine builder's, and this machine has neither a REMAP line nor "
             f"a file for it: say under [m_codes] of your control what it does"
         )
-    return [word]
-
-
-def _replaced(code: str, meaning: str, control: str) -> list[ForeignWord]:
     if meaning.startswith("refuse: "):
         raise NotTranslated(f"{code}: {meaning.removeprefix('refuse: ')}")
     if not meaning:
         table = f"[{code[0].lower()}_codes]"
-        raise NotTranslated(f"{code} is not known of {control}: say under {table} what it is")
-    return _own_words(meaning)
+        raise NotTranslated(f"{code} is not known of {control.name}: say under {table} what it is")
+    return [word] if meaning in BUILDERS else _own_words(meaning)

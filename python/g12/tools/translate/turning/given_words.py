@@ -146,7 +146,7 @@ def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBl
 def _contour_block(
     draft: Draft, block: ForeignBlock, state: ModalState, motion: str
 ) -> tuple[ContourBlock, ModalState, str]:
-    reader = Draft(block, state, draft.control, draft.machine_codes)
+    reader = Draft(block, state, draft.control)
     try:
         for rule in WORD_RULES_OF_CYCLES:
             rule(reader)
