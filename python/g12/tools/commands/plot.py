@@ -29,13 +29,12 @@ from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of, scene_of_proof
-from g12.tools.preview.ended import ended, explained
+from g12.tools.preview.ended import ended
 from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
-from g12.tools.preview.tracer import Tracer
 from g12.tools.progress import working
-from g12.tools.verify.commanded import Commanded, commanded_by
-from g12.tools.verify.proof import Proof, prove_subject
+from g12.tools.verify.commanded import Commanded
+from g12.tools.verify.proof import Proof, moves_and_words, prove_subject
 from g12.tools.verify.report import line_text
 from g12.tools.verify.subject import subject_of
 
@@ -64,7 +63,7 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(options)
     style.check_format(options.output)
     with opened_program(options.program, ini) as opened:
-        found, commanded = moves_and_words(opened.path, ini, options)
+        found, commanded = moves_to_draw(opened.path, ini, options)
         samples = samples_of_run(opened.path, options, found, ini)
         with working(f"drawing {options.output.name}"):
             subject = subject_of(opened.path, ini, found, samples, commanded)
@@ -84,21 +83,16 @@ def main(arguments: list[str]) -> int:
     return GOOD
 
 
-def moves_and_words(
-    program: Path, ini: Ini, options: argparse.Namespace
-) -> tuple[Trace, Commanded]:
+def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> tuple[Trace, Commanded]:
     """Return the moves to draw, and what the words command; of a refused program nothing."""
-    commanded = Commanded()
-    with working(f"interpreting {program.name}"), Tracer(ini, tools=options.tools) as tracer:
-        found = explained(tracer.trace(program, parameters=options.var), ini.path)
+    with working(f"interpreting {program.name}"):
+        found, commanded = moves_and_words(program, ini, options.tools, options.var)
         if found.error and not options.run:
             found = with_refused_contour(program, ini, found, options.var)
-        if options.run or not found.moves:
-            ended(program, found)
-        if not found.moves:
-            raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-        if not found.error:
-            commanded = commanded_by(tracer, program, found, options.tools, options.var)
+    if options.run or not found.moves:
+        ended(program, found)
+    if not found.moves:
+        raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
     return found, commanded
 
 

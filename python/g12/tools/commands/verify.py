@@ -26,12 +26,12 @@ from g12.tools.commands.arguments import (
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
-from g12.tools.preview.ended import ended, explained
-from g12.tools.preview.tracer import trace
+from g12.tools.preview.ended import ended
 from g12.tools.progress import working
 from g12.tools.units import unit_of
-from g12.tools.verify.proof import Proof, prove
+from g12.tools.verify.proof import Proof, moves_and_words, prove_subject
 from g12.tools.verify.report import as_json, as_text
+from g12.tools.verify.subject import subject_of
 
 EXAMPLES = """\
 examples:
@@ -79,19 +79,9 @@ def main(arguments: list[str]) -> int:
 
 
 def proof_of(program: Path, ini: Ini, options: argparse.Namespace) -> Proof:
-    found = None
-    if options.run:  # an error of the program is reported before the run
-        found = trace(program, ini.path, tools=options.tools, parameters=options.var)
-        ended(program, explained(found, ini.path))
-    samples = samples_of_run(program, options, found, ini)
-    with working(f"interpreting {program.name}") as tell:
-        return prove(
-            program,
-            ini,
-            tools=options.tools,
-            parameters=options.var,
-            samples=samples,
-            tolerance=options.tolerance,
-            stock=stock_of(options),
-            tell=tell,
-        )
+    with working(f"interpreting {program.name}"):
+        trace, commanded = moves_and_words(program, ini, options.tools, options.var)
+    samples = samples_of_run(program, options, ended(program, trace), ini)
+    subject = subject_of(program, ini, trace, samples, commanded)
+    with working(f"measuring {program.name}") as tell:
+        return prove_subject(subject, options.tolerance, stock_of(options), tell)

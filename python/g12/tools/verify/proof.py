@@ -21,12 +21,12 @@ from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import limits_of
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.executed_blocks import read_lines
-from g12.tools.preview.moves import Move
+from g12.tools.preview.moves import Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
-from g12.tools.verify.commanded import commanded_by
+from g12.tools.verify.commanded import Commanded, commanded_by
 from g12.tools.verify.in_material import judge_material, judge_rapid_lengths
 from g12.tools.verify.mistakes.tool import (
     judge_feeds,
@@ -132,11 +132,20 @@ def prove(
     replaces both that of pockets and that of sections, ``stock`` is what is cut. ``tell`` is
     called with the name of each step.
     """
-    with Tracer(ini, tools=tools) as tracer:
-        trace = ended(program, explained(tracer.trace(program, parameters=parameters), ini.path))
-        commanded = commanded_by(tracer, program, trace, tools, parameters)
-    subject = subject_of(program, ini, trace, samples, commanded)
+    trace, commanded = moves_and_words(program, ini, tools, parameters)
+    subject = subject_of(program, ini, ended(program, trace), samples, commanded)
     return prove_subject(subject, tolerance, stock, tell)
+
+
+def moves_and_words(
+    program: Path, ini: Ini, tools: Tools = None, parameters: Parameters = None
+) -> tuple[Trace, Commanded]:
+    """Return the trace of a program, and what its words command: nothing if it is refused."""
+    with Tracer(ini, tools=tools) as tracer:
+        trace = explained(tracer.trace(program, parameters=parameters), ini.path)
+        if trace.error:
+            return trace, Commanded()
+        return trace, commanded_by(tracer, program, trace, tools, parameters)
 
 
 def prove_subject(
