@@ -369,13 +369,13 @@ def _free(text, *_):
 # ---------------------------------------------------------------- sections on a cylinder
 
 
-def cylinder_program(chance, unit, count, sloping=False):
+def cylinder_program(chance, unit, count, kind=""):
     """Return a program of sections on cylinders: grooves, arcs, turns, walls with compensation.
 
-    ``sloping``: X may change along lines, and G7.1 has diameters.
+    ``kind`` sloping: X may change along lines, and G7.1 has diameters.
     """
     text = Text(chance, unit, polar=True)
-    text.sloping = sloping
+    text.sloping = kind == "sloping"
     text.diameter = chance.random() < 0.5
     text.add("G7" if text.diameter else "G8", "G97 S500")
     for _ in range(count):
@@ -387,7 +387,7 @@ def cylinder_program(chance, unit, count, sloping=False):
         text.add(f"T{loaded} M6")
         text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
         text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
-        text.add(f"G7.1 C{text.n(radius * (2 if sloping else 1))}")
+        text.add(f"G7.1 C{text.n(radius * (2 if text.sloping else 1))}")
         text.add(f"G1 X{_x(text, radius - text.between(0.5, 4))} F{text.n(text.between(50, 300))}")
         text.add(f"F{text.n(text.between(100, 1500))}")
         if chance.random() < 0.5:
@@ -446,7 +446,7 @@ def _wall(text, radius, start, cutter):
 # ---------------------------------------------------------------- shapes on the face
 
 
-def shapes_program(chance, unit, count):
+def shapes_program(chance, unit, count, _kind=""):
     """Return a program of polygons, slots and round pockets by their calls."""
     text = Text(chance, unit, polar=True)
     text.diameter = chance.random() < 0.5
@@ -503,55 +503,47 @@ def _pocket_call(text, cutter):
 
 # ---------------------------------------------------------------- each kind by its name
 
-MACHINES = {
-    "haas": "mill_mm",
-    "haas inch": "mill_inch",
-    "haas spiral": "mill_mm",
-    "haas helix": "mill_helix_mm",
-    "haas helix spiral": "mill_inch",
-    "yasnac": "mill_yasnac_mm",
-    "yasnac traverse": "mill_yasnac_mm",
-    "mitsubishi": "mill_mitsubishi_mm",
-    "circle mill": "mill_mm",
-    "polar": "lathe_mm",
-    "polar inch": "lathe_inch",
-    "polar kinematics": "lathe_mm_kinematics",
-    "polar sloping": "lathe_mm",
-    "polar beside": "lathe_mm",
-    "polar beside kinematics": "lathe_mm_kinematics",
-    "shapes": "lathe_mm",
-    "shapes inch": "lathe_inch",
-    "shapes kinematics": "lathe_mm_kinematics",
-    "cylinder": "lathe_mm",
-    "cylinder inch": "lathe_inch",
-    "cylinder sloping": "lathe_mm",
-}
-SETTINGS = {  # of [G12], in place of the machine's
-    "haas spiral": {"CLEARING": "spiral", "PLUNGE_FEED": "40"},
-    "haas helix spiral": {"CLEARING": "spiral", "ENTRY": "helix", "ENTRY_ANGLE": "5"},
-    "yasnac traverse": {"YASNAC_TRAVERSE": "3000"},
-    "polar sloping": {"POLAR_Z": "allow", "POLAR_G0": "feed", "POLAR_G0_FEED": "2500"},
-    "polar beside": {"POLAR_TOOL_OFFSET": "0.4"},
-    "polar beside kinematics": {"POLAR_TOOL_OFFSET": "-0.7"},
-    "cylinder sloping": {"CYLINDER_X": "allow", "CYLINDER_WORD": "diameter"},
-}
-POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle mill": circle_mill}
+MACHINES = {  # a machine, and settings of [G12] in place of its own
+    "haas": ("mill_mm", {}),
+    "haas inch": ("mill_inch", {}),
+    "haas spiral": ("mill_mm", {"CLEARING": "spiral", "PLUNGE_FEED": "40"}),
+    "haas helix": ("mill_helix_mm", {}),
+    "haas helix spiral": (
+        "mill_inch", {"CLEARING": "spiral", "ENTRY": "helix", "ENTRY_ANGLE": "5"},
+    ),
+    "yasnac": ("mill_yasnac_mm", {}),
+    "yasnac traverse": ("mill_yasnac_mm", {"YASNAC_TRAVERSE": "3000"}),
+    "mitsubishi": ("mill_mitsubishi_mm", {}),
+    "circle mill": ("mill_mm", {}),
+    "polar": ("lathe_mm", {}),
+    "polar inch": ("lathe_inch", {}),
+    "polar kinematics": ("lathe_mm_kinematics", {}),
+    "polar sloping": (
+        "lathe_mm", {"POLAR_Z": "allow", "POLAR_G0": "feed", "POLAR_G0_FEED": "2500"},
+    ),
+    "polar beside": ("lathe_mm", {"POLAR_TOOL_OFFSET": "0.4"}),
+    "polar beside kinematics": ("lathe_mm_kinematics", {"POLAR_TOOL_OFFSET": "-0.7"}),
+    "shapes": ("lathe_mm", {}),
+    "shapes inch": ("lathe_inch", {}),
+    "shapes kinematics": ("lathe_mm_kinematics", {}),
+    "cylinder": ("lathe_mm", {}),
+    "cylinder inch": ("lathe_inch", {}),
+    "cylinder sloping": ("lathe_mm", {"CYLINDER_X": "allow", "CYLINDER_WORD": "diameter"}),
+}  # fmt: skip
+LATHE_PROGRAMS = {"polar": polar_program, "shapes": shapes_program, "cylinder": cylinder_program}
+POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle": circle_mill, "haas": haas}
 
 
 def machine_of(kind):
     """Return the machine of a kind with its settings."""
-    ini = read_ini(SIM / f"{MACHINES[kind]}_headless.ini")
-    return ini.replaced({"G12": SETTINGS.get(kind, {})})
+    name, settings = MACHINES[kind]
+    return read_ini(SIM / f"{name}_headless.ini").replaced({"G12": settings})
 
 
 def valid_program(kind, chance, count):
     """Return a program of ``count`` pockets or sections of a kind of `MACHINES`."""
-    what, more = kind.split()[0], kind.split()[1:]
-    unit = "inch" if MACHINES[kind].endswith("inch") else "mm"
-    if what == "polar":
-        return polar_program(chance, unit, count, more[0] if more else "")
-    if what == "shapes":
-        return shapes_program(chance, unit, count)
-    if what == "cylinder":
-        return cylinder_program(chance, unit, count, "sloping" in more)
-    return pocket_program(chance, unit, count, POCKETS.get(kind.removesuffix(" traverse"), haas))
+    what, *more = kind.split()
+    unit = "inch" if MACHINES[kind][0].endswith("inch") else "mm"
+    if what in LATHE_PROGRAMS:
+        return LATHE_PROGRAMS[what](chance, unit, count, more[0] if more else "")
+    return pocket_program(chance, unit, count, POCKETS[what])
