@@ -4,6 +4,8 @@
 A module of this package yields `Figure`s from its ``figures()``; ``make bench`` prints them.
 """
 
+import os
+import subprocess
 from typing import NamedTuple
 
 
@@ -13,5 +15,21 @@ class Figure(NamedTuple):
     what: str
     value: float
     limit: float
-    unit: str
-    how: str
+    how: str = ""
+    unit: str = ""
+
+
+class Used(NamedTuple):
+    """What a process and its children used: CPU seconds, and MB at most."""
+
+    seconds: float
+    memory: float
+
+
+def used(*command, codes=(0,), **options):
+    """Run a command, which ends with one of some exit codes; return what it used."""
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    process = subprocess.Popen(command, **quiet, **options)
+    _, status, usage = os.wait4(process.pid, 0)
+    assert os.waitstatus_to_exitcode(status) in codes, f"refused: {command}"
+    return Used(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024)

@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 from bench import Figure
-from bench.haas import cpu_seconds
-from bench.verify import against, used
+from bench.haas import interpreter
+from bench.verify import against, verified
 from g12.tools.machine.ini import read_ini
 from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.program import translate_program
@@ -17,25 +17,27 @@ from support.sim_machines import SIM, copy_of_machines
 
 LINES, RUNS = 10000, 3
 LONGEST_TRANSLATION, LONGEST_READING = 5.0, 2.0  # s of CPU time
+CONTROL = read_control("mill-on-face")
+SLOPES = {"G12": {"POLAR_Z": "allow"}}
 MOST_OF_A_TENTH = 12.0  # times the CPU time of a tenth of the lines
 
 
 def figures():
     """Yield the rows of CAM output."""
-    control = read_control("mill-on-face")
     before = time.process_time()
-    translated = translate_program(spiral(LINES), control).text
+    program = on_face(LINES)
+    what = "translate: 10,000 lines of a mill's program onto the face, CPU time"
+    seconds = time.process_time() - before
     yield Figure(
-        "translate: 10,000 lines of a mill's program onto the face, CPU time",
-        time.process_time() - before,
-        LONGEST_TRANSLATION,
-        " s",
-        f"lines of {mean_length():.2f} mm with Z",
+        what, seconds, LONGEST_TRANSLATION, f"lines of {mean_length():.2f} mm with Z", " s"
     )
-    program = translated.replace(" $1", "")
     yield reading(program)
-    tenth = translate_program(spiral(LINES // 10), control).text.replace(" $1", "")
-    yield verifying(program, tenth)
+    yield verifying(program, on_face(LINES // 10))
+
+
+def on_face(count):
+    """Return the first lines of the path, translated."""
+    return translate_program(spiral(count), CONTROL).text.replace(" $1", "").splitlines()
 
 
 def spiral(count):
@@ -60,25 +62,11 @@ def mean_length():
 
 def reading(program):
     """Measure how long the stock interpreter reads and plans the section."""
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        ini = read_ini(SIM / "lathe_mm.ini").replaced({"G12": {"POLAR_Z": "allow"}})
-        (scratch / "machine.ini").write_text(ini.text)
-        (scratch / "tool.tbl").write_text("T1 P1 D12\n")
-        for name, text in (("section", program), ("empty", "M2\n")):
-            (scratch / f"{name}.ngc").write_text(text)
-        times = [
-            cpu_seconds(scratch, scratch / "section.ngc")
-            - cpu_seconds(scratch, scratch / "empty.ngc")
-            for _ in range(RUNS)
-        ]
-    return Figure(
-        "polar: reading a section of 10,000 lines of CAM output, CPU time",
-        min(times),
-        LONGEST_READING,
-        " s",
-        f"the least of {RUNS} runs, without start-up",
-    )
+    with interpreter(read_ini(SIM / "lathe_mm.ini").replaced(SLOPES), "T1 P1 D12") as seconds:
+        times = [seconds(program) - seconds(["M2"]) for _ in range(RUNS)]
+    what = "polar: reading a section of 10,000 lines of CAM output, CPU time"
+    how = f"the least of {RUNS} runs, without start-up"
+    return Figure(what, min(times), LONGEST_READING, how, " s")
 
 
 def verifying(program, tenth):
@@ -86,6 +74,6 @@ def verifying(program, tenth):
     with tempfile.TemporaryDirectory() as folder:
         ini = copy_of_machines(Path(folder)) / "lathe_mm_headless.ini"
         ini.write_text(f"{ini.read_text()}\n[G12]\nPOLAR_Z = allow\n")
-        many, few = (used(folder, ini, text.splitlines()[:-1]) for text in (program, tenth))
+        many, few = (verified(folder, ini, lines[:-1]) for lines in (program, tenth))
     what = "verify: CPU time of 10,000 lines of CAM output, against 1,000"
     return against(what, many, few, MOST_OF_A_TENTH)

@@ -3,13 +3,12 @@
 
 import math
 import os
-import resource
 import statistics
-import subprocess
 import tempfile
+from contextlib import contextmanager
 from pathlib import Path
 
-from bench import Figure
+from bench import Figure, used
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from support import cut_geometry
@@ -41,22 +40,29 @@ def interpreting():
 
 def against_plain(what, limit, ini, tool, lines, plain):
     """Compare the CPU time of two programs in the stock interpreter."""
-    programs = {"lines": lines, "plain": plain, "empty": ["M2"]}
-    with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        (scratch / "machine.ini").write_text(read_ini(ini).text)
-        (scratch / "tool.tbl").write_text(f"{tool}\n")
-        for name, blocks in programs.items():
-            (scratch / f"{name}.ngc").write_text("\n".join([*blocks, ""]))
-        times = [
-            [cpu_seconds(scratch, scratch / f"{name}.ngc") for name in programs]
-            for _ in range(PAIRS)
-        ]
+    with interpreter(read_ini(ini), tool) as seconds:
+        times = [[seconds(program) for program in (lines, plain, ["M2"])] for _ in range(PAIRS)]
     start_up = statistics.median(time[2] for time in times)
     ratios = sorted((time[0] - start_up) / (time[1] - start_up) for time in times)
     spread = f"({ratios[0]:.2f} to {ratios[-1]:.2f})"
     how = f"CPU time of rs274 less its start-up, median of {PAIRS} pairs {spread}"
-    return Figure(what, statistics.median(ratios), limit, "", how)
+    return Figure(what, statistics.median(ratios), limit, how)
+
+
+@contextmanager
+def interpreter(ini, tool):
+    """Yield a function: the CPU seconds of rs274 for a program, where a machine's paths resolve."""
+    with tempfile.TemporaryDirectory() as folder:
+        machine, table, program = (Path(folder) / n for n in ("m.ini", "tool.tbl", "program.ngc"))
+        machine.write_text(ini.text)
+        table.write_text(f"{tool}\n")
+        command = ["rs274", "-g", "-i", machine, "-t", table, program]
+
+        def seconds(lines):
+            program.write_text("\n".join([*lines, ""]))
+            return used(*command, cwd=SIM, env={**os.environ, "HOME": folder}).seconds
+
+        yield seconds
 
 
 def starts(block):
@@ -89,44 +95,21 @@ def plain_block(move, x, y):
     return f"G1 X{end[0] + x:.6f} Y{end[1] + y:.6f}"
 
 
-def cpu_seconds(scratch, program):
-    """Return the CPU seconds of rs274 for a program, run where the machine's paths resolve."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(
-        ["rs274", "-g", "-i", scratch / "machine.ini", "-t", scratch / "tool.tbl", program],
-        cwd=INI.parent,
-        env={**os.environ, "HOME": str(scratch)},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        check=True,
-    )
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 def length_ratio(tracer):
     """Compare the path with its circles, lead-in and lead-out."""
     moves = tracer.trace_text([FIRST, "G0 Z.1", SAMPLE]).moves
     sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
     rings = cut_geometry.radii(moves)
     ideal = sum(2 * math.pi * radius for radius in rings) + math.pi / 2 * (rings[0] + rings[-1])
-    return Figure(
-        "G12: path length against the circles, lead-in and lead-out, I.3 K1.5 Q.3, cutter .25",
-        cut_geometry.path_length(sideways) / ideal,
-        1.25,
-        "",
-        f"{cut_geometry.path_length(sideways):.1f} mm against {ideal:.1f} mm",
-    )
+    length = cut_geometry.path_length(sideways)
+    what = "G12: path length against the circles, lead-in and lead-out, I.3 K1.5 Q.3, cutter .25"
+    return Figure(what, length / ideal, 1.25, f"{length:.1f} mm against {ideal:.1f} mm")
 
 
 def direction_jump(tracer):
     """Find the largest change of direction between plunge and retract."""
     moves = tracer.trace_text([FIRST, "G0 Z.1", f"{SAMPLE} L3"]).moves
     sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
-    return Figure(
-        "G12: direction jump anywhere between the plunge and the retract",
-        cut_geometry.largest_jump(sideways),
-        1.0,
-        " degrees",
-        "three spring passes of I.3 K1.5 Q.3, cutter .25",
-    )
+    what = "G12: direction jump anywhere between the plunge and the retract"
+    how = "three spring passes of I.3 K1.5 Q.3, cutter .25"
+    return Figure(what, cut_geometry.largest_jump(sideways), 1.0, how, " degrees")

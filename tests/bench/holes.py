@@ -5,7 +5,7 @@ import tempfile
 
 from bench import Figure
 from bench.haas import against_plain
-from bench.verify import LATHE, used
+from bench.verify import LATHE, verified
 from g12.tools.preview.tracer import Tracer
 from support.sim_machines import SIM
 
@@ -20,9 +20,9 @@ def figures():
     """Yield the rows of holes."""
     yield interpreting()
     with tempfile.TemporaryDirectory() as folder:
-        proof = used(folder, LATHE, [*FIRST, *[CALL] * CALLS])
+        proof = verified(folder, LATHE, [*FIRST, *[CALL] * CALLS])
         what = f"verify: CPU time of {CALLS * HOLES:,} holes in three pecks"
-        yield Figure(what, proof.seconds, 10.0, " s", f"{proof.memory:.0f} MB")
+        yield Figure(what, proof.seconds, 10.0, f"{proof.memory:.0f} MB", " s")
 
 
 def interpreting():

@@ -8,13 +8,13 @@ import numpy as np
 
 from bench import Figure
 from bench.polar import (
-    HEXAGON_BLOCKS,
     MANUAL_TOOLS,
     SAMPLES,
     at_feed,
     contour_of,
     distance_of,
     equal_angles,
+    seconds_at,
     seconds_in,
 )
 from g12.tools.path.least_time import least_seconds
@@ -23,7 +23,7 @@ from support.operated_machine import Machine
 from support.polar_programs import INCHES
 from support.sim_machines import SIM
 
-FEEDS = ((1000, 1.02), (2000, 1.03), (3000, 1.03))  # and the most of the ideal time
+FEEDS = {1000: 1.02, 2000: 1.03, 3000: 1.03}  # and the most of the ideal time
 ROUNDING = 1e-3
 NO_SLOWER = 1.19  # than segments at 1000 mm/s²: the axes of the face have 707, whose root that is
 THIRD = 2 * math.pi / 3  # C turns the other way in between
@@ -35,7 +35,7 @@ SLOW_SLIDE, SLOW_SPINDLE = (150.0, 1500.0), (math.radians(90), math.radians(1200
 OF_LEAST = {1000: 1.05, 2000: 1.12, 3000: 1.20}  # the circle's time on the face
 OF_LEAST_SLOW = {500: 1.05, 1000: 1.12, 2000: 1.20}
 HEXAGON_SLOW = {500: 1.05, 2000: 1.15}
-SLOT_BLOCK, SLOT_LENGTH = (7,), 36.0  # of slot.ngc: through the pole
+SLOT_LENGTH = 36.0  # of slot.ngc: through the pole
 SLOT_SLOW = {500: 1.10, 2000: 1.10}
 SWITCH_MS, STANDING = 20, 8  # servo cycles: a plain stop is shorter than the second
 
@@ -46,9 +46,9 @@ def figures():
         Machine(SIM / "lathe_mm.ini") as segments,
         Machine(SIM / "lathe_mm_kinematics.ini") as face,
     ):
-        for feed, most in FEEDS:
-            yield hexagon(face, segments, feed, most)
-        for feed, _ in FEEDS:
+        for feed in FEEDS:
+            yield hexagon(face, segments, feed)
+        for feed in FEEDS:
             yield circle(face, segments, feed)
             yield slot(face, segments, feed)
         yield deviation_on_face(face)
@@ -65,34 +65,28 @@ def figures():
             yield manual(face, segments, name)
 
 
-def hexagon(face, segments, feed, most):
+def hexagon(face, segments, feed):
     """Compare the hexagon on the face with its length over the feed."""
-    program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
-    around = contour_of("hexagon", face.ini, HEXAGON_BLOCKS)
+    around = contour_of("hexagon", face.ini)
     ideal = sum(segment.length for segment in around) / feed * 60
-    ours, others = (
-        seconds_in(lathe.run_text(program), HEXAGON_BLOCKS) / ideal for lathe in (face, segments)
-    )
-    return Figure(
-        f"polar with kinematics: hexagon against the ideal at F{feed}",
-        ours,
-        most,
-        "",
-        f"with segments {others:.3f}, {posted(segments, around, feed)}",
-    )
+    ours, others = (seconds_at(lathe, "hexagon", feed) / ideal for lathe in (face, segments))
+    what = f"polar with kinematics: hexagon against the ideal at F{feed}"
+    how = f"with segments {others:.3f}, {posted(segments, around, feed)}"
+    return Figure(what, ours, FEEDS[feed], how)
 
 
 def circle(face, segments, feed):
     """Compare the times of a circle beside the axis."""
-    ours, others = (seconds_in(lathe.run_text(circle_at(feed)), (4,)) for lathe in (face, segments))
     shortest = least(CIRCLE, feed)
-    return Figure(
-        f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time",
-        ours / shortest,
-        OF_LEAST[feed],
-        "",
-        f"with segments {others / shortest:.3f}, {posted(segments, CIRCLE, feed)}",
-    )
+    ours, others = (circle_seconds(lathe, feed) / shortest for lathe in (face, segments))
+    what = f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time"
+    how = f"with segments {others:.3f}, {posted(segments, CIRCLE, feed)}"
+    return Figure(what, ours, OF_LEAST[feed], how)
+
+
+def circle_seconds(lathe, feed):
+    """Return the time of the circle."""
+    return seconds_in(lathe.run_text(circle_at(feed)), (4,))
 
 
 def circle_at(feed):
@@ -111,42 +105,35 @@ def slow_spindle(lathe):
     axes = SLOW_SLIDE, SLOW_SPINDLE
     title = "polar with kinematics, C 90 degrees/s:"
     for feed, most in OF_LEAST_SLOW.items():
-        ours = seconds_in(lathe.run_text(circle_at(feed)), (4,))
-        ratio = ours / least(CIRCLE, feed, *axes)
-        yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most, "", "")
-    around = contour_of("hexagon", lathe.ini, HEXAGON_BLOCKS)
+        ratio = circle_seconds(lathe, feed) / least(CIRCLE, feed, *axes)
+        yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most)
+    around = contour_of("hexagon", lathe.ini)
     for feed, most in HEXAGON_SLOW.items():
-        program = at_feed((SAMPLES / "hexagon.ngc").read_text(), f"F{feed}", HEXAGON_BLOCKS)
-        ours = seconds_in(lathe.run_text(program), HEXAGON_BLOCKS)
         shortest = sum(least([segment], feed, *axes) for segment in around)
-        yield Figure(f"{title} hexagon, F{feed}", ours / shortest, most, "", "side by side")
+        ratio = seconds_at(lathe, "hexagon", feed) / shortest
+        yield Figure(f"{title} hexagon, F{feed}", ratio, most, "side by side")
     half = np.linspace(SLOT_LENGTH / 2, 0.001, 1000) + 0j
     turn = math.pi / SLOW_SPINDLE[0] + SLOW_SPINDLE[0] / SLOW_SPINDLE[1]
     for feed, most in SLOT_SLOW.items():
-        ours = seconds_in(lathe.run_text(slot_at(feed)), SLOT_BLOCK)
-        shortest = 2 * least_seconds(half, feed / 60, *axes)
-        yield Figure(
-            f"{title} slot through the centre besides C turning in place, F{feed}",
-            (ours - turn) / shortest,
-            most,
-            "",
-            f"{ours:.3f} s, of which C turns {turn:.3f} s",
-        )
+        ours = seconds_at(lathe, "slot", feed)
+        ratio = (ours - turn) / (2 * least_seconds(half, feed / 60, *axes))
+        what = f"{title} slot through the centre besides C turning in place, F{feed}"
+        yield Figure(what, ratio, most, f"{ours:.3f} s, of which C turns {turn:.3f} s")
 
 
 def slot(face, segments, feed):
     """Compare the times of a slot through the pole, where C has to turn."""
-    return beside(
-        f"slot through the pole, F{feed}",
-        [seconds_in(lathe.run_text(slot_at(feed)), SLOT_BLOCK) for lathe in (face, segments)],
-        SLOT_LENGTH / feed * 60,
-        "C turns in place for 0.6 s",
-    )
+    ours, others = (seconds_at(lathe, "slot", feed) for lathe in (face, segments))
+    ideal = SLOT_LENGTH / feed * 60
+    shares = f"against the ideal {ours / ideal:.3f} and {others / ideal:.3f}"
+    what = f"slot through the pole, F{feed}"
+    return beside(what, ours, others, f"{shares}, C turns in place for 0.6 s")
 
 
-def slot_at(feed):
-    """Return the program of the slot."""
-    return at_feed((SAMPLES / "slot.ngc").read_text(), f"F{feed}", SLOT_BLOCK)
+def beside(what, ours, others, how):
+    """Return the row of two times, with kinematics and with segments."""
+    title = f"polar both ways: {what}, with kinematics against segments"
+    return Figure(title, ours / others, NO_SLOWER, how)
 
 
 def switch(face):
@@ -155,13 +142,9 @@ def switch(face):
     run = face.run_text([head, *([up, *section, "G0 Z3"] * 6), end])
     stops = np.diff(np.flatnonzero(run.samples.velocity))
     stops = stops[stops > STANDING]
-    return Figure(
-        "polar with kinematics: the machine stands at a switch",
-        float(np.median(stops)),
-        SWITCH_MS,
-        " ms",
-        f"median of {len(stops)}, {stops.min()} to {stops.max()} ms; more on a busy computer",
-    )
+    what = "polar with kinematics: the machine stands at a switch"
+    how = f"median of {len(stops)}, {stops.min()} to {stops.max()} ms; more on a busy computer"
+    return Figure(what, float(np.median(stops)), SWITCH_MS, how, " ms")
 
 
 def manual(face, segments, name):
@@ -169,25 +152,7 @@ def manual(face, segments, name):
     runs = [lathe.run(SAMPLES / f"{name}.ngc") for lathe in (face, segments)]
     assert [run.error for run in runs] == [None, None]
     ours, others = (run.seconds for run in runs)
-    return Figure(
-        f"polar both ways: {name}, with kinematics against segments",
-        ours / others,
-        NO_SLOWER,
-        "",
-        f"{ours:.2f} s and {others:.2f} s",
-    )
-
-
-def beside(what, seconds, ideal, more):
-    """Return the row of two times."""
-    ours, others = seconds
-    return Figure(
-        f"polar both ways: {what}, with kinematics against segments",
-        ours / others,
-        NO_SLOWER,
-        "",
-        f"against the ideal {ours / ideal:.3f} and {others / ideal:.3f}, {more}",
-    )
+    return beside(name, ours, others, f"{ours:.2f} s and {others:.2f} s")
 
 
 def posted(lathe, segments, feed):
@@ -210,16 +175,13 @@ def posted(lathe, segments, feed):
 
 def deviation_on_face(face):
     """Compare the motion of the hexagon at F3000, G64 P0.002, with what its words command."""
-    program = at_feed((SAMPLES / "hexagon.ngc").read_text(), "F3000", HEXAGON_BLOCKS)
+    program = at_feed("hexagon", 3000)
     program[1] += " P0.002"  # of G64
     face.reset()
-    return Figure(
-        "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002",
-        face.proof_of_run(program).sections[0].deviation,
-        0.002,
-        " mm",
-        "of the tool's centre, sampled at 1 kHz",
-    )
+    (section,) = face.proof_of_run(program).sections
+    what = "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002"
+    how = "of the tool's centre, sampled at 1 kHz"
+    return Figure(what, section.deviation, 0.002, how, " mm")
 
 
 def spindle_limits(face, name):
@@ -231,4 +193,4 @@ def spindle_limits(face, name):
         ("acceleration", np.abs(np.diff(steps)).max() * 1e6 / 3600),
     ):
         title = f"polar with kinematics: C's {what} against its limit, {name}"
-        yield Figure(title, most, 1.0 + ROUNDING, "", f"{len(steps)} samples")
+        yield Figure(title, most, 1.0 + ROUNDING, f"{len(steps)} samples")

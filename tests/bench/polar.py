@@ -18,8 +18,9 @@ SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = 0.005  # mm
 LINES = 10000
+START = 19.5 + 12j  # of the hexagon's contour
 LONGEST = 600  # s that a trace may take on a busy computer
-HEXAGON_BLOCKS, FLAT_BLOCKS = range(10, 16), (14, 15, 16)
+BLOCKS = {"hexagon": range(10, 16), "manual_b": (14, 15, 16), "slot": (7,)}  # of the contour
 
 
 def figures():
@@ -27,47 +28,40 @@ def figures():
     yield interpreting()
     with Machine(SIM / "lathe_mm.ini") as lathe:
         for name in MILLIMETRES:
-            yield real_deviation(lathe, name, TOLERANCE)
-        yield against_ideal(lathe, "hexagon", "F250", HEXAGON_BLOCKS)
+            yield real_deviation("polar", name, proof_of(lathe, name), TOLERANCE)
+        yield against_ideal(lathe, "hexagon", 250)
         yield against_equal_angles(lathe)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
         for name in INCHES:
-            yield real_deviation(lathe, name, 0.0002 * MM_PER_INCH)
-        yield against_ideal(lathe, "manual_b", f"F{250 / MM_PER_INCH:.6f}", FLAT_BLOCKS)
+            yield real_deviation("polar", name, proof_of(lathe, name), 0.0002 * MM_PER_INCH)
+        yield against_ideal(lathe, "manual_b", 250 / MM_PER_INCH)
 
 
-def real_deviation(lathe, name, tolerance):
-    """Compare the motion of a sample program, sampled at 1 kHz, with what its words command."""
+def proof_of(lathe, name):
+    """Return the proof of a sample's motion on a machine as it came up."""
     lathe.reset()
-    proof = lathe.proof_of_run((SAMPLES / f"{name}.ngc").read_text())
-    return Figure(
-        f"polar: real motion against the programmed contour, {name}",
-        max(section.deviation for section in proof.sections),
-        tolerance + 0.001,
-        " mm",
-        "of the tool's centre, sampled at 1 kHz",
-    )
+    return lathe.proof_of_run((SAMPLES / f"{name}.ngc").read_text())
 
 
-def against_ideal(lathe, name, feed, blocks):
-    """Compare the time of a contour at F250 with its length over the feed."""
-    program = at_feed((SAMPLES / f"{name}.ngc").read_text(), feed, blocks)
-    seconds = seconds_in(lathe.run_text(program), blocks)
-    length = sum(segment.length for segment in contour_of(name, lathe.ini, blocks))
-    return Figure(
-        f"polar: section time against the ideal at F250, {name}",
-        seconds / (length / 250 * 60),
-        1.05,
-        "",
-        f"{seconds:.2f} s for {length:.1f} mm",
-    )
+def real_deviation(code, name, proof, tolerance):
+    """Compare the motion of a program, sampled at 1 kHz, with what its words command."""
+    what = f"{code}: real motion against the programmed contour, {name}"
+    off = max(section.deviation for section in proof.sections)
+    return Figure(what, off, tolerance + 0.001, "of the tool's centre, sampled at 1 kHz", " mm")
+
+
+def against_ideal(lathe, name, feed):
+    """Compare the time of a contour at F250 of millimetres with its length over the feed."""
+    seconds = seconds_at(lathe, name, feed)
+    length = sum(segment.length for segment in contour_of(name, lathe.ini))
+    what = f"polar: section time against the ideal at F250, {name}"
+    return Figure(what, seconds / (length / 250 * 60), 1.05, f"{seconds:.2f} s for {length:.1f} mm")
 
 
 def against_equal_angles(lathe):
     """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
-    text = (SAMPLES / "hexagon.ngc").read_text()
-    ours = seconds_in(lathe.run_text(at_feed(text, "F1000", HEXAGON_BLOCKS)), HEXAGON_BLOCKS)
-    segments = contour_of("hexagon", lathe.ini, HEXAGON_BLOCKS)
+    ours = seconds_at(lathe, "hexagon", 1000)
+    segments = contour_of("hexagon", lathe.ini)
     points = np.concatenate([equal_angles(segment) for segment in segments])
     lathe.mdi("G21 G90 G94 G8 G0 Z5")
     theirs = lathe.run_text(blocks_of(points, 1000))
@@ -76,16 +70,15 @@ def against_equal_angles(lathe):
         "polar: section time against equal angles of the same tolerance, F1000, hexagon",
         ours / seconds,
         1.0,
-        "",
         f"{ours:.2f} s against {seconds:.2f} s for {len(points)} equal angles "
         f"(which leave the contour by {distance_of(theirs, segments):.4f} mm)",
     )
 
 
-def contour_of(name, ini, blocks):
-    """Return the toolpath of some lines of a sample program."""
+def contour_of(name, ini):
+    """Return the toolpath of a sample's contour."""
     path = toolpath_of(name, ini)
-    return [segment for block in blocks for segment in path[block]]
+    return [segment for block in BLOCKS[name] for segment in path[block]]
 
 
 def distance_of(run, segments):
@@ -112,21 +105,17 @@ def equal_angles(segment, tolerance=TOLERANCE):
 
 def blocks_of(points, feed):
     """Return a program of straight X-C moves, each with the F that makes ``feed`` on the part."""
-    angles = np.degrees(np.unwrap(points[:, 1]))
-    start = (19.5**2 + 12**2) ** 0.5, math.degrees(math.atan2(12, 19.5))
-    blocks, before = [], start
-    for x, c in zip(points[:, 0], angles):
-        plane = [
-            (r * math.cos(math.radians(a)), r * math.sin(math.radians(a)))
-            for r, a in ((x, c), before)
-        ]
-        minutes = math.dist(*plane) / feed
+    before, blocks = (abs(START), np.degrees(np.angle(START))), []
+    for x, c in zip(points[:, 0], np.degrees(np.unwrap(points[:, 1]))):
+        here, there = (radius * np.exp(1j * np.radians(a)) for radius, a in (before, (x, c)))
+        minutes = abs(there - here) / feed
         dx = abs(x - before[0])
-        rate = dx / minutes if dx > 0.001 else abs(c - before[1]) / minutes
-        blocks.append(f"G1 X{x if dx > 0.001 else before[0]:.6f} C{c:.6f} F{rate:.6f}")
-        before = (x if dx > 0.001 else before[0], c)
-    head = ["G21 G18 G8 G90 G94 G64 P0.0025", f"G0 X{start[0]:.6f} C{start[1]:.6f}", "Z2", "(cut)"]
-    return [*head, *blocks, "M2"]
+        x = x if dx > 0.001 else before[0]
+        rate = (dx if dx > 0.001 else abs(c - before[1])) / minutes
+        blocks.append(f"G1 X{x:.6f} C{c:.6f} F{rate:.6f}")
+        before = x, c
+    place = f"G0 X{abs(START):.6f} C{np.degrees(np.angle(START)):.6f}"
+    return ["G21 G18 G8 G90 G94 G64 P0.0025", place, "Z2", "(cut)", *blocks, "M2"]
 
 
 def interpreting():
@@ -157,10 +146,15 @@ def seconds_in(run, blocks):
     return np.isin(run.samples.line, list(blocks)).sum() * 0.001
 
 
-def at_feed(text, feed, blocks):
-    """Return a sample program whose blocks run at another feed."""
-    lines = text.splitlines()
-    for block in blocks:
+def seconds_at(lathe, name, feed):
+    """Return the time of a sample's contour at another feed."""
+    return seconds_in(lathe.run_text(at_feed(name, feed)), BLOCKS[name])
+
+
+def at_feed(name, feed):
+    """Return a sample whose contour has another feed."""
+    lines = (SAMPLES / f"{name}.ngc").read_text().splitlines()
+    for block in BLOCKS[name]:
         words = [word for word in lines[block - 1].split() if word[0] != "F"]
-        lines[block - 1] = " ".join([*words, feed])
+        lines[block - 1] = " ".join([*words, f"F{feed:.9g}"])
     return lines

@@ -44,7 +44,7 @@ def at_changes(lathe):
         ("following error of C", error, MOST),
         ("step of the motor", motor_jumps(run.samples, changes) / 1000, MOST),
     ):
-        yield Figure(f"spindle as C: {what} at a change", value, limit, "°", how)
+        yield Figure(f"spindle as C: {what} at a change", value, limit, how, "°")
 
 
 def before_and_after(lathe):
@@ -54,8 +54,8 @@ def before_and_after(lathe):
     lines = [number for number, block in enumerate(PARTS, 1) if "G33" in block]
     before, after = (pitch_and_start(run.samples, line)[0] for line in lines)
     what = "spindle as C: pitch of G33 after ten changes against before"
-    yield Figure(what, abs(after / before - 1), 0.005, "", f"{before:.5f} and {after:.5f} mm")
+    yield Figure(what, abs(after / before - 1), 0.005, f"{before:.5f} and {after:.5f} mm")
     lines = [number for number, block in enumerate(PARTS, 1) if block == "X20 C-20"]
     before, after = (angle_of_flat(run.samples, line) for line in lines)
     what = "spindle as C: a flat after ten changes against before"
-    yield Figure(what, abs(after - before), MOST, "°", f"{before:.4f}° and {after:.4f}°")
+    yield Figure(what, abs(after - before), MOST, f"{before:.4f}° and {after:.4f}°", "°")

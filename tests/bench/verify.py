@@ -2,13 +2,11 @@
 """verify: CPU time and memory of the whole process for programs of many pockets."""
 
 import math
-import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from bench import Figure
+from bench import Figure, used
 from support.sim_machines import ROOT, SIM
 
 MILL, LATHE = SIM / "mill_mm_headless.ini", SIM / "lathe_mm_headless.ini"
@@ -23,60 +21,42 @@ LAP = 1000  # lines of a lap of a contour
 def figures():
     """Yield the rows of verify."""
     with tempfile.TemporaryDirectory() as folder:
-        few, many = (used(folder, MILL, milled(n), "--stock", STOCK) for n in (50, 200))
+        few, many = (verified(folder, MILL, milled(n), "--stock", STOCK) for n in (50, 200))
         yield against("verify: CPU time of 200 pockets in a stock, against 50", many, few, 6.0)
-        thousand = used(folder, MILL, milled(1000))
+        thousand = verified(folder, MILL, milled(1000))
         how = "pockets of 1,000 sizes, without a stock"
-        yield Figure("verify: CPU time of 1,000 pockets", thousand.seconds, 6.0, " s", how)
+        yield Figure("verify: CPU time of 1,000 pockets", thousand.seconds, 6.0, how, " s")
         most = thousand.memory
         for name, contour in CONTOURS.items():
-            few, many = (used(folder, LATHE, contour(n)) for n in (1000, 10_000))
+            few, many = (verified(folder, LATHE, contour(n)) for n in (1000, 10_000))
             what = f"verify: CPU time of 10,000 polar lines, {name}, against 1,000"
             yield against(what, many, few, 12.0)
             most = max(most, many.memory)
-        yield Figure("verify: memory at the most", most, 300.0, " MB", "of the largest of these")
+        yield Figure("verify: memory at the most", most, 300.0, "of the largest of these", " MB")
 
 
 def against(what, many, few, limit):
     """Return the ratio of what two programs take."""
     how = f"{many.seconds:.2f} s against {few.seconds:.2f} s"
-    return Figure(what, many.seconds / few.seconds, limit, "", how)
+    return Figure(what, many.seconds / few.seconds, limit, how)
 
 
-class Used:
-    """What a process and its children used: CPU seconds, and MB at most."""
-
-    def __init__(self, pid):
-        _, status, usage = os.wait4(pid, 0)
-        assert os.waitstatus_to_exitcode(status) < 2, "refused"
-        self.seconds = usage.ru_utime + usage.ru_stime
-        self.memory = usage.ru_maxrss / 1024
-
-
-def used(folder, ini, lines, *words):
+def verified(folder, ini, lines, *words):
     """Return what ``verify`` uses for a program."""
     program = Path(folder) / "program.ngc"
     program.write_text("\n".join([*lines, "M2", ""]))
-    command = [sys.executable, str(ROOT / "python" / "g12"), "verify", str(program)]
-    process = subprocess.Popen(
-        [*command, "--ini", str(ini), *words],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    return Used(process.pid)
+    command = [sys.executable, ROOT / "python" / "g12", "verify", program, "--ini", ini, *words]
+    return used(*command, codes=(0, 1))
 
 
 def milled(count):
-    """Return a program of so many pockets."""
-    return [*FIRST, *pockets(count)]
-
-
-def pockets(count):
-    """Yield the blocks of pockets, each of a size of its own."""
+    """Return a program of so many pockets, each of a size of its own."""
+    lines = [*FIRST]
     for index in range(count):
         x, y = PITCH * (index % ROW), PITCH * (index // ROW)
         radius = LEAST + (MOST - LEAST) * index / count
-        yield f"G0 X{x} Y{y}\nG0 Z1\nG13 I7 K{radius:.3f} Q4 Z-3 D4\nG0 Z5"
+        lines += [f"G0 X{x} Y{y}", "G0 Z1", f"G13 I7 K{radius:.3f} Q4 Z-3 D4", "G0 Z5"]
+    return lines
 
 
 def plain(count):
