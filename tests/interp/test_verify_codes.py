@@ -313,6 +313,8 @@ CASES = [
      "G1 Z2|G13.1", ""),
     ("radii", "G12.1|G1 X30 F500|Z-1|M73|G91 G3 X-1 R9|M72|X20 C5|M70|G91|M72 X15|M70|G91|M71|"
      "X-1|Z4|G13.1", ""),
+    # what comes before the first move of a section, and after an element that makes none
+    ("radii", "G12.1|M8|G1 X30 F500|Z-1|X30|M9|X20|G13.1", ""),
     # a contour of a line and an arc, a radius of 0 in a sub, words that cannot be read
     ("radii", "G0 X40|G12.1|G1 C30 F900|G41 X12|C-16|G2 X12 C16 R-20|G1 G40 X40|Z-2|G13.1", ""),
     ("lathe", "o7 sub|G7.1 C#1|G1 X40 F300|C90|X60|G7.1 C0|o7 endsub|G0 X60 Z-20|o7 call [0]|"
