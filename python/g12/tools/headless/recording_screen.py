@@ -45,9 +45,7 @@ class Sampler:
 
     def start(self) -> None:
         """Discard the samples so far and record from now on."""
-        hal.set_p("sampler.0.enable", "0")
-        time.sleep(DRAIN)
-        self.drain()
+        self.stop()
         self.rows = array.array("d")
         hal.set_p("sampler.0.overruns", "0")
         hal.set_p("sampler.0.enable", "1")
