@@ -23,27 +23,19 @@ from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.install.trial import refuse_problems
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
+from support.small_configs import files_of_package
 
 SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
 MILL = ["haas", "circle-mill"]
 LATHE = ["polar", "polar-shapes", "cylinder"]
 HANDLERS = {name: "g12.remap" for feature in features.REMAP_FILES
             for name in features.functions_of(feature)}  # fmt: skip
-SUBS = {
-    *(name for feature in features.REMAP_FILES for name in features.names_of(feature)),
-    *(
-        f"{form}_{unit}"
-        for names in forms.FORMS_OF.values()
-        for form in names
-        for unit in forms.UNIT_NAMES
-    ),
-    *(*forms.FORM_SUBS, *forms.FACE_FORM_SUBS),
-}
+MODULES = [f"python/{name}.py" for name in ("toplevel", "remap", "g12/__init__")]
 PACKAGE = {
-    **{name: (features.ROOT / name).read_bytes() for name in
-       ("python/toplevel.py", "python/remap.py", "python/g12/__init__.py", forms.GLADE_FILE)},
-    **dict.fromkeys(("python/g12/__main__.py", *(f"ngc/{sub}.ngc" for sub in SUBS)), b""),
-}  # fmt: skip
+    **files_of_package(*MODULES, forms.GLADE_FILE),
+    **{f"ngc/{file.name}": b"" for file in features.ROOT.glob("ngc/*.ngc")},
+    "python/g12/__main__.py": b"",
+}
 # of samples that are no machines by themselves
 NO_MACHINE = {"interpreter", "does-not-load", "no-sub", "python-fails"}
 

@@ -9,7 +9,7 @@ from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
-from g12.tools.install.config.loaded import Config, load_config
+from g12.tools.install.config.loaded import load_config
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.plan import MODULE_MARK, InstallPlan, make_plan, names_copy, refuse
 from g12.tools.install.rules import findings_of, installed_programs
@@ -33,7 +33,8 @@ def install(
             yield "dry run: nothing was written; without these files nothing more can be checked"
             return
         yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
-    config = readable_config(text)
+    config = load_config(text)
+    refuse_problems([finding for finding in findings_of(config) if finding.kind in PREVENTING])
     programs = [f"programs-{control}" for control in installed_programs(config)]
     for pair in excluding([*config.features, *programs, *requested]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
@@ -55,25 +56,14 @@ def install(
     if dry_run:
         yield "dry run: nothing was written"
     else:
-        yield from next_steps(text.path, requested)
+        yield "next: restart LinuxCNC, then try in MDI or with a program:"
+        yield from (f"  {features.first_step(feature)}" for feature in requested)
+        yield f"to take it out again: {COMMAND} uninstall {text.path}"
 
 
 def size_of_package() -> str:
     sizes = [len(content) for content in package_copy.package_files().values()]
     return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
-
-
-def next_steps(ini: Path, installed: Sequence[str]) -> Iterator[str]:
-    yield "next: restart LinuxCNC, then try in MDI or with a program:"
-    yield from (f"  {features.first_step(feature)}" for feature in installed)
-    yield f"to take it out again: {COMMAND} uninstall {ini}"
-
-
-def readable_config(text: IniText) -> Config:
-    """Return the present config; refuse one that LinuxCNC cannot load."""
-    config = load_config(text)
-    refuse_problems([finding for finding in findings_of(config) if finding.kind in PREVENTING])
-    return config
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:

@@ -119,7 +119,8 @@ def long_lines(config: Config) -> Iterator[ConfigFinding]:
 # LinuxCNC itself.
 
 
-def wrong_version(config: Config) -> Iterator[ConfigFinding]:
+def other_linuxcnc(config: Config) -> Iterator[ConfigFinding]:
+    """Find no LinuxCNC, one that is too old, and another interpreter."""
     numbers = tuple(map(int, re.findall(r"\d+", config.version)[:2]))
     if not numbers:
         yield problem(
@@ -133,9 +134,6 @@ def wrong_version(config: Config) -> Iterator[ConfigFinding]:
             f"LinuxCNC {config.version} is too old for the package",
             "update LinuxCNC to 2.9 or later",
         )
-
-
-def other_interpreter(config: Config) -> Iterator[ConfigFinding]:
     name = config.ini.get("TASK", "INTERPRETER")
     if name:
         yield problem(
@@ -171,21 +169,17 @@ def taken_codes(config: Config) -> Iterator[ConfigFinding]:
                 )
 
 
-def owned_codes(config: Config) -> Iterator[ConfigFinding]:
+def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
+    """Find REMAP lines that LinuxCNC ignores, or that are nearly the package's."""
     cures = {"polar": "use the pair G12.3/G13.3: uninstall, then install --with polar-g12.3"}
     for code in config.codes:
-        name = code.remap.code
+        expected, found, name = code.model.keywords, code.remap.keywords, code.remap.code
         if name in config.owned:
             yield problem(
                 "owned",
                 f"{code.line.location}: {name} is LinuxCNC's own code: its REMAP is ignored",
                 cures.get(code.feature, "give the feature another code in its REMAP line"),
             )
-
-
-def wrong_lines(config: Config) -> Iterator[ConfigFinding]:
-    for code in config.codes:
-        expected, found = code.model.keywords, code.remap.keywords
         wrong = [f"{key}={value}" for key, value in expected.items() if found.get(key) != value]
         wrong += [f"no {key}=" for key in found if key not in expected]
         if wrong:
@@ -325,16 +319,13 @@ def handlers_hidden(config: Config) -> Iterator[ConfigFinding]:
 # The machine.
 
 
-def bad_settings(config: Config) -> Iterator[ConfigFinding]:
+def wrong_values(config: Config) -> Iterator[ConfigFinding]:
+    """Find settings that are a start-up error, and values that the other commands refuse."""
     try:
         settings_from_lines(config.ini.lines)
     except Refusal as refusal:
-        yield problem(
-            "setting", refusal.message, f"correct the line in [{INI_SECTION}]: {SETTINGS_PAGE}"
-        )
-
-
-def refused_values(config: Config) -> Iterator[ConfigFinding]:
+        cure = f"correct the line in [{INI_SECTION}]: {SETTINGS_PAGE}"
+        yield problem("setting", refusal.message, cure)
     try:
         limits_of(config.ini)
     except IniError as refused:
@@ -456,15 +447,13 @@ def shortened(names: list[str]) -> str:
 
 
 CONFIG_RULES: tuple[Rule, ...] = (
-    wrong_version,
-    other_interpreter,
+    other_linuxcnc,
     codes_missing,
     includes,
     lines_not_read,
     broken_headers,
     long_lines,
     taken_codes,
-    owned_codes,
     wrong_lines,
     halves,
     wrong_subs,
@@ -472,8 +461,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     python_not_loaded,
     handlers_missing,
     handlers_hidden,
-    bad_settings,
-    refused_values,
+    wrong_values,
     needs,
     tools,
     wrong_filters,

@@ -7,7 +7,7 @@ HAL files have already, with the inputs of its drive. The owner names these in a
 
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -74,11 +74,7 @@ DRIVE = {  # names in the pins' file, and the signals that their pins get
     "brake": "spindle-c-brake",
 }
 REQUIRED_PINS = ("velocity", "position", "holds")
-MODULES = re.compile(r"loadrt\s+(\S+)")
-OWN_MODULES = (
-    *("lut5", "edge", "flipflop", "tristate_bit", "wcomp", "timedelay"),
-    *("orient", "sum2", "mux4", "limit3", "message"),
-)
+MODULES = re.compile(r"^loadrt (\w+) names=(\S+)", re.MULTILINE)  # with their components
 SPINDLE_C_LINE = re.compile(
     rf"HALFILE = \S+/{re.escape(SPINDLE_C_HAL)}"
     rf"|HALCMD = (unlinkp \S+|net spindle-c-\S+ => \S+|loadusr sh \S+/{re.escape(LIMITS_SCRIPT)})"
@@ -256,7 +252,8 @@ def index_shared(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
-def travel_missing(config: Config) -> Iterator[ConfigFinding]:
+def axis_c_wrong(config: Config) -> Iterator[ConfigFinding]:
+    """Find an axis C without travel, and a joint that would move to be homed."""
     missing = [key for key in ("MIN_LIMIT", "MAX_LIMIT") if not config.ini.get("AXIS_C", key)]
     if missing:
         yield problem(
@@ -264,9 +261,6 @@ def travel_missing(config: Config) -> Iterator[ConfigFinding]:
             f"[AXIS_C] lacks {' and '.join(missing)}, which spindle_c.hal reads",
             "MIN_LIMIT = -99999 and MAX_LIMIT = 99999 for a C that turns without an end",
         )
-
-
-def homing_moves(config: Config) -> Iterator[ConfigFinding]:
     joint = f"JOINT_{letters_of_joints(config).find('C')}"
     for key in ("HOME_SEARCH_VEL", "HOME_LATCH_VEL"):
         value = config.ini.get(joint, key)
@@ -278,30 +272,23 @@ def homing_moves(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
-def modules_twice(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
-    for text, location in lines:
-        module = MODULES.match(text)
-        if module and module[1] in OWN_MODULES:
-            yield problem(
-                "spindle-c-module",
-                f"{location}: {text}: LinuxCNC loads a module once, and spindle_c.hal loads "
-                f"{module[1]} too",
-                f"name its components here as well, names=…,{components_of(module[1])}, and take "
-                "the line out of a copy of spindle_c.hal",
-            )
-
-
-def components_of(module: str) -> str:
-    text = (ROOT / SPINDLE_C_HAL).read_text(encoding="utf-8")
-    return re.search(rf"^loadrt {module} names=(\S+)", text, re.MULTILINE)[1]
-
-
 def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
     yield from in_the_way(other_lines(config))
 
 
 def in_the_way(lines: Sequence[HalLine]) -> Iterator[ConfigFinding]:
-    yield from modules_twice(lines)
+    """Find modules and pins of spindle_c.hal in other HAL lines."""
+    own = dict(MODULES.findall((ROOT / SPINDLE_C_HAL).read_text(encoding="utf-8")))
+    for text, location in lines:
+        command, module, *_ = [*text.split(), "", ""]
+        if command == "loadrt" and module in own:
+            yield problem(
+                "spindle-c-module",
+                f"{location}: {text}: LinuxCNC loads a module once, and spindle_c.hal loads "
+                f"{module} too",
+                f"name its components here as well, names=…,{own[module]}, and take "
+                "the line out of a copy of spindle_c.hal",
+            )
     owner = "is what the spindle becomes C by"
     yield from pins_taken(lines, OWN_PINS, owner, "use another pin here")
 
@@ -328,7 +315,6 @@ SPINDLE_C_RULES = (
     not_connected,
     feedback_wrong,
     index_shared,
-    travel_missing,
-    homing_moves,
+    axis_c_wrong,
     others_in_the_way,
 )
