@@ -12,12 +12,11 @@ from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
 from g12.tools.install.config.loaded import load_config
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.plan import MODULE_MARK, InstallPlan, make_plan, names_copy, refuse
-from g12.tools.install.rules import findings_of, installed_programs
+from g12.tools.install.rules import findings_of, installed_programs, shortened
 from g12.tools.install.trial import refuse_problems, try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 
-MOST_MISSING_NAMED = 3  # missing files are named
 PREVENTING = {"no-linuxcnc", "python-fails", "does-not-load"}  # kinds: the config is unreadable
 
 
@@ -26,9 +25,7 @@ def install(
 ) -> Iterator[str]:
     missing = missing_files(text)
     if missing:
-        more = " …" if len(missing) > MOST_MISSING_NAMED else ""
-        names = f"{', '.join(missing[:MOST_MISSING_NAMED])}{more}"
-        yield f"{text.path.parent / package_copy.NAME}: missing: {names}"
+        yield f"{text.path.parent / package_copy.NAME}: missing: {shortened(missing)}"
         if dry_run:
             yield "dry run: nothing was written; without these files nothing more can be checked"
             return
