@@ -94,9 +94,13 @@ def test_what_the_filter_refuses_is_told(reported, command):
     assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
 
 
-def test_a_picture_is_drawn(reported, tmp_path):
-    code, _, _ = reported("plot", POCKET, "-o", str(tmp_path / "part.svg"))
-    assert (code, (tmp_path / "part.svg").exists()) == (0, True)
+def test_a_picture_has_the_lines_of_the_users_file(reported, tmp_path):
+    picture = tmp_path / "part.svg"
+    code, out, _ = reported("plot", POCKET.replace("D02", "D03"), "-o", str(picture))
+    assert (code, "in red, line 8: the loaded tool" in out) == (0, True)
+    assert "finding in line 8" in picture.read_text()
+    code, *_ = reported("plot", POCKET.replace("I.6", "I.1"), "-o", str(picture))
+    assert (code, "refused in line 8: G12: I0.1 must" in picture.read_text()) == (1, True)
 
 
 def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):

@@ -64,16 +64,17 @@ def main(arguments: list[str]) -> int:
     style.check_format(options.output)
     with opened_program(options.program, ini) as opened:
         found, commanded = moves_to_draw(opened.path, ini, options)
+        in_source = trace_in_source(found, opened)
         samples = samples_of_run(opened.path, options, found, ini)
         with working(f"drawing {options.output.name}"):
             subject = subject_of(opened.path, ini, found, samples, commanded)
             if found.error:
+                subject = replace(subject, trace=in_source)
                 proof, scene = None, scene_of(subject, options.units, options.feeds)
             else:
                 proof = replace(prove_subject(subject, stock=stock_of(options)), opened=opened)
                 scene = scene_of_proof(proof, options.override, options.units, options.feeds)
             style.save(picture_of(scene), options.output)
-    in_source = trace_in_source(found, opened)
     x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
     judged = dict.fromkeys(judged_texts(proof, scene)) if proof else ()
     texts = [f"{options.output} written", *x0, *judged, *message_lines(in_source.messages)]

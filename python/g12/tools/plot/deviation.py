@@ -57,7 +57,7 @@ def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
     letters = " and ".join(scene.path.part.letters[axis] for axis in pair)
     yield f"{size_of(worst, scene.unit)}{fast},"
-    yield f"line {worst.move.block}, in {letters}"
+    yield f"line {scene.user_line(worst.move.block, '')}, in {letters}"
     if scene.contour is not None:
         yield f"off the contour: {scene.unit.fine(scene.contour)} {scene.unit.name}"
 

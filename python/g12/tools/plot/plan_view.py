@@ -389,7 +389,7 @@ def warning_entries(scene: Scene) -> list:
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
     if scene.seen.uncut:
         listed.append(style.uncut_entry("uncut material"))
-    lines = dict.fromkeys(finding.line for finding in scene.seen.signs)
+    lines = dict.fromkeys(scene.user_line(each.line, each.file) for each in scene.seen.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed

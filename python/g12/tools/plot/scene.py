@@ -3,7 +3,7 @@
 
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import takewhile
@@ -35,7 +35,8 @@ class Scene:
 
     ``unit`` is that of the labels. ``override`` is the feed override of the run in per cent.
     ``contour`` is the largest deviation (mm) from the programmed contours of sections, where
-    these are known.
+    these are known. ``user_line`` returns the line of the user's file for one that LinuxCNC reads,
+    and for the name of a sub's own file.
     """
 
     subject: Subject
@@ -44,6 +45,7 @@ class Scene:
     override: float = 100.0
     seen: Seen = NOTHING_SEEN
     contour: float | None = None
+    user_line: Callable[[int, str], int] = lambda line, _file: line
 
     @property
     def moves(self) -> Sequence[Move]:
@@ -126,6 +128,7 @@ def scene_of_proof(
         override=override,
         seen=seen_of_proof(proof),
         contour=max((facts.deviation for facts in proof.sections), default=None),
+        user_line=proof.user_line,
     )
 
 
