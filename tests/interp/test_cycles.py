@@ -152,8 +152,6 @@ REFUSED = [  # what a block says by itself is in unit/test_cycles.py
     ("mitsubishi mm", [*MOVED, "G18"], "G13 I10 D10",
      "I10 must be greater than the tool radius 10 (D10) by at least 0.00508"),
     ("event inch", EVENT_FIRST, "G13.2 X1 Y2 Z-.5 R1.5 H2", "I is missing"),
-    ("event inch", EVENT_FIRST, f"G12.2 {PLACE}", "H is missing"),
-    ("event inch", EVENT_FIRST, f"G13.2 {PLACE} H2 D4", "D4 must be at most 3"),
     ("event inch", [*EVENT_FIRST, "G91"], "G13.2 X1 Y2 Z.2 I.1 R1.5 H2",
      "Z0.2 must be below the first"),
     ("event inch", [*EVENT_FIRST, "G41 D1"], f"G13.2 {PLACE} H2", "brings its own cutter"),
@@ -162,7 +160,6 @@ REFUSED = [  # what a block says by itself is in unit/test_cycles.py
     ("event inch", [*EVENT_FIRST, "T0 M6"], POCKET_CALL, "no tool is loaded: its"),
     ("event inch", EVENT_FIRST, call(g=7, x=0, y=0, z=-0.1, w=0.1, r=0.2, c=2),
      "R0.2 must be greater"),
-    ("event inch", EVENT_FIRST, call(g=7, x=0, y=0, z=-0.1, w=0.1, c=2), "R is missing"),
     ("event inch", EVENT_FIRST,
      "o<circle_mill> call [7] [0] [0] [-.1] [.1] [.1] [1] [0] [2]", "V0 must be"),
 ]  # fmt: skip

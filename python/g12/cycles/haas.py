@@ -31,6 +31,7 @@ from g12.request.common import (
     check_modes,
     check_start,
     commanded_tool,
+    other_cutter,
     sound_tool,
     steps_between,
 )
@@ -45,7 +46,7 @@ def plan_pocket(
     words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
-    context = words.context
+    context, other = words.context, other_cutter(words, words.context.last_radius)
     check_modes(words)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
@@ -82,7 +83,8 @@ def plan_pocket(
     message = upward(words, depth)
     message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
-    return CyclePlan(numbers | links | down, extent, message, cutter.radius if with_d else None)
+    radius = cutter.radius if with_d else None
+    return CyclePlan(numbers | links | down, extent, message, other, radius)
 
 
 def links_outward(

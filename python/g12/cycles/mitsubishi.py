@@ -15,7 +15,7 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
-from g12.request.common import check_modes, check_start, commanded_tool
+from g12.request.common import check_modes, check_start, commanded_tool, other_cutter
 from g12.request.context import XY, XZ, YZ, Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
@@ -25,7 +25,7 @@ FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
 
 
 def plan_circle(words: Words) -> CyclePlan:
-    context = words.context
+    context, other = words.context, other_cutter(words)
     check_modes(words, planes=tuple(FIRST_AXIS))
     words.check_known(MITSUBISHI_WORDS)
     check_start(words)
@@ -40,7 +40,8 @@ def plan_circle(words: Words) -> CyclePlan:
         "centre": getattr(context, FIRST_AXIS[context.plane]),
         "radius": radius,
     }
-    return CyclePlan(numbers, CycleExtent(context.plane, context.position, radius))
+    extent = CycleExtent(context.plane, context.position, radius)
+    return CyclePlan(numbers, extent, other_cutter=other)
 
 
 def check_radius(words: Words, radius: float, tool: Tool) -> None:

@@ -9,11 +9,13 @@ from g12.request.travel import CycleExtent
 class CyclePlan(NamedTuple):
     """A checked cycle: ``locals`` are the named locals of its sub, which its .ngc file explains.
 
-    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal.
-    ``commanded_radius`` is that of the cutter that a Haas D names.
+    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as is
+    ``other_cutter``: D is not the loaded tool. ``commanded_radius`` is that of the cutter that a
+    Haas D names.
     """
 
     locals: dict[str, float]
     extent: CycleExtent
     message: str | None = None
+    other_cutter: str | None = None
     commanded_radius: float | None = None

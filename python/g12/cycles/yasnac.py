@@ -34,6 +34,7 @@ from g12.request.common import (
     check_modes,
     check_start,
     commanded_tool,
+    other_cutter,
     sound_tool,
     steps_between,
 )
@@ -71,7 +72,7 @@ class OffsetRadii(NamedTuple):
 
 
 def plan_circle(words: Words) -> CyclePlan:
-    context = words.context
+    context, other = words.context, other_cutter(words)
     check_modes(words)
     words.check_known(YASNAC_WORDS)
     check_start(words)
@@ -93,7 +94,8 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
         "circles": circles,
     }
-    return CyclePlan(numbers | turns, CycleExtent(XY, context.position, abs(radius)))
+    extent = CycleExtent(XY, context.position, abs(radius))
+    return CyclePlan(numbers | turns, extent, other_cutter=other)
 
 
 def take_traverse(words: Words) -> tuple[str, float] | None:

@@ -17,7 +17,7 @@ from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.machine import MACHINE
 from g12.host.modes import program_units_per_machine_unit
-from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, other_cutter
+from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE
 from g12.request.words import Words
 
 ARCS = CLOCKWISE, COUNTERCLOCKWISE  # of G12 and G13
@@ -27,19 +27,17 @@ def check_at_start() -> None:
     MACHINE.read("settings", "travel")
 
 
-def hand_over(
-    interp: Interp, words: Words, plan: CyclePlan, other: str | None = None, **more: float
-) -> int:
+def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> int:
     """Set the locals of a plan that stays in the travel; show the operator its messages.
 
-    ``other`` is that of a D that is not the loaded tool, once for each program and tool.
+    That of another cutter is shown once for each program and tool.
     """
     cycle_state.stay_within_limits(interp, words, plan.extent)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     cycle_state.note_modes(interp)
     tool = words.context.spindle_tool
-    if other and tool:
-        messages.message_once(interp, tool.number, other)
+    if plan.other_cutter and tool:
+        messages.message_once(interp, tool.number, plan.other_cutter)
     if plan.commanded_radius is not None:
         cycle_state.remember_radius(interp, plan.commanded_radius)
     if plan.message:
@@ -49,21 +47,18 @@ def hand_over(
 
 def prepare_haas(interp: Interp, arc: int) -> int:
     words, settings = cycle_state.words_of_block(interp), MACHINE.settings
-    other = other_cutter(words, words.context.last_radius)
     entry = PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
     plan = plan_pocket(words, settings.clearing, entry)
     hand = 1 if arc == COUNTERCLOCKWISE else -1
-    return hand_over(interp, words, plan, other, arc=arc, hand=hand)
+    return hand_over(interp, words, plan, arc=arc, hand=hand)
 
 
 def prepare_yasnac(interp: Interp, arc: int) -> int:
     words = cycle_state.words_of_block(interp)
-    other, plan = other_cutter(words), yasnac.plan_circle(words)
     return hand_over(
         interp,
         words,
-        plan,
-        other,
+        yasnac.plan_circle(words),
         arc=arc,
         traverse=MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp),
         feed=interp.feed_rate,
@@ -73,8 +68,7 @@ def prepare_yasnac(interp: Interp, arc: int) -> int:
 
 def prepare_mitsubishi(interp: Interp, arc: int) -> int:
     words = cycle_state.words_of_block(interp)
-    other, plan = other_cutter(words), mitsubishi.plan_circle(words)
-    return hand_over(interp, words, plan, other, arc=arc)
+    return hand_over(interp, words, mitsubishi.plan_circle(words), arc=arc)
 
 
 def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
