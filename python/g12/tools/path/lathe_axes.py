@@ -76,7 +76,8 @@ class LatheAxes(NamedTuple):
 def lathe_axes(ini: Ini) -> LatheAxes:
     """Return the limits in an INI; the slide's are those of its joint with kinematics."""
     axes, face, mm = ini.axis_limits, face_of(ini.get), ini.mm
-    slide, z, c = (face.slide if face else axes["X"]), axes["Z"], axes["C"]
+    slide, c = (face.slide if face else axes["X"]), axes["C"]
+    z = axes.get("Z", slide)  # check estimates lathes without Z as well
     return LatheAxes(
         Rates(slide.velocity * mm, slide.acceleration * mm),
         Rates(z.velocity * mm, z.acceleration * mm),
