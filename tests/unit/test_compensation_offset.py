@@ -54,7 +54,7 @@ def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side)
     assert count > 40
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(st.randoms(use_true_random=False))
 def test_any_contour_is_cut_at_the_tools_radius_or_refused(draw):
     part = open_path(draw)

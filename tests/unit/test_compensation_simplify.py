@@ -115,7 +115,7 @@ size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 
 
-@settings(deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(extra=st.lists(st.tuples(size, angle), min_size=1, max_size=3))
 def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
     walls = [30 - 30j, 30 + 10j]

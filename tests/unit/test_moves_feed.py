@@ -38,7 +38,7 @@ turn = st.sampled_from([0.0, 1e-12, 0.01, -3.0, 40.0])
 ends = st.lists(st.tuples(step, turn, st.floats(0.01, 5.0)), min_size=1, max_size=8)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(ends, st.sampled_from([0.0, -0.002, -4.0]), st.sampled_from([0.0, 90.0]))
 def test_all_segments_together_last_as_long_as_the_path(steps, rise, entry):
     """None turns C and moves the slides by less than the least step, and none does nothing."""

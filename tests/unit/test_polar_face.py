@@ -38,7 +38,7 @@ def test_an_arc_that_flows_into_what_follows(following, flows):
     assert not flows_into(line((0, 10), (20, 10)), following)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.one_of(lines, arcs), st.floats(-20, 20))
 def test_the_face_is_the_plane_turned(move, angle):
     turned = in_face(move, angle)
@@ -46,7 +46,7 @@ def test_the_face_is_the_plane_turned(move, angle):
     assert after * np.exp(1j * angle) == pytest.approx(before, abs=1e-9)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.one_of(lines, arcs), st.floats(-20, 20))
 def test_positions_along_a_move_include_its_end_and_the_farthest(move, off):
     points = motion(move)[0]

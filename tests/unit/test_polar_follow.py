@@ -59,7 +59,7 @@ def share_of_limits(move, limits):
     return max(shares)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(
     st.one_of(lines, arcs),
     st.sampled_from([0.0, 0.0, 3.0, -10.0]),

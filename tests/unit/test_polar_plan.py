@@ -15,7 +15,7 @@ from g12.moves.steps import BlockMoves
 from g12.polar.plan import PolarSettings, plan, quickness
 from support.axes_of_places import rates
 from support.contour_geometry import Round, Straight, distance, distance_from_path
-from support.planned_cuts import SAGITTA, cuts, path, programmed
+from support.planned_cuts import SAGITTA, add, cuts, path, programmed
 
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
@@ -54,7 +54,7 @@ def runs(planned):
 # What is cut is the contour.
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=250)
 @given(
     drawings(beside=offsets),
     st.floats(-400.0, 400.0),
@@ -89,7 +89,7 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
     assert length == pytest.approx(expected, rel=5e-3, abs=0.05)  # no turn too many
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(drawings())
 def test_moves_x_by_the_least_step_or_not_at_all(shapes):
     contour = programmed(shapes)
@@ -145,7 +145,7 @@ def is_small(shape):
     return isinstance(shape, Round) and shape.radius < 200 * TOLERANCE
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(drawings(beside=offsets), st.floats(20.0, 2000.0))
 def test_every_segment_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
     contour, beside = programmed(shapes, feed=feed), shapes[0].start.imag
@@ -158,7 +158,7 @@ def test_every_segment_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
             assert 60.0 * cut.length / cut.seconds == pytest.approx(feed, rel=0.01)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(drawings())
 def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes):
     contour = programmed(shapes, feed=100.0)
@@ -190,7 +190,7 @@ def fewest(shape, bulge):
     return count
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(drawings(most=1))
 def test_no_splitting_needs_many_segments_less(shapes):
     """No path within the tolerance on both sides has segments that bulge by more than twice of it.
@@ -232,6 +232,45 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
     ):
         plan(programmed([shape]), careful, c=0.0)
     assert plan(programmed([Straight(9 + 0j, -9 + 0.2j)]), careful, c=0.0).steps
+
+
+# A tool beside the X line.
+
+
+def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
+    contour = Contour(20.0, 0.0, beside=-3.0)
+    contour.line(10.0, 0.0, line=7, feed=100.0)
+    contour.line(2.9, 0.0, line=8, feed=100.0)
+    with pytest.raises(Refusal) as refused:
+        plan(contour, EXACT._replace(beside=-3.0), c=0.0)
+    assert refused.value.message == (
+        "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it is 3 "
+        "beside X's line (POLAR_TOOL_OFFSET) and comes no nearer than 3.005"
+    )
+
+
+@pytest.mark.parametrize(("feed", "quick"), [(60.0, 1.0), (250.0, 1e-6)])
+@pytest.mark.parametrize(
+    "shape",
+    [
+        Straight(30 + 0j, -20 + 15j),
+        Straight(20 + 0j, 20 - 40j),
+        Round(30 + 0j, 18 + 0j, -4.0),
+        Round(30 + 0j, 12 + 0j, 2 * math.pi),
+        Round(30 + 0j, 0j, -2 * math.pi),
+    ],
+)
+def test_a_tool_hardly_beside_its_line_needs_the_same_segments_as_one_on_it(shape, feed, quick):
+    """For an even feed at F60, or, if the axes are too slow for that, for the tolerance alone."""
+    machine = EXACT._replace(x_acceleration=1000.0 * quick, c_acceleration=3600.0 * quick)
+    on_line = plan(programmed([shape], feed=feed), machine, c=0.0).steps[0].segments
+    contour = Contour(shape.start.real, 0.0, beside=1e-4)
+    contour.line(c=0.0, line=1, feed=feed)
+    add(contour, shape, line=2, feed=feed)
+    beside = plan(contour, machine._replace(beside=1e-4), c=0.0).steps[-1].segments
+    assert len(beside) == len(on_line)
+    for one, other in zip(on_line, beside):
+        assert other[:2] == pytest.approx(one[:2], rel=0.01, abs=0.05)
 
 
 # Corners, marks, sections cut in two.
@@ -303,7 +342,7 @@ def test_segments_that_keep_x_stay_within_the_tolerance():
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(
     st.builds(complex, st.floats(9.0, 40.0), st.floats(-40.0, 40.0)),
     st.floats(-3.1, 3.1),

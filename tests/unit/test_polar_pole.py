@@ -101,7 +101,7 @@ from_pole = angle | st.sampled_from([math.pi, 3.1415, 3.12])
 near_arcs = st.builds(turned_arc, beside, st.floats(0.02, 40.0), from_pole, signed, angle)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(near_lines | near_arcs)
 def test_what_is_led_through_the_pole_is_the_move_but_for_its_reach(move):
     """In order, as high as it, never farther from it; what is farther from the pole stays."""

@@ -118,7 +118,7 @@ circles = st.builds(
 ).map(lambda move: [move])
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(st.one_of(ways, circles), st.sampled_from([QUICK, SLOW]))
 def test_all_of_the_path_is_made_and_followed(path, limits):
     made = made_of(path, limits)

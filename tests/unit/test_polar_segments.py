@@ -52,7 +52,7 @@ def turning_points(shape):
     return every[at + 1] + 0.5 * every[1] * (left - right)[at] / bent[at]
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(shapes, laws, st.just(0.0) | offsets)
 @example(Straight(0.6 + 5j, -4 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
 @example(Straight(4 + 5j, -0.6 + 5j), Law(1e-5, 0.01, 3.0, 3.0), 2.0)
@@ -88,7 +88,7 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
         assert abs(near - at).min() < 1e-3 or len(near) < 2 or min(ends) < 2.5  # segments
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(shapes, laws, st.just(0.0) | offsets)
 def test_the_way_back_is_cut_into_the_same_segments(shape, law, beside):
     """They are spaced from the end nearer to the pole, where they are shortest."""
