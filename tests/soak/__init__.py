@@ -12,13 +12,10 @@ def often(each_ten_minutes):
     return max(1, round(each_ten_minutes * MINUTES / 10))
 
 
-class Tried:
-    """Counts what a test tries, for what `more_examples` says at the end."""
-
-    def __init__(self, request, what):
-        self._number = [0]
-        request.node.user_properties.append((f"soak: {what}", self._number))
-
-    def one(self):
-        """Count one more."""
-        self._number[0] += 1
+def tries(request, what, each_ten_minutes):
+    """Yield a number for each try; `more_examples` reports at the end how many held."""
+    held = [0]
+    request.node.user_properties.append((f"soak: {what}", held))
+    for number in range(often(each_ten_minutes)):
+        yield number
+        held[0] += 1

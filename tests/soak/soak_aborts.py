@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from soak import SEED, Tried, often
+from soak import SEED, tries
 from support.operated_machine import Machine
 from support.sim_machines import SIM
 
@@ -20,12 +20,11 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_aborts(name, request):
-    program, tried = PROGRAMS[name], Tried(request, "aborts in a real run, and the program again")
-    chance = random.Random(SEED)
+    program, chance = PROGRAMS[name], random.Random(SEED)
     with Machine(SIM / f"{name}.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
-        for number in range(often(50)):
+        for number in tries(request, "aborts in a real run, and the program again", 50):
             seed = f"abort {number} of seed {SEED}"
             machine.open_text(program)
             machine.start()
@@ -40,4 +39,3 @@ def test_aborts(name, request):
             assert again.error is None, seed
             assert again.position == pytest.approx(whole.position, abs=1e-6), seed
             assert again.modes == whole.modes, seed
-            tried.one()

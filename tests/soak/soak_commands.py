@@ -28,58 +28,29 @@ WORDS = {
 RUN = ["run", *ON, "--override", "1000", "--timeout", "30"]
 CONTROLS = shipped_controls()
 STARVED = "no end within"  # of an interpreter on a system with too much else to do
-LINES = [
-    *("G12.1", "G13.1", "G41", "G41 G1 X5", "G40", "G12", "G13 I5", "G13 I9 K20 Q3 Z-1", "G20"),
-    *("G12.2 X0 Y0 Z-1 I1 R9 H0", "o<circle_mill> call", "o<circle_mill> call [7] [1]", "M2", "%"),
-    *("G91", "G90", "G7", "G95 F.1", "G93", "G18", "T99 M6", "T0 M6", "G92 X1 Y2", "G52 X1", "M6"),
-    *("G10 L2 P1 R30", "G54", "G55", "o1 if [1]", "o1 endif", "o9 sub", "o9 endsub", "o9 call"),
-    *(
-        "o<nowhere> call",
-        "M98 P1",
-        "M99",
-        "(PY, x)",
-        "(ABORT, over)",
-        "(MSG, here)",
-        ";py,1",
-        "M70",
-    ),
-    *("#1=2", "#<a>=[1/0]", "G1 X#<none>", "G1 X[#1", "M66 P0 L3 Q1", "G4 P.1", "M0", "M1", "M72"),
-    *("G2 X5 R1", "G3 I1", "G33 Z-1 K1", "G38.2 Z-1", "G81 Z-1 R1", "G53 G0 Z0", "F0", "S0", "G96"),
-    *(
-        "N5",
-        "/G0 X1",
-        "G0 C90",
-        "G0 X0",
-        "G1 X0 C0",
-        "U1 H1",
-        "G28",
-        "G43 H1",
-        "\N{DEGREE SIGN}",
-        "",
-    ),
-]
+BLOCKS = (
+    "G12.1|G13.1|G41|G41 G1 X5|G40|G12|G13 I5|G13 I9 K20 Q3 Z-1|G20|G12.2 X0 Y0 Z-1 I1 R9 H0|"
+    "o<circle_mill> call|o<circle_mill> call [7] [1]|M2|%|G91|G90|G7|G95 F.1|G93|G18|T99 M6|"
+    "T0 M6|G92 X1 Y2|G52 X1|M6|G10 L2 P1 R30|G54|G55|o1 if [1]|o1 endif|o9 sub|o9 endsub|"
+    "o9 call|o<nowhere> call|M98 P1|M99|(PY, x)|(ABORT, over)|(MSG, here)|;py,1|M70|#1=2|"
+    "#<a>=[1/0]|G1 X#<none>|G1 X[#1|M66 P0 L3 Q1|G4 P.1|M0|M1|M72|G2 X5 R1|G3 I1|G33 Z-1 K1|"
+    "G38.2 Z-1|G81 Z-1 R1|G53 G0 Z0|F0|S0|G96|N5|/G0 X1|G0 C90|G0 X0|G1 X0 C0|U1 H1|G28|"
+    "G43 H1|\N{DEGREE SIGN}|"
+)
+LINES = BLOCKS.split("|")
 NUMBERS = ["0", "-1", "1e6", "99999", ".0001", "-.5", "[1/3]", "#5420", "", "1.2.3", "nan"]
 
 
 def damaged(chance, text):
-    """Return a program with some lines or numbers changed."""
+    """Return a program with some lines missing, changed, in another place or added."""
     lines = text.splitlines()
     for _ in range(chance.randint(0, 4)):
         at = chance.randrange(len(lines))
-        act = chance.randrange(6)
-        if act == 0:
-            del lines[at]
-        elif act == 1:
-            lines.insert(at, chance.choice(LINES))
-        elif act == 2:
-            lines.insert(at, chance.choice(lines))
-        elif act == 3:
-            other = chance.randrange(len(lines))
-            lines[at], lines[other] = lines[other], lines[at]
-        elif act == 4:
-            lines[at] = changed(chance, lines[at])
-        else:
-            del lines[chance.randrange(len(lines) // 2, len(lines)) :]
+        line, any_line, own = lines[at], chance.choice(LINES), chance.choice(lines)
+        instead = [[], [any_line, line], [own, line], [own], [changed(chance, line)]]
+        lines[at : at + 1] = chance.choice(instead)
+        if chance.random() < 0.15:
+            del lines[chance.randrange(len(lines) // 2, len(lines) + 1) :]
         lines = lines or [""]
     return "\n".join(lines) + chance.choice(["\n", ""])
 

@@ -8,7 +8,7 @@ import time
 
 from g12.tools.regress.recording_text import read_recording
 from g12.tools.system import PYTHON
-from soak import SEED, Tried, often
+from soak import SEED, tries
 from support.sim_machines import PROGRAMS, ROOT, SIM
 from support.small_configs import write_config
 
@@ -39,14 +39,14 @@ def content_of(folder):
 
 
 def test_installs(tmp_path, request):
-    chance, tried = random.Random(SEED), Tried(request, "kill -9 of install, mended by install")
+    chance = random.Random(SEED)
     ini = write_config(tmp_path)
     before = content_of(tmp_path)
     words = ("install", ini, "--with", "haas")
     lasts = seconds_of(*words)
     assert g12("uninstall", ini).returncode == 0
     assert content_of(tmp_path) == before
-    for number in range(often(50)):
+    for number in tries(request, "kill -9 of install, mended by install", 50):
         seed = f"kill {number} of seed {SEED}"
         killed(chance.uniform(0, lasts), *words)
         assert ini.read_bytes() == before[ini] or g12("check", ini).returncode == 0, seed
@@ -57,16 +57,14 @@ def test_installs(tmp_path, request):
         assert ini.read_bytes() == before[ini], seed
         left = set(content_of(tmp_path)) - set(before)
         assert not [path for path in left if not path.name.startswith(".")], seed
-        tried.one()
 
 
 def test_recordings(tmp_path, request):
     chance = random.Random(SEED)
-    tried = Tried(request, "kill -9 of regress record, mended by it")
     shutil.copytree(PROGRAMS / "haas", tmp_path / "nc", ignore=shutil.ignore_patterns("regress"))
     words = ("regress", "record", "nc", "--ini", SIM / "mill_inch.ini", "-d", "kept")
     lasts = seconds_of(*words, cwd=tmp_path)
-    for number in range(often(50)):
+    for number in tries(request, "kill -9 of regress record, mended by it", 50):
         seed = f"kill {number} of seed {SEED}"
         if number % 2:
             shutil.rmtree(tmp_path / "kept", ignore_errors=True)
@@ -76,4 +74,3 @@ def test_recordings(tmp_path, request):
         mended = g12(*words, cwd=tmp_path)
         assert mended.returncode == 0, f"{seed}: {mended.stderr}"
         assert g12("regress", "check", "-d", "kept", cwd=tmp_path).returncode == 0, seed
-        tried.one()

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from soak import SEED, Tried, often
+from soak import SEED, tries
 from support.kinematics import interrupted_by_hand, needs_kinematics
 from support.operated_machine import Machine
 from support.sim_machines import SIM
@@ -28,11 +28,10 @@ X_SPEED, C_SPEED = 150, 360
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_aborts_with_kinematics(name, request):
     program, chance = PROGRAMS[name], random.Random(SEED)
-    tried = Tried(request, "aborts with kinematics, and the program again")
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
-        for number in range(often(50)):
+        for number in tries(request, "aborts with kinematics, and the program again", 50):
             seed = f"abort {number} of seed {SEED}"
             machine.open_text(program)
             machine.sample()
@@ -49,18 +48,15 @@ def test_aborts_with_kinematics(name, request):
             assert again.error is None, seed
             keeps_its_limits(again.samples, seed)
             assert again.modes == whole.modes, seed
-            tried.one()
 
 
 def test_aborts_and_errors_in_mdi(request):
-    tried = Tried(request, "aborts and errors of G12.1 in MDI, and the line after")
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
-        for number in range(often(100)):
+        for number in tries(request, "aborts and errors of G12.1 in MDI, and the line after", 100):
             try:
                 interrupted_by_hand(machine, random.Random(f"{SEED} {number}"))
             except AssertionError as error:
                 raise AssertionError(f"number {number} of seed {SEED}") from error
-            tried.one()
 
 
 def interrupt(machine, chance):

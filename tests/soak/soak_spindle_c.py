@@ -5,15 +5,13 @@ import random
 
 import pytest
 
-from soak import SEED, Tried, often
+from soak import SEED, tries
 from support.spindle_lathe import INTERRUPTS, SPINDLE_LATHE, SpindleLathe, interrupted
 
 
 @pytest.mark.parametrize("interrupt", INTERRUPTS)
 def test_interrupts(interrupt, request):
-    tried = Tried(request, f"spindle and C, {interrupt}, and the next program")
     chance = random.Random(f"{interrupt} {SEED}")
     with SpindleLathe(SPINDLE_LATHE) as lathe:
-        for _ in range(often(100)):
+        for _ in tries(request, f"spindle and C, {interrupt}, and the next program", 100):
             interrupted(lathe, interrupt, chance)
-            tried.one()
