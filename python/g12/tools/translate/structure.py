@@ -121,16 +121,17 @@ def _carried_on(starts: Mapping[int, int], count: int, value: int) -> list[int]:
 def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int, int]]:
     """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
     returns = _codes_meaning(control, "return")
-    calls = _codes_meaning(control, *CALLS, LOCAL_SUBPROGRAM)
     targets = _numbers_of_returns(structure, returns)
     for index, block in enumerate(structure.blocks):
         if block.kind == "goto":
             yield index, int(block.label)
         elif structure.programs[index] == MAIN and block.has_code(returns):
             yield from ((index, number) for number in block.numbers("P"))
-        elif block.has_code(calls):
-            called = structure.called_as.get(index) or _called_by(block, control, structure.entries)
-            yield from ((index, number) for number in targets.get(called, ()))
+        else:
+            called = _called_in(block, control, structure.entries)[:1]
+            if index in structure.called_as:
+                called = [structure.called_as[index]]
+            yield from ((index, number) for one in called for number in targets.get(one, ()))
 
 
 def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
@@ -166,12 +167,15 @@ def _numbers_of_returns(structure: Structure, returns: frozenset[str]) -> dict[i
     return targets
 
 
-def _called_by(block: ForeignBlock, control: Control, numbers: Collection[int]) -> int:
-    """Return the program that a block calls, as far as its number is plain."""
-    own = block.numbers("P")
-    if own and not block.has_code(_codes_meaning(control, LOCAL_SUBPROGRAM)):
-        return called_program(min(own), control, numbers)[0]
-    return LOCAL_BLOCKS + min(own or block.numbers("Q"), default=0)
+def _called_in(block: ForeignBlock, control: Control, numbers: Collection[int]) -> list[int]:
+    """Return the numbers of the programs that a block calls, in the order of their words."""
+    meanings = {control.meanings.get(word.code) for word in block.words}
+    if LOCAL_SUBPROGRAM in meanings:
+        return [LOCAL_BLOCKS + number for number in block.numbers("P")]
+    if meanings.isdisjoint(CALLS):
+        return []
+    programs = [called_program(n, control, numbers)[0] for n in block.numbers("P")]
+    return programs or [LOCAL_BLOCKS + number for number in block.numbers("Q")]
 
 
 def _codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
@@ -216,15 +220,13 @@ def _called_and_ended(
     blocks: Sequence[ForeignBlock], heads: dict[int, int], control: Control
 ) -> tuple[set[int], set[int]]:
     """Return the numbers that are called, and the first blocks of programs with M30 or M2."""
-    codes, numbers = _codes_meaning(control, *CALLS), set(heads.values())
+    numbers = set(heads.values())
     called: set[int] = set()
     ended: set[int] = set()
     for head, block in zip(_carried_on({at: at for at in heads}, len(blocks), -1), blocks):
-        own = {word.code for word in block.words}
-        if own & ENDS:
+        if block.has_code(ENDS):
             ended.add(head)
-        if own & codes:
-            called |= {called_program(n, control, numbers)[0] for n in block.numbers("P")}
+        called.update(_called_in(block, control, numbers))
     return called, ended
 
 
