@@ -47,7 +47,6 @@ OTHERS_NAMED = 4
 
 @one_line("translate")
 def main(arguments: list[str]) -> int:
-    """Run the command."""
     options = parsed(arguments)
     try:
         if options.list:
@@ -62,7 +61,6 @@ def main(arguments: list[str]) -> int:
 
 
 def command_parser() -> Parser:
-    """Return the command's parser."""
     parser = Parser(prog="g12 translate", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("program", type=Path, nargs="?", help="program of the other control")
     parser.add_argument("--control", help="name, or a .toml file of your own")
@@ -84,7 +82,6 @@ def command_parser() -> Parser:
 
 
 def parsed(arguments: list[str]) -> argparse.Namespace:
-    """Return the command's arguments."""
     parser = command_parser()
     options = parser.parse_args(arguments)
     if not options.list and not (options.control and options.program):
@@ -158,7 +155,6 @@ def refusal_sentence(refused: list[RefusedBlock]) -> str:
 
 
 def lines_text(lines: list[str]) -> str:
-    """Return line numbers as text."""
     named = ", ".join(lines[:OTHERS_NAMED]) + (" …" if lines[OTHERS_NAMED:] else "")
     return f"line{'s' if len(lines) > 1 else ''} {named}"
 

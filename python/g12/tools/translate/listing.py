@@ -20,7 +20,6 @@ WIDTH = 96
 
 
 def listing_of(control: Control) -> str:
-    """Return a control's codes, settings, sources and readings as text."""
     return "\n".join([*_head(control), *_codes(control.meanings), *_tables(control), ""])
 
 

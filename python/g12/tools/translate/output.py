@@ -113,7 +113,6 @@ def _unreached(block: ForeignBlock) -> list[str] | None:
 
 
 def _with_start_codes(start: str, lines: list[str]) -> list[str]:
-    """Add the codes that hold at the start to the first line."""
     first = lines[0] if lines else ""
     number = NUMBER_PREFIX.match(first)
     if number:

@@ -98,7 +98,6 @@ def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
 
 
 def find_ends(structure: Structure, control: Control) -> None:
-    """Note where loops and programs end, and where jumps lead."""
     _pair_loops(structure)
     structure.programs = _carried_on(structure.starts, len(structure.blocks), MAIN)
     returns = _codes_meaning(control, "return")
@@ -248,7 +247,6 @@ def _add_local_programs(structure: Structure, heads: dict[int, int], control: Co
 
 
 def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
-    """Return the index after the closing ``%``."""
     start = _opening_of_tape(blocks)
     started = start > 0
     for index, block in enumerate(blocks[start:], start):

@@ -76,7 +76,6 @@ def _reads_never_set(
 
 
 def _given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
-    """Return the variables that surely have a value before each block of a macro."""
     calls = [followed.drafts[index].call for index in followed.callers[number]]
     macro_calls = [dict(call.arguments) for call in calls if call.kind == "macro"]
     given = frozenset(macro_calls[0]).intersection(*macro_calls)

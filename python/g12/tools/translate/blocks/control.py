@@ -20,7 +20,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import inf
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.expressions import CLOCK, OWN
 
@@ -49,12 +49,27 @@ PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `on_
 OWN_CODES = re.compile(r"[GMS][0-9.]+(?: (?:[GMSP][0-9.]+|\$(?:[0-9]+|live|all)|S=P))*")
 CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
+
+
+class TextRule(NamedTuple):
+    """What a text, or each of a list, must be: a pattern, and the end of the sentence if not.
+
+    ``keys`` is the pattern of the keys in a table whose keys a control chooses.
+    """
+
+    pattern: str
+    rule: str
+    keys: str = ""
+
+
 TOP = {
-    "title": str, "based_on": str, "machine": ("mill", "lathe"), "axes": str, "start": str,
+    "title": str, "based_on": str, "machine": ("mill", "lathe"),
+    "axes": TextRule(r"(?!.*(.).*\1)[XYZABC]+", "must be letters of X Y Z A B C, each once"),
+    "start": TextRule(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
     "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
     "at_zero": str, "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
-TABLES: dict[str, dict[str, object]] = {
+TABLES: dict[str, Any] = {
     "increments": {
         "angle": float,
         **{f"{kind}_{unit}": float for kind in ("length", "feed", "feed_rev")
@@ -65,7 +80,8 @@ TABLES: dict[str, dict[str, object]] = {
         "cycle": ("seconds", "milliseconds", "refuse"),
     },
     "tools": {
-        "patterns": list, "size": ("diameter", "radius"), "pocket": ("last", "own"),
+        "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO"),
+        "size": ("diameter", "radius"), "pocket": ("last", "own"),
     },
     "reference": {"cancels_length": bool},
     "polar": {
@@ -76,7 +92,11 @@ TABLES: dict[str, dict[str, object]] = {
     "cylinder": {"word": ("radius", "diameter", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
-    "variables": None,
+    "variables": TextRule(
+        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own",
+        "must be a number, and a parameter of LinuxCNC (#500), a value, clock, or own: refused",
+        "[0-9]{1,6}(-[0-9]{1,6})?",
+    ),
     "turning": {
         "thread_chamfer": float,
         **{f"{name}_{unit}": float for unit in ("mm", "inch")
@@ -86,8 +106,8 @@ TABLES: dict[str, dict[str, object]] = {
         "r": ("from start", "level", "none"), "q": ("increments", "lengths"),
         "peck_word": ("Q", "D"), "out": ("full", "chip"), "clamp": str, "spindle": int,
     },
-    "words": None,
-    "spindles": None,
+    "words": TextRule("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
+    "spindles": TextRule("main|live", "must be a P word, and main or live", "P[0-9]+"),
     "mill": {
         "onto": ("face", "round"), "safe_mm": float, "safe_inch": float, "safe": float,
         "diameter": float,
@@ -98,21 +118,11 @@ TABLES: dict[str, dict[str, object]] = {
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
-OPEN_TABLES = {  # keys and values of tables whose keys a control chooses, and their rule
-    "words": ("[A-Z]{2}", "[A-Z]", ": a word of two letters, and one of one"),
-    "variables": (
-        "[0-9]{1,6}(-[0-9]{1,6})?",
-        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own",
-        " must be a number, and a parameter of LinuxCNC (#500), a value, clock, or own: refused",
-    ),
-    "spindles": ("P[0-9]+", "main|live", " must be a P word, and main or live"),
-}
 TYPE_NAMES = {
     str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts",
     float: "a number above 0",
 }  # fmt: skip
 COMMENT = re.compile(r"comment( [A-Z])*")
-PATTERN = re.compile(r"R*T+O*")
 
 
 class ControlError(ValueError):
@@ -252,7 +262,6 @@ class _Checked:
                 self._value(key, value, TOP[key])
             else:
                 self._refuse(key, f"{key} is no key of a control")
-        self._axes(data)
         for letter in "gm":
             name = f"{letter}_codes"
             if name in data:
@@ -264,24 +273,23 @@ class _Checked:
         if not isinstance(table, dict):
             self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if kinds is None and not isinstance(value, (str, list, dict)):
-                self._refuse(key, f"{key} in [{name}] must be a text")
-            elif kinds is None:
-                continue
-            elif key not in kinds:
+            if isinstance(kinds, TextRule):
+                if not re.fullmatch(kinds.keys, key):
+                    self._refuse(key, f'{key} = "{value}" {kinds.rule}')
+                self._value(key, value, kinds)
+            elif kinds and key not in kinds:
                 self._refuse(key, f"{key} is no key of [{name}]: {', '.join(kinds)}")
-            else:
+            elif kinds:
                 self._value(key, value, kinds[key])
-        for pattern in table.get("patterns", ()) if name == "tools" else ():
-            if not isinstance(pattern, str) or not PATTERN.fullmatch(pattern):
-                self._refuse("patterns", f"{pattern} is no pattern such as TTOO or RRTTOO")
-        if name in OPEN_TABLES:
-            keys, values, rule = OPEN_TABLES[name]
-            for key, value in table.items():
-                if not re.fullmatch(keys, key) or not re.fullmatch(values, str(value)):
-                    self._refuse(key, f'{key} = "{value}"{rule}')
+            elif not isinstance(value, (str, list, dict)):
+                self._refuse(key, f"{key} in [{name}] must be a text")
 
     def _value(self, key: str, value: Any, kind: Any) -> None:
+        if isinstance(kind, TextRule):
+            for text in value if isinstance(value, list) else [value]:
+                if not isinstance(text, str) or not re.fullmatch(kind.pattern, text):
+                    self._refuse(key, f'{key} = "{text}" {kind.rule}')
+            return
         if isinstance(kind, tuple):
             if value not in kind:
                 self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
@@ -293,14 +301,6 @@ class _Checked:
             is_good = type(value) is kind and all(isinstance(text, str) for text in texts)
         if not is_good:
             self._refuse(key, f"{key} must be {TYPE_NAMES[kind]}")
-
-    def _axes(self, data: dict) -> None:
-        axes = data.get("axes", "X")
-        if not re.fullmatch("[XYZABC]+", axes) or len(set(axes)) < len(axes):
-            self._refuse("axes", f'axes = "{axes}" must be letters of X Y Z A B C, each once')
-        for code in data.get("start", "").split():
-            if not CODE.fullmatch(code):
-                self._refuse("start", f"{code} in start is no code such as G17")
 
     def _codes(self, letter: str, table: dict) -> dict[str, str]:
         """Return the meaning of every code; a code that is named twice is refused."""

@@ -55,7 +55,6 @@ def value_from(text: str, start: int) -> Expression:
 
 
 def bracketed_from(text: str, start: int) -> Expression:
-    """Return the brackets that open at ``start``."""
     if text[start : start + 1] != "[":
         raise NotTranslated(f"[ is missing before {excerpt(text[start:]) or 'the end'}")
     return _brackets(text, start, 0)
@@ -171,7 +170,6 @@ def _function(name: str, text: str, at: int, depth: int) -> Expression:
 
 
 def _empty_question(variable: Expression, question: re.Match[str]) -> Expression:
-    """Return the question whether a local variable is empty."""
     own, is_equal = variable.read, question[1] == "EQ"
     return Expression(
         f"{variable.text} {question[1]} {EMPTY}",

@@ -140,7 +140,6 @@ class ForeignBlock(NamedTuple):
         return any(word.code in codes for word in self.words)
 
     def numbers(self, letter: str) -> set[int]:
-        """Return the whole numbers after a letter."""
         return {int(w.value) for w in self.words if w.letter == letter and w.value.isdigit()}
 
 

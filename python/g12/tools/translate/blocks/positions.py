@@ -66,7 +66,6 @@ def _is_drilling(draft: Draft) -> bool:
 
 
 def _follow_drilling(draft: Draft) -> None:
-    """Follow X and Y to the hole of a block that drills."""
     again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
     words = [w for w in draft.axis_words() if w.letter in "XY"]
     moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}

@@ -53,7 +53,6 @@ def waiting_point(draft: Draft) -> dict[str, str]:
 
 
 def point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:
-    """Return where the program is along X or Y; ``why`` is said if that is not known."""
     waiting = waiting_point(draft).get(axis)
     position = known_position(state, axis)
     if waiting is None and position is None:
@@ -62,7 +61,6 @@ def point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:
 
 
 def start_height(draft: Draft) -> float | None:
-    """Return where Z is before the block, None if that is not known."""
     return known_position(draft.start, "Z")
 
 

@@ -71,7 +71,6 @@ def is_own(draft: Draft, word: ForeignWord) -> bool:
 
 
 def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
-    """Return the words in place of one code."""
     if word.kind != "number":
         raise NotTranslated(f"{word.letter}{word.value}: a code must be a number")
     code, control = word.code, draft.control

@@ -52,7 +52,6 @@ def _quantity_of(draft: Draft, word: ForeignWord) -> str:
 
 
 def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
-    """Return a word with its number in millimetres, inches or degrees."""
     if float(word.value) == 0:
         return word
     least, rule = least_increment(draft, kind), draft.control.decimals
@@ -94,7 +93,6 @@ def _both_increments(draft: Draft, kind: str) -> set[float]:
 
 
 def dwell(draft: Draft, code: ForeignWord) -> None:
-    """Write a dwell as ``G4 P`` with seconds."""
     seconds = draft.control.value("dwell", "seconds")
     milliseconds = draft.control.value("dwell", "milliseconds")
     times = [word for letter in seconds + milliseconds if (word := draft.take(letter))]
@@ -107,7 +105,6 @@ def dwell(draft: Draft, code: ForeignWord) -> None:
 
 
 def time_in_seconds(draft: Draft, word: ForeignWord, thousandths: bool) -> ForeignWord:
-    """Return the P word of a time."""
     is_number, decimals = word.kind == "number", draft.control.decimals
     if is_number and word.number < 0:
         raise NotTranslated(f"{word.text}: a time below 0")

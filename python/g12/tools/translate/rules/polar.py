@@ -104,7 +104,6 @@ def own_block(draft: Draft, code: str, lines: list[str]) -> None:
 
 
 def inside_polar(draft: Draft) -> None:
-    """Rewrite the words between polar (or cylinder) on and off."""
     if draft.letters() & set("XYCUVH"):
         draft.sure("polar", "polar mode or a cylinder is on")
     if draft.state.polar == "off":

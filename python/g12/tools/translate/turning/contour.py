@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
 
+ARCS = ("G2", "G3")
 SAME = 1e-7  # points and lengths that are nearer are the same
 ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
 
@@ -29,6 +30,11 @@ class ContourBlock(NamedTuple):
     relative: bool = False
     others: tuple[str, ...] = ()
 
+    @property
+    def angle(self) -> float | None:
+        """The direction of a line from the Z axis, in degrees."""
+        return self.values.get(",A", self.values.get("A"))
+
 
 class ContourMove(NamedTuple):
     """A line, or an arc about ``centre``, counter-clockwise if ``sense`` is 1, else -1."""
@@ -41,44 +47,35 @@ class ContourMove(NamedTuple):
 
     @property
     def motion(self) -> str:
-        """The code that makes it."""
         return self.block.motion if self.centre is None else ("G3" if self.sense > 0 else "G2")
 
 
 def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
-    """Return the segments of a contour's blocks from where the tool is."""
     at, sides = start, []
     for block, end in zip(blocks, ends_of(blocks, start)):
-        if end != at or _is_circle(block):
+        if end != at or (block.motion in ARCS and block.values.keys() & {"I", "K"}):
             sides.append(_segment(block, at, end))
         at = end
     segments: list[ContourMove] = []
-    for number, side in enumerate(sides):
-        following = sides[number + 1] if number + 1 < len(sides) else None
+    for side, following in zip(sides, [*sides[1:], None]):
         begin = segments[-1].end if segments else side.start
         segments += _with_corner(side._replace(start=begin), following)
     return segments
 
 
-def _is_circle(block: ContourBlock) -> bool:
-    return block.motion in ("G2", "G3") and bool({"I", "K"} & block.values.keys())
-
-
 def ends_of(blocks: Sequence[ContourBlock], start: complex) -> list[complex]:
     """Return where each block ends, corners being sharp."""
     ends = [start]
-    for number, block in enumerate(blocks):
-        following = blocks[number + 1] if number + 1 < len(blocks) else None
+    for block, following in zip(blocks, [*blocks[1:], None]):
         ends.append(_end_of(block, following, ends[-1]))
     return ends[1:]
 
 
 def _end_of(block: ContourBlock, following: ContourBlock | None, at: complex) -> complex:
     """Return where a block ends: its words, or its angle from the Z axis."""
-    values = block.values
     z = _coordinate(block, at.real, "Z", "W", 1.0)
     x = _coordinate(block, at.imag, "X", "U", 0.5)
-    angle = values.get(",A", values.get("A"))
+    angle = block.angle
     if angle is None or (x is not None and z is not None):
         return complex(at.real if z is None else z, at.imag if x is None else x)
     if x is None and z is None:
@@ -94,7 +91,6 @@ def _end_of(block: ContourBlock, following: ContourBlock | None, at: complex) ->
 def _coordinate(
     block: ContourBlock, at: float, absolute: str, increment: str, scale: float
 ) -> float | None:
-    """Return one coordinate of a block's end, None if it has no word for it."""
     if increment in block.values:
         return at + block.values[increment] * scale
     if absolute not in block.values:
@@ -107,7 +103,7 @@ def _meeting(
 ) -> complex:
     """Return where a line of an angle meets the next one, which has its own and its end."""
     values = following.values if following else {}
-    other = values.get(",A", values.get("A"))
+    other = following.angle if following else None
     if other is None or not {"X", "Z"} <= values.keys() or following.relative:
         raise NotTranslated(
             f"line {block.line}: an angle alone needs X, Z and an angle in the next block"
@@ -121,7 +117,7 @@ def _meeting(
 
 
 def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
-    if block.motion not in ("G2", "G3"):
+    if block.motion not in ARCS:
         return ContourMove(start, end, block)
     sense = 1 if block.motion == "G3" else -1
     values = block.values

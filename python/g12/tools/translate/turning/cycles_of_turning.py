@@ -298,7 +298,6 @@ def _lead_of(draft: Draft) -> float:
 
 
 def _chamfer_of(draft: Draft) -> float:
-    """Return the length of the chamfer at the end of a thread."""
     if not draft.sure("chamfers", "a thread may end with a chamfer"):
         return 0.0
     return float(draft.control.value("turning", "thread_chamfer", 0.0)) * _lead_of(draft)

@@ -20,7 +20,6 @@ INSTEAD = "write G0 with X, Z and C as numbers in a block before it"
 
 
 def feed_of_c(draft: Draft) -> None:
-    """Write a block in which C turns beside a slide."""
     rule, state = draft.control.feed_of_c, draft.state
     axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
     if "C" not in axes or not axes & set(SLIDES) or not _is_feed(draft) or rule == "mm":

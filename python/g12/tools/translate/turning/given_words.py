@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
+from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import MOVES, ModalState
 from g12.tools.translate.blocks.positions import known_position
 from g12.tools.translate.rules import codes, decimals, modes
@@ -13,6 +13,7 @@ from g12.tools.translate.turning.contour import ContourBlock, ContourMove, conto
 
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
 BESIDE_CYCLE = frozenset("FSM")  # what a finishing cut does with its moves
+KEPT_MODES = frozenset(("G40", "G41", "G42", "G94", "G95", "G96", "G97"))  # by a finishing cut
 IN_CONTOURS = MOVES | {"G90", "G91"}
 WORD_RULES_OF_CYCLES = (
     codes.keep_as_comments,
@@ -64,10 +65,11 @@ def stored_setting(draft: Draft, name: str) -> float:
     }
     if not any(values.values()):
         return 0.0
-    units = draft.sure("units", f"the control's {name.replace('_', ' ')} is a length")
+    length = name.replace("_", " ")
+    units = draft.sure("units", f"the control's {length} is a length")
     if units not in values:
         raise NotTranslated(
-            f"the control's setting for the {name.replace('_', ' ')} depends on G20 or G21, and "
+            f"the control's setting for the {length} depends on G20 or G21, and "
             "neither is programmed before it (--units)"
         )
     return values[units]
@@ -104,11 +106,11 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
     A contour that is after the cycle is not executed again; one before it is read back.
     """
     numbered = [(index, block.number) for index, block in draft.program if block.words]
-    later = [index for index, number in numbered if number == first and index > draft.index]
-    before = [index for index, number in numbered if number == first and index < draft.index]
-    recalled = "finishing" in draft.meanings and before
-    begin = before[-1] if recalled else next(iter(later), None)
-    end = next((i for i, number in numbered if number == last and i >= (begin or 0)), None)
+    starts = [index for index, number in numbered if number == first]
+    before = [index for index in starts if index < draft.index]
+    recalled = "finishing" in draft.meanings and bool(before)
+    begin = before[-1] if recalled else next((at for at in starts if at > draft.index), None)
+    end = next((at for at, number in numbered if number == last and at >= (begin or 0)), None)
     if begin is None or end is None:
         number = first if begin is None else last
         raise NotTranslated(f"N{number} is not in this program after the cycle")
@@ -167,18 +169,12 @@ def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
             if word.kind != "number" or word.letter in values:
                 raise NotTranslated(f"{word.text}: a contour is translated from numbers, each once")
             values[word.letter] = word.number
-        elif word.letter in BESIDE_CYCLE or _is_mode(word):
+        elif word.letter in BESIDE_CYCLE or word.code in KEPT_MODES:
             others.append(word.text)
-        elif word.letter not in "NG" or (word.letter == "G" and word.code not in IN_CONTOURS):
+        elif word.letter != "N" and word.code not in IN_CONTOURS:
             raise NotTranslated(f"{word.text} cannot be in a contour")
     own = next((code for code in reader.codes() if code in MOVES), motion)
     if own not in MOVES:
         raise NotTranslated("G0 or G1 is missing")
     relative = reader.sure("distance", "X and Z are positions or increments") == "G91"
     return ContourBlock(own, values, reader.block.line, relative, tuple(others))
-
-
-def _is_mode(word: ForeignWord) -> bool:
-    """Whether a finishing cut takes the mode over."""
-    modes_kept = ("G40", "G41", "G42", "G94", "G95", "G96", "G97")
-    return word.letter == "G" and word.code in modes_kept

@@ -48,7 +48,6 @@ class CutView(NamedTuple):
         return complex(self.along * turned.real, self.depth * turned.imag)
 
     def segment(self, segment: ContourMove) -> ContourMove:
-        """Return a segment in these coordinates."""
         start, end = self.local(segment.start), self.local(segment.end)
         if segment.centre is None:
             return segment._replace(start=start, end=end)
@@ -61,7 +60,6 @@ class CutView(NamedTuple):
         )
 
     def real(self, move: CycleMove) -> CycleMove:
-        """Return a move as the program has it."""
         point = complex(self.along * move.end.real, self.depth * move.end.imag)
         return move._replace(end=complex(point.imag, point.real) if self.along_x else point)
 
