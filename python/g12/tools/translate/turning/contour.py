@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
 
-ARCS = ("G2", "G3")
+ARC_CODES = ("G2", "G3")
 SAME = 1e-7  # points and lengths that are nearer are the same
 ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
 
@@ -53,7 +53,7 @@ class ContourMove(NamedTuple):
 def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
     at, sides = start, []
     for block, end in zip(blocks, ends_of(blocks, start)):
-        if end != at or (block.motion in ARCS and block.values.keys() & {"I", "K"}):
+        if end != at or (block.motion in ARC_CODES and block.values.keys() & {"I", "K"}):
             sides.append(_segment(block, at, end))
         at = end
     segments: list[ContourMove] = []
@@ -117,7 +117,7 @@ def _meeting(
 
 
 def _segment(block: ContourBlock, start: complex, end: complex) -> ContourMove:
-    if block.motion not in ARCS:
+    if block.motion not in ARC_CODES:
         return ContourMove(start, end, block)
     sense = 1 if block.motion == "G3" else -1
     values = block.values
