@@ -63,7 +63,6 @@ class Hand:
         nothing = {"state": {}, "globals": {}}
         return Trace(
             moves=self.moves,
-            messages=[],
             events=[],
             error=None,
             modes=METRIC,

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from g12.machine_ini import AXIS_LETTERS
 
+MESSAGE = "message "  # begins the text of an event
 G92_OFF_CODE = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
 IS_LENGTH = tuple(
     letter in "XYZUVW" for letter in AXIS_LETTERS
@@ -190,7 +191,6 @@ class Trace:
     """
 
     moves: list[Move]
-    messages: list[Message]
     events: list[Event]
     error: Error | None
     modes: Modes
@@ -201,6 +201,11 @@ class Trace:
     files: tuple[str, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
     lengths: Mapping[int, float] = field(default_factory=dict)
+
+    @property
+    def messages(self) -> list[Message]:
+        found = (each for each in self.events if each.text.startswith(MESSAGE))
+        return [Message(each.line, each.text.removeprefix(MESSAGE)) for each in found]
 
 
 def modes(gcodes: Iterable[int], mcodes: Iterable[int], settings: Sequence[float]) -> Modes:

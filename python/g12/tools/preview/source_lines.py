@@ -15,7 +15,6 @@ def trace_in_source(found: Trace, opened: OpenedProgram) -> Trace:
     return replace(
         found,
         moves=[move._replace(block=line(move.block)) for move in found.moves],
-        messages=[message._replace(line=line(message.line)) for message in found.messages],
         events=[event._replace(line=line(event.line)) for event in found.events],
         error=error and error._replace(text=opened.in_source(error.text), line=line(error.line)),
     )

@@ -25,7 +25,7 @@ from typing import Self
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
-from g12.tools.preview.moves import Error, Event, Message, Move, Trace, modes
+from g12.tools.preview.moves import Error, Event, Move, Trace, modes
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -251,7 +251,6 @@ def _trace(answer: dict, mm: float) -> Trace:
     diameters, lengths = sizes_in_mm(answer["tool_sizes"], mm)
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
-        messages=[Message._make(message) for message in answer["messages"]],
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),

@@ -183,7 +183,6 @@ class Canon:
         self.started = False
         self.refused: tuple[str, int] | None = None  # what cannot be traced, and the line
         self.moves: list[tuple] = []
-        self.messages: list[tuple] = []
         self.events: list[tuple] = []
         self.files: set[str] = set()
         self.in_force: tuple = ()
@@ -257,13 +256,11 @@ class Canon:
         if text == START:
             self.started = True
             self.moves.clear()
-            self.messages.clear()
             self.events.clear()
 
     def message(self, text: str) -> None:
         if self.watch_offsets:
             self._note_offsets()
-        self.messages.append((self.lines.now(), text))
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
@@ -540,7 +537,6 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
     error = interpreted(canon, request["program"], setup)
     return {
         "moves": canon.moves,
-        "messages": canon.messages,
         "events": canon.events,
         "error": error,
         "files": sorted(canon.files),
