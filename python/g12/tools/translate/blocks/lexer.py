@@ -35,7 +35,7 @@ CORNERS = (",A", ",C", ",R")  # words of direct drawing
 LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
-BLOCK_NUMBER = re.compile("N[0-9]+")
+LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
 NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, in a call
@@ -260,7 +260,7 @@ def _refuse_other_texts(text: str) -> None:
 
 
 def _statement(line: int, text: str) -> list[ForeignBlock]:
-    number = BLOCK_NUMBER.match(text)
+    number = LEADING_N.match(text)
     words = (ForeignWord("N", number[0][1:]),) if number else ()
     rest = text[number.end() :] if number else text
     if number and rest.startswith("/"):
