@@ -7,13 +7,13 @@ Modes, units and refusals are in test_cycles.py.
 import pytest
 
 from support import cut_geometry
+from support.mode_matrix import INCH, OUT
+from support.mode_matrix import event_call as call
 from support.sim_machines import kept_tracer
 
-INCH = 25.4
 TOOLS = {1: 0.5, 2: 0.0, 3: 12.0 / INCH}
 FIRST = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94"
 BEFORE = [FIRST, "F20", "T1 M6", "G0 X-1 Y-1 Z1"]
-OUT = -9999
 
 
 inch = kept_tracer("mill_inch", tools=TOOLS)
@@ -25,29 +25,6 @@ def cut(tracer, *blocks, **options):
     traced = tracer.trace_text([*BEFORE, *blocks], **options)
     assert traced.error is None, traced.error
     return traced
-
-
-def event_of(traced):
-    """Return the moves after the approach of BEFORE, in inches."""
-    return cut_geometry.moving(traced.moves)[1:]
-
-
-def described(moves):
-    """Return kind, end and, for arcs, turns of each move in inches."""
-    return [
-        (
-            move.kind,
-            *(round(value / INCH, 6) + 0.0 for value in move.end[:3]),
-            *((move.turns,) if move.kind == "arc" else ()),
-        )
-        for move in moves
-    ]
-
-
-def call(**entries):
-    """Return the call with these entries, the others left out."""
-    values = " ".join(f"[{entries.get(letter, OUT)}]" for letter in "gxyzwordckjlpfv")
-    return f"o<circle_mill> call {values}"
 
 
 # ---------------------------------------------------------------- both front ends
@@ -115,11 +92,10 @@ def test_w_follows_the_units(inch, metric):
 
 def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
     traced = cut(inch, "G0 Z0", "G13.2 X1 Y2 Z-.5 I.1 R1.5 H2")
-    assert described(event_of(traced)[1:4]) == [
-        ("rapid", -1, -1, 0.1),
-        ("rapid", 1, 2, 0.1),
-        ("feed", 1, 2, -0.5),
-    ]
+    moves = cut_geometry.moving(traced.moves)[2:5]
+    assert [move.kind for move in moves] == ["rapid", "rapid", "feed"]
+    ends = [[value / INCH for value in move.end[:3]] for move in moves]
+    assert ends == [pytest.approx(end) for end in ((-1, -1, 0.1), (1, 2, 0.1), (1, 2, -0.5))]
 
 
 # ---------------------------------------------------------------- refusals

@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 
 from g12.tools.preview.tracer import Tracer
 from support import mode_matrix
+from support.mode_matrix import event_call as call
 from support.sim_machines import ROOT, SIM
 
 INCH = mode_matrix.INCH
 FIRST = "G21 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F300"
 IN_INCHES = "G20 G17 G40 G49 G54 G64 G80 G90 G91.1 G94 F10"
 EVENT_FIRST = [IN_INCHES, "F20", "T1 M6", "G0 X-1 Y-1 Z1"]
-OUT = -9999
 
 HAAS_TOOLS = {1: 0.25, 2: 0.5, 3: -0.25, 4: 0.0}
 EVENT_TOOLS = {1: 0.5, 2: 0.0, 3: 12.0 / INCH}
@@ -61,12 +61,6 @@ def mill():
             )
 
         yield machine
-
-
-def call(**entries):
-    """Return the call of an event with these entries, the others left out."""
-    values = " ".join(f"[{entries.get(letter, OUT)}]" for letter in "gxyzwordckjlpfv")
-    return f"o<circle_mill> call {values}"
 
 
 # ---------------------------------------------------------------- modes, units, work offsets

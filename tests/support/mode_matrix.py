@@ -17,6 +17,7 @@ from support import cut_geometry
 from support.refusals import at_line
 
 INCH = 25.4
+OUT = -9999  # an entry that is left out
 PAIRS = [("G20", "G21"), ("G90", "G91"), ("G90.1", "G91.1"), ("G94", "G95"), ("G8", "G7")]
 PATHS = ("G61", "G64", "G64 P0.01")
 # Any four of the five pairs meet in every way: the sum of the places is even.
@@ -56,6 +57,12 @@ class Case(NamedTuple):
 def words(scale, **values):
     """Return scaled words: ``words(25.4, X=1.0)`` is ``X25.4``."""
     return " ".join(f"{letter}{value * scale:.10f}" for letter, value in values.items())
+
+
+def event_call(**entries):
+    """Return the call of an event of the circle mill with these entries, the others left out."""
+    values = " ".join(f"[{entries.get(letter, OUT)}]" for letter in "gxyzwordckjlpfv")
+    return f"o<circle_mill> call {values}"
 
 
 def diameters(block):
