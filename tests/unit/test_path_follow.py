@@ -9,7 +9,6 @@ import pytest
 from g12.tools.path.follow import follow, windows_of, worst_of
 from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Part
-from g12.tools.path.samples import Samples
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import duration, track
 from support.made_moves import HOME, LIMITS, Hand, samples_of
@@ -86,15 +85,15 @@ def test_a_path_that_retraces_itself_is_followed_back():
 
 def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     hand = Hand().line(x=40).next_block().line(x=0, y=4)
-    path = track(MILL, hand.moves, LIMITS)
-    way = np.array([[0, 0], [30, 0], [30, 1], [0, 4.0]])  # cuts off the last 10 mm
     places = np.linspace(0, 3, 3001)
-    x, y = (np.interp(places, range(4), axis) for axis in way.T)
-    ones = np.ones(len(x))
     lines = np.where(places < 1.5, 1, 2)
-    axes = {"X": x, "Y": y, "Z": 0 * x}
-    samples = Samples(places, axes, ones, ones, lines, 2 * ones.astype(int), 0)
-    real = follow(path, samples, 1.0)
+
+    def without_the_last_10_mm(samples):
+        samples.axes["X"] = np.interp(places, range(4), [0, 30, 30, 0])
+        samples.axes["Y"] = np.interp(places, range(4), [0, 0, 1, 4])
+        samples.line[:] = lines
+
+    real = run_of(hand, change=without_the_last_10_mm, count=3001)
     assert real.deviation.max() == pytest.approx(0.5, abs=0.01)  # between the legs
     assert (real.move == lines - 1).all()
     assert real.deviation[places > 2].max() < 1e-6
@@ -136,17 +135,13 @@ def test_the_largest_deviation_is_looked_for_in_cuts_only():
 
 
 def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
-    moves = Hand(feed=600).line(x=100).moves
-    path = track(MILL, moves, LIMITS)
-    times = np.linspace(0, 10, 10001)
-    way = np.full(len(times), 10.0)  # mm/s
-    way[:200] = np.linspace(0, 10, 200)
-    way[-200:] = np.linspace(10, 0, 200)
-    way[5000:5100] = 4.0
-    place = np.concatenate([[0.0], np.cumsum(way[:-1]) * 1e-3])
-    samples = samples_of(path, len(times))
-    samples.axes.update(X=place)
-    samples = Samples(times, *list(vars(samples).values())[1:])
+    path = track(MILL, Hand(feed=600).line(x=100).moves, LIMITS)
+    samples = samples_of(path, 10001)  # of 1 ms
+    speed = np.full(10001, 10.0)  # mm/s
+    speed[:200] = np.linspace(0, 10, 200)
+    speed[-200:] = np.linspace(10, 0, 200)
+    speed[5000:5100] = 4.0
+    samples.axes["X"] = np.concatenate([[0.0], np.cumsum(speed[:-1]) * 1e-3])
     pace = pace_of([0], [0], path, follow(path, samples, 1.0))
     assert pace.lowest == pytest.approx(240, rel=0.01)
     assert 45 < pace.point[0] < 55
