@@ -6,13 +6,12 @@ new config is loaded in the stock interpreter before any of the user's files is 
 by `check` is refused.
 """
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
-from g12.tools.errors import UsageError
+from g12.tools.errors import UsageError, print_error
 from g12.tools.install.checking import read_config_text
 from g12.tools.install.config import features
 from g12.tools.install.installation import excluding, install
@@ -83,6 +82,6 @@ def main(arguments: list[str]) -> int:
     except Refused as refused:
         for finding in refused.args:
             text = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"
-            print(f"g12 install: {text}", file=sys.stderr)
+            print_error("g12 install", text)
         return FINDING
     return GOOD

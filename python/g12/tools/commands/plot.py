@@ -46,7 +46,7 @@ examples:
 
 exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
 """
-KINDS = {"finding": "is_finding", "note": "is_note", "not judged": "is_not_judged"}
+KIND_WORDS = {"finding": "is_finding", "note": "is_note", "not judged": "is_not_judged"}
 
 
 def command_parser() -> Parser:
@@ -100,7 +100,7 @@ def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> tuple
 def judged_texts(proof: Proof, scene: Scene) -> Iterator[str]:
     """Yield what ``verify`` says, by kind; a finding that the picture marks is "in red"."""
     marked = set(map(id, scene.seen.findings))
-    for name, attribute in KINDS.items():
+    for name, attribute in KIND_WORDS.items():
         for each in (each for each in proof.judged if getattr(each, attribute)):
             kind = "in red" if id(each) in marked else name
             where = line_text(proof, each.line, each.file)
