@@ -21,8 +21,6 @@ NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments 
 def lines_of(draft: Draft) -> list[str]:
     own = draft.written()
     lines = [*filter(None, [draft.head]), *draft.before, *filter(None, [own]), *draft.after]
-    if draft.around:
-        lines = [draft.around[0], *lines, draft.around[1]]
     for text in lines:
         if size(text) > LONGEST_LINE - LONGEST_MARK:
             raise NotTranslated(f"the block has {size(text)} characters on LinuxCNC, at most 254")

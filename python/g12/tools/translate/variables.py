@@ -149,7 +149,7 @@ def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
 
 
 def _without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
-    """Return a block: a time is a comment, what hangs on one is refused."""
+    """Return a block: a time is a comment, what depends on one is refused."""
     if block.kind == "assign" and block.variable in timed:
         comments = ("a time: LinuxCNC has no clock", *block.comments)
         return block._replace(kind="words", variable=0, expression=None, comments=comments)

@@ -45,7 +45,6 @@ class Draft:
     head: str = ""  # the line that begins a program
     before: list[str] = field(default_factory=list)  # further lines
     after: list[str] = field(default_factory=list)
-    around: tuple[str, str] | None = None  # lines before and after all others
     meanings: dict[str, ForeignWord] = field(default_factory=dict)  # codes that rules still own
     call: SubprogramCall | None = None
     returns: bool = False  # a subprogram ends here, by ``return_text``

@@ -113,7 +113,8 @@ def _repeat(draft: Draft, times: str) -> None:
     """Write how often: by L, or by a loop where LinuxCNC's L would stay in one place."""
     if times and draft.is_settled:
         label = f"o<again_{draft.index}>"
-        draft.around = (f"{label} repeat [{times}]", f"{label} endrepeat")
+        draft.before.insert(0, f"{label} repeat [{times}]")
+        draft.after.append(f"{label} endrepeat")
     elif times:
         draft.words.append(word_of(f"L{times}"))
 

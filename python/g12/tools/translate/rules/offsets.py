@@ -127,15 +127,12 @@ def _work_offset(draft: Draft, incremental: bool) -> None:
     number = _take_number(draft, range(7), "G10 L2")
     words = _axis_values(draft, "G10 L2")
     first = G54_PARAMETER + 20 * (number - 1) if number else G52_PARAMETER
+    draft.after += [SET_SCALE] if incremental else []
+    texts = [word.text for word in words]
     if incremental:
-        draft.after.append(SET_SCALE)
-    values = " ".join(
-        f"{word.letter}[#{first + AXIS_NUMBERS[word.letter] - 1} / {SCALE} + {word.value}]"
-        if incremental
-        else word.text
-        for word in words
-    )
-    draft.after.append(f"G10 L2 P{number} {values}" if number else f"G52 {values}")
+        parameters = [f"#{first + AXIS_NUMBERS[word.letter] - 1}" for word in words]
+        texts = [f"{w.letter}[{p} / {SCALE} + {w.value}]" for w, p in zip(words, parameters)]
+    draft.after.append(" ".join([f"G10 L2 P{number}" if number else "G52", *texts]))
 
 
 def _numbered_offset_values(draft: Draft, incremental: bool) -> None:

@@ -43,8 +43,8 @@ def direct_drawing(draft: Draft) -> None:
     sharp = ends_of(blocks, start)[0]
     draft.has_motion = True
     own_motion = AS_PROGRAMMED if last == "G1" else last
-    places = {"at_x": 2 * sharp.imag, "at_z": sharp.real}
-    draft.change(motion="G1", own_motion=own_motion, corner=len(own) > 1, **places)
+    draft.change(motion="G1", own_motion=own_motion, corner=len(own) > 1)
+    draft.change(at_x=2 * sharp.imag, at_z=sharp.real)
 
 
 def _is_drawn(draft: Draft) -> bool:
@@ -53,8 +53,8 @@ def _is_drawn(draft: Draft) -> bool:
         return True
     free = not draft.meanings and not draft.state.turn and draft.state.polar == "off"
     line = draft.motion() == "G1" and not codes - {"G1", "G94", "G95"}
-    plain = draft.control.is_lathe and free and line
-    return plain and bool(letters & DRAWN) and bool(letters & set("XZUW"))
+    moves = not letters.isdisjoint(DRAWN) and not letters.isdisjoint("XZUW")
+    return draft.control.is_lathe and free and line and moves
 
 
 def _goes_on_from_a_corner(draft: Draft) -> bool:

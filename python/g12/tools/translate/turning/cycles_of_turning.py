@@ -47,7 +47,7 @@ from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitc
 
 SHORTEST = 1e-5  # of a thread
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
-BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may stand in a cycle's block
+BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 

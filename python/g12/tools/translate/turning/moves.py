@@ -54,22 +54,20 @@ def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
     """Yield the lines of moves, X as a diameter; those that go nowhere are left out."""
     at, code = start, ""
     for move in moves:
-        words = [f"X{value_text(2 * move.end.imag)}"] if differs(move.end.imag, at.imag) else []
-        words += [f"Z{value_text(move.end.real)}"] if differs(move.end.real, at.real) else []
+        end, moved = move.end, move.end - at
+        values = {"X": 2 * end.imag} if abs(moved.imag) > DIGITS else {}
+        values |= {"Z": end.real} if abs(moved.real) > DIGITS else {}
         if move.centre is not None:
-            words = [f"X{value_text(2 * move.end.imag)}", f"Z{value_text(move.end.real)}"]
-            words += [f"I{value_text((move.centre - at).imag)}"]
-            words += [f"K{value_text((move.centre - at).real)}"]
-        words += [f"K{value_text(move.pitch)}"] if move.pitch and words else []
+            arm = move.centre - at
+            values = {"X": 2 * end.imag, "Z": end.real, "I": arm.imag, "K": arm.real}
+        elif move.pitch and values:
+            values["K"] = move.pitch
+        words = [f"{letter}{value_text(value)}" for letter, value in values.items()]
         if not words and not move.others:
             continue
         own = [move.code] if words and (move.code != code or move.code == "G33") else []
         yield " ".join([*own, *words, *move.others])
         at, code = move.end, move.code if words else code
-
-
-def differs(one: float, other: float) -> bool:
-    return abs(one - other) > DIGITS
 
 
 def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:

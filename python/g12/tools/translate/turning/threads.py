@@ -59,19 +59,15 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
         raise NotTranslated("the thread has no length in Z")
     pitch = pitch_along(path, thread.lead)
     chamfer = min(thread.chamfer, abs(path.real))
-    moves = [rapid_to(begin)]
     turning = end - path / abs(path.real) * chamfer
-    moves.append(CycleMove("G33", turning, None, pitch))
+    moves = [rapid_to(begin), CycleMove("G33", turning, None, pitch)]
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
         moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
     last = moves[-1].end
     clear = side * max(side * start.imag, side * last.imag)
-    return [
-        *moves,
-        *(rapid_to(complex(z, clear)) for z in (last.real, start.real)),
-        rapid_to(start),
-    ]
+    back = (complex(last.real, clear), complex(start.real, clear), start)
+    return [*moves, *map(rapid_to, back)]
 
 
 def pitch_along(path: complex, lead: float) -> float:
