@@ -3,6 +3,7 @@
 
 import json
 import re
+from functools import partial
 
 import pytest
 
@@ -10,91 +11,111 @@ from g12.tools.commands.main import main
 from g12.tools.verify.compare import section
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
-MILL = str(SIM / "mill_mm_headless.ini")
-LATHE = str(SIM / "lathe_mm_headless.ini")
+MILL, LATHE = (SIM / f"{name}_mm_headless.ini" for name in ("mill", "lathe"))
+HEXAGON = PROGRAMS / "polar" / "hexagon.ngc"
 HEAD = "G21 G17 G40 G49 G54 G80 G90 G94 F600\nT4 M6\nG0 X0 Y0 Z1\n"
 GOOD = HEAD + "S900 M3\nG12 I7 K20 Q6 Z-3 D4\nM2\n"
 WIDE = HEAD + "G12 I7 K40 Q15 Z-3 D4\nM2\n"
 PLAIN = HEAD + "G1 X50 Y20 F300\nM2\n"
 WRONG = HEAD + "G12 I4 Z-3 D4\nM2\n"
 STILL = "G21\nM2\n"
+THROUGH = HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n"  # a rapid through the wall
 
 
 @pytest.fixture
-def written(tmp_path):
-    def write(text):
-        path = tmp_path / "program.ngc"
-        path.write_text(text)
-        return str(path)
+def command(tmp_path, capsys):
+    """Return a function: a command's exit code, what it printed and its errors."""
 
-    return write
+    def called(name, program, *words, ini=MILL):
+        if isinstance(program, str):
+            text, program = program, tmp_path / "program.ngc"
+            program.write_text(text)
+        code = main([name, str(program), "--ini", str(ini), *map(str, words)])
+        return code, *capsys.readouterr()
 
-
-def verify(capsys, *arguments):
-    code = main(["verify", *arguments])
-    said = capsys.readouterr()
-    return code, said.out, said.err
+    return called
 
 
-def test_a_good_pocket_ends_with_0(written, capsys):
-    code, out, err = verify(capsys, written(GOOD), "--ini", MILL)
+@pytest.fixture
+def verify(command):
+    return partial(command, "verify")
+
+
+@pytest.fixture
+def as_json(verify):
+    """Return a function: verify's exit code and report."""
+
+    def report(*arguments, **options):
+        code, out, _ = verify(*arguments, "--json", **options)
+        return code, json.loads(out)
+
+    return report
+
+
+@pytest.fixture
+def plot(command, tmp_path):
+    """Return a function: plot's exit code, what it printed and its errors."""
+    return lambda *arguments, to="x.svg", **options: command(
+        "plot", *arguments, "-o", tmp_path / to, **options
+    )
+
+
+def test_a_good_pocket_ends_with_0(verify):
+    code, out, err = verify(GOOD)
     assert (code, err) == (0, "")
     assert out.startswith("line 5  G12 (haas)  ⌀ 40 to Z−3  0 mm off (0.005 allowed)  ")
     assert out.endswith("verdict: good, 1 note, 1 not judged\n")
 
 
-def test_a_finding_ends_with_1_and_is_told(written, capsys):
-    code, out, _ = verify(capsys, written(WIDE), "--ini", MILL)
+def test_a_finding_ends_with_1_and_is_reported(verify):
+    code, out, _ = verify(WIDE)
     assert code == 1
     assert "findings\n  line 4: " in out
     assert out.endswith("verdict: 1 finding, 2 notes, 1 not judged\n")
 
 
-def test_notes_are_findings_on_demand(written, capsys):
-    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict")
+def test_notes_are_findings_on_demand(verify, as_json):
+    code, out, _ = verify(GOOD, "--strict")
     assert code == 1 and out.endswith("verdict: 1 finding, 1 not judged\n")
-    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--strict", "--json")
-    assert code == 1 and not json.loads(out)["good"]
+    code, reported = as_json(GOOD, "--strict")
+    assert code == 1 and not reported["good"]
 
 
-def test_a_cycle_out_of_sight_is_no_good(capsys, written, tmp_path):
+def test_a_cycle_out_of_sight_is_no_good(verify, as_json, tmp_path):
     machines = copy_of_machines(tmp_path)
     body = "o<flat> sub\nG12.1\nG1 X20 F500\nG13.1\no<flat> endsub\n"
     (machines / "flat.ngc").write_text(body)
-    program = written("G21 G18 G8 G40 G90 G94\nT3 M6\nG0 X30 Z2 C0\no<flat> call\nM2\n")
-    lathe = str(machines / "lathe_mm_headless.ini")
-    code, out, _ = verify(capsys, program, "--ini", lathe)
-    reported = json.loads(verify(capsys, program, "--ini", lathe, "--json")[1])
-    assert code == 1 and out.endswith("verdict: 1 finding, 1 not judged\n")
-    assert (reported["good"], reported["unseen"]) == (False, [{"line": 4, "code": "G12.1"}])
+    program = "G21 G18 G8 G40 G90 G94\nT3 M6\nG0 X30 Z2 C0\no<flat> call\nM2\n"
+    lathe = machines / LATHE.name
+    assert verify(program, ini=lathe)[1].endswith("verdict: 1 finding, 1 not judged\n")
+    code, reported = as_json(program, ini=lathe)
+    assert (code, reported["good"]) == (1, False)
+    assert reported["unseen"] == [{"line": 4, "code": "G12.1"}]
 
 
-def test_json_has_the_same_in_millimetres(written, capsys):
-    code, out, _ = verify(capsys, written(WIDE), "--ini", MILL, "--json", "--units", "inch")
-    reported = json.loads(out)
+def test_json_has_the_same_in_millimetres(as_json):
+    code, reported = as_json(WIDE, "--units", "inch")
     (pocket,) = reported["pockets"]
     assert (code, reported["good"], reported["real"], reported["sections"]) == (1, False, False, [])
     assert pocket["radius"] == pytest.approx(40) and pocket["reached"] == pytest.approx(40)
     assert pocket["stepover"] == pytest.approx(15, abs=0.01) and pocket["left"] > 100
+    assert pocket["entry"] == {"way": "straight"}
     assert [found["line"] for found in reported["findings"]] == [4]
 
 
-def test_json_tells_the_way_down(written, capsys):
-    (straight,) = json.loads(verify(capsys, written(WIDE), "--ini", MILL, "--json")[1])["pockets"]
-    assert straight["entry"] == {"way": "straight"}
-    program = str(SIM / "samples" / "mill_helix_mm.ngc")
-    code, out, _ = verify(capsys, program, "--ini", str(SIM / "mill_helix_mm.ini"), "--json")
-    one, two = (pocket["entry"] for pocket in json.loads(out)["pockets"])
+def test_json_of_a_helix(as_json):
+    program = SIM / "samples" / "mill_helix_mm.ngc"
+    code, reported = as_json(program, ini=SIM / "mill_helix_mm.ini")
+    one, two = (pocket["entry"] for pocket in reported["pockets"])
     assert code == 0
     assert (one["way"], one["count"], two["count"]) == ("helix", 1, 2)
     assert one["radius"] == pytest.approx(3) and two["radius"] == pytest.approx(4.5)
     assert 1 < one["angle"] <= 3 and 1 < two["angle"] <= 3
 
 
-def test_json_of_a_polar_section(capsys):
-    program = str(PROGRAMS / "polar" / "hexagon.ngc")
-    code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
-    (section,) = json.loads(out)["sections"]
+def test_json_of_a_polar_section(as_json):
+    code, reported = as_json(HEXAGON, ini=LATHE)
+    (section,) = reported["sections"]
     assert code == 0
     assert section["radii"][0] == pytest.approx(13.5)
     assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
@@ -102,36 +123,31 @@ def test_json_of_a_polar_section(capsys):
     assert section["seconds_planned"]["segments"] == pytest.approx(10.3, rel=0.01)  # of a run
 
 
-def test_what_a_section_gains_from_kinematics(written, capsys):
-    hexagon = (PROGRAMS / "polar" / "hexagon.ngc").read_text().replace("F1000", "F2000")
-    _, out, _ = verify(capsys, written(hexagon), "--ini", LATHE, "--full")
+def test_what_a_section_gains_from_kinematics(verify, as_json):
+    hexagon = HEXAGON.read_text().replace("F1000", "F2000")
+    _, out, _ = verify(hexagon, "--full", ini=LATHE)
     (row,) = [line for line in out.splitlines() if line.startswith("  kinematics ")]
     segments, face, least = map(float, re.findall(r"([0-9.]+) s ", row))
     assert (segments, face) == pytest.approx((7.7, 5.8), rel=0.05)  # of runs
     assert 5.5 < least <= face
-    _, out, _ = verify(capsys, written(hexagon), "--ini", LATHE)
-    assert "kinematics" not in out
-    round_part = str(PROGRAMS / "cylinder" / "helix.ngc")
-    reported = json.loads(verify(capsys, round_part, "--ini", LATHE, "--json")[1])
-    assert reported["sections"] and not any(
-        each["seconds_planned"] for each in reported["sections"]
-    )
+    assert "kinematics" not in verify(hexagon, ini=LATHE)[1]
+    _, reported = as_json(PROGRAMS / "cylinder" / "helix.ngc", ini=LATHE)
+    assert {each["seconds_planned"] for each in reported["sections"]} == {None}
 
 
-def test_a_contour_that_is_not_cut_is_told(written, capsys, monkeypatch):
+def test_a_contour_that_is_not_cut_is_reported(verify, as_json, monkeypatch):
     lay = section.lay
     monkeypatch.setattr(section, "lay", lambda path, *more: lay([*path, *path], *more))
-    program = str(PROGRAMS / "polar" / "slot.ngc")
-    code, out, _ = verify(capsys, program, "--ini", LATHE)
+    program = PROGRAMS / "polar" / "slot.ngc"
+    code, out, _ = verify(program, ini=LATHE)
     assert code == 1 and "is not cut" in out
-    code, out, _ = verify(capsys, program, "--ini", LATHE, "--json")
-    assert code == 1 and json.loads(out)["sections"][0]["deviation"] is None
+    assert as_json(program, ini=LATHE)[1]["sections"][0]["deviation"] is None
 
 
-def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
+def test_a_polar_section_is_reported_as_it_is_programmed(verify):
     lines = ["G21 G18 G7 G40 G90 G94", "T3 M6", "G0 X80 Z2 C90", "G12.1", "G1 Z-2 F500"]
     lines += ["G42 X40 C-16", "C10 F100", "G40 X80 F600", "G13.1", "M2", ""]
-    code, out, _ = verify(capsys, written("\n".join(lines)), "--ini", LATHE, "--full")
+    code, out, _ = verify("\n".join(lines), "--full", ini=LATHE)
     assert code == 0
     rows = dict(line.strip().split("  ", 1) for line in out.splitlines() if "  " in line.strip())
     rows = {name: text.strip() for name, text in rows.items()}
@@ -141,155 +157,133 @@ def test_a_polar_section_is_told_as_it_is_programmed(written, capsys):
     assert rows["lowest feed"].startswith("100 mm/min at X45.99")
 
 
-def test_a_rapid_through_material_is_told_in_words_and_json(written, capsys):
-    text = written(HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n")
-    code, out, _ = verify(capsys, text, "--ini", MILL)
-    assert code == 1 and "  line 5: a rapid goes through" in out
-    code, out, _ = verify(capsys, text, "--ini", MILL, "--json")
-    reported = json.loads(out)
+def test_json_of_a_rapid_through_material(as_json):
+    code, reported = as_json(THROUGH)
     (hit,) = reported["rapids"]
     assert (code, reported["good"], hit["line"]) == (1, False, 5)
     assert hit["place"] == pytest.approx([15.372, 0, -3], abs=0.1)
 
 
-def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_told(written, capsys):
-    head = HEAD.replace("T4", "T10")
-    text = head + "G12 I50 D0\nG18 G13 I50 D10\nM2\n"
-    ini = str(SIM / "mill_mitsubishi_mm_headless.ini")
-    code, out, _ = verify(capsys, written(text), "--ini", ini, "--full")
+def test_a_circle_of_the_tool_centre_and_one_on_its_side_are_reported(verify):
+    text = HEAD.replace("T4", "T10") + "G12 I50 D0\nG18 G13 I50 D10\nM2\n"
+    code, out, _ = verify(text, "--full", ini=SIM / "mill_mitsubishi_mm_headless.ini")
     assert code == 0
     assert "programmed I50 (tool centre), wall 60, reached 60 mm" in out
     assert "plane at Y0, Z from −39 to 41" in out
 
 
-def test_a_tolerance_of_ones_own(written, capsys):
-    program = str(PROGRAMS / "polar" / "hexagon.ngc")
-    code, out, _ = verify(capsys, program, "--ini", LATHE, "--tolerance", "0.001")
+def test_a_tolerance_of_ones_own(verify):
+    code, out, _ = verify(HEXAGON, "--tolerance", "0.001", ini=LATHE)
     assert code == 1 and "off the toolpath" in out
 
 
-def test_limits_are_compared_with_the_offsets_of_the_var_file_given(written, tmp_path, capsys):
+def test_limits_are_compared_with_the_offsets_of_the_var_file_given(verify, tmp_path):
     stored = tmp_path / "its.var"
     stored.write_text("5221\t490\n")
-    code, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--var", str(stored))
+    code, out, _ = verify(GOOD, "--var", stored)
     assert code == 1 and "line 5: the X axis would go to 505, its limit is 500 mm" in out
-    assert verify(capsys, written(GOOD), "--ini", MILL)[0] == 0
 
 
-def test_lengths_are_shown_in_inches_on_demand(written, capsys):
-    _, out, _ = verify(capsys, written(GOOD), "--ini", MILL, "--units", "inch", "--full")
+def test_lengths_are_shown_in_inches_on_demand(verify):
+    _, out, _ = verify(GOOD, "--units", "inch", "--full")
     assert "programmed 0.7874, reached 0.7874 in" in out
 
 
 @pytest.mark.parametrize(
-    ("text", "code", "said"),
+    ("text", "said"),
     [
-        (WRONG, 2, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
-        (PLAIN, 2, "has no pocket, no section and no holes to verify"),
+        (WRONG, "program.ngc:4: G12: I4 must be greater than the tool radius 5"),
+        (PLAIN, "has no pocket, no section and no holes to verify"),
     ],
 )
-def test_verify_says_in_one_line_why_it_cannot(text, code, said, written, capsys):
-    found, out, err = verify(capsys, written(text), "--ini", MILL)
-    assert (found, out) == (code, "")
+def test_verify_says_in_one_line_why_it_cannot(text, said, verify):
+    code, out, err = verify(text)
+    assert (code, out) == (2, "")
     assert err.startswith("g12 verify: ") and said in err and err.count("\n") == 1
 
 
-@pytest.mark.parametrize("command", ["verify", "plot"])
-def test_an_override_of_no_run_is_refused(command, written, tmp_path, capsys):
-    words = [command, written(GOOD), "--ini", MILL, "--override", "200"]
-    assert main(words + (["-o", str(tmp_path / "x.png")] if command == "plot" else [])) == 2
-    assert "--override is the feed override of --run" in capsys.readouterr().err
+def test_an_override_of_no_run_is_refused(verify, plot):
+    for command in (verify, plot):
+        code, _, err = command(GOOD, "--override", "200")
+        assert code == 2 and "--override is the feed override of --run" in err
 
 
-def test_plot_draws_a_rapid_through_material(written, tmp_path):
-    text, path = HEAD + "G12 I7 K20 Q6 Z-3 D4\nG0 X60\nM2\n", tmp_path / "x.svg"
-    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == 0
-    assert "rapid through material" in path.read_text()
+def test_plot_draws_a_rapid_through_material(plot, tmp_path):
+    assert plot(THROUGH)[0] == 0
+    assert "rapid through material" in (tmp_path / "x.svg").read_text()
 
 
-def test_plot_tells_what_it_draws_in_red(written, tmp_path, capsys):
-    text, path = HEAD + "G12 I7 K40 Q15 Z-3 D5\nG0 X60\nM2\n", tmp_path / "x.svg"
-    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == 0
-    red = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in red, line")]
-    for line, says in [
-        (5, "a rapid goes through"),
-        (4, "of material remain uncut"),
-        (4, "the loaded tool T4 (⌀ 10) is not D5 (⌀ 12)"),
-    ]:
-        assert any(text.startswith(f"in red, line {line}: ") and says in text for text in red), says
+def test_plot_reports_what_it_draws_in_red(plot):
+    code, out, _ = plot(HEAD + "G12 I7 K40 Q15 Z-3 D5\nG0 X60\nM2\n")
+    assert code == 0
+    for says in (
+        "line 5: a rapid goes through",
+        "line 4: .* of material remain uncut",
+        r"line 4: the loaded tool T4 \(⌀ 10\) is not D5 \(⌀ 12\)",
+    ):
+        assert re.search(f"^in red, {says}", out, re.MULTILINE), says
 
 
-def test_plot_says_the_notes_of_verify(written, tmp_path, capsys):
+def test_plot_says_the_notes_of_verify(verify, plot):
     text = HEAD + "G13 I7 K20 Q6 Z-3 D4\nG0 Z1\nX20\nG13 I7 K20 Q6 Z-3 D4\nM2\n"
-    assert main(["plot", written(text), "--ini", MILL, "-o", str(tmp_path / "x.svg")]) == 0
-    plotted = capsys.readouterr().out.splitlines()
-    main(["verify", written(text), "--ini", MILL])
-    notes = capsys.readouterr().out.partition("\nnotes\n")[2].partition("\n\n")[0].splitlines()
+    notes = verify(text)[1].partition("\nnotes\n")[2].partition("\n\n")[0].splitlines()
     assert len(notes) == 3
-    assert [f"note, {note.strip()}" for note in notes] == plotted[1:4]
+    assert plot(text)[1].splitlines()[1:4] == [f"note, {note.strip()}" for note in notes]
 
 
 @pytest.mark.parametrize(
     "cut", [["G12.1", "G1 X40 C3", "G13.1"], ["G7.1 C20", "G1 X30", "C90", "X50", "G7.1 C0"]]
 )
-def test_plot_shows_where_x0_lies(cut, written, tmp_path, capsys):
+def test_plot_shows_where_x0_lies(cut, plot, tmp_path):
     begin = ["G21 G18 G8 G94 F300", "G10 L2 P1 X12.5", "T1 M6 S500 M3", "G0 X50 Z2 C0"]
-    path, says = tmp_path / "x.svg", "X0, the spindle's axis, is at machine X12.5"
-    text = "\n".join([*begin, *cut, "M2", ""])
-    assert main(["plot", written(text), "--ini", LATHE, "-o", str(path)]) == 0
-    assert f"note: program {says}" in capsys.readouterr().out.splitlines()
-    assert says in path.read_text()
+    says = "X0, the spindle's axis, is at machine X12.5"
+    code, out, _ = plot("\n".join([*begin, *cut, "M2", ""]), ini=LATHE)
+    assert code == 0 and f"note: program {says}" in out.splitlines()
+    assert says in (tmp_path / "x.svg").read_text()
 
 
 @pytest.mark.parametrize(("suffix", "extra"), [("png", []), ("svg", ["--feeds"]), ("pdf", [])])
-def test_plot_writes_the_picture_asked_for(suffix, extra, written, tmp_path, capsys):
+def test_plot_writes_the_requested_picture(suffix, extra, plot, tmp_path):
     path = tmp_path / f"picture.{suffix}"
-    assert main(["plot", written(GOOD), "--ini", MILL, "-o", str(path), *extra]) == 0
+    code, out, err = plot(GOOD, *extra, to=path.name)
+    assert (code, out.splitlines()[0], err) == (0, f"{path} written", "")
     assert path.stat().st_size > 5000
-    said = capsys.readouterr()
-    assert said.out.splitlines()[0] == f"{path} written"
-    assert said.err == ""
 
 
-def test_what_a_cycle_tells_the_operator_is_told_by_the_commands(written, tmp_path, capsys):
-    said = "line 4: G12: Q15 is greater than the tool diameter 10: material is left"
-    program, path = written(WIDE), str(tmp_path / "picture.png")
-    assert main(["plot", program, "--ini", MILL, "-o", path]) == 0
-    assert f"message, {said}" in capsys.readouterr().out
-    assert f"message, {said}" in verify(capsys, program, "--ini", MILL)[1]
-    (message,) = json.loads(verify(capsys, program, "--ini", MILL, "--json")[1])["messages"]
+def test_messages_of_a_cycle_are_reported_by_the_commands(verify, as_json, plot):
+    said = "message, line 4: G12: Q15 is greater than the tool diameter 10: material is left"
+    assert said in plot(WIDE)[1] and said in verify(WIDE)[1]
+    (message,) = as_json(WIDE)[1]["messages"]
     assert message["line"] == 4 and message["text"].startswith("G12: Q15 is greater")
 
 
-def test_plot_draws_any_program_and_a_lathe_with_c(written, tmp_path):
-    for program, ini in ((written(PLAIN), MILL), (PROGRAMS / "polar" / "square.ngc", LATHE)):
-        path = tmp_path / "picture.png"
-        path.unlink(missing_ok=True)
-        assert main(["plot", str(program), "--ini", ini, "-o", str(path)]) == 0
-        assert path.exists()
+@pytest.mark.parametrize(
+    ("program", "ini"), [(PLAIN, MILL), (PROGRAMS / "polar" / "square.ngc", LATHE)]
+)
+def test_plot_draws_any_program_and_a_lathe_with_c(program, ini, plot, tmp_path):
+    assert plot(program, ini=ini)[0] == 0
+    assert (tmp_path / "x.svg").exists()
 
 
-def test_plot_draws_a_refused_program_up_to_there(written, tmp_path, capsys):
-    path = tmp_path / "x.png"
-    assert main(["plot", written(WRONG), "--ini", MILL, "-o", str(path)]) == 1
-    assert path.exists()
-    assert "program.ngc:4: G12: I4 must be greater" in capsys.readouterr().err
+def test_plot_draws_a_refused_program_up_to_there(plot, tmp_path):
+    code, _, err = plot(WRONG)
+    assert code == 1 and "program.ngc:4: G12: I4 must be greater" in err
+    assert (tmp_path / "x.svg").exists()
 
 
 @pytest.mark.parametrize(
-    ("text", "name", "code", "said"),
+    ("text", "name", "said"),
     [
-        (GOOD, "x.bmp", 2, "x.bmp: the suffix must be one of .png, .svg, .pdf"),
-        (GOOD, "nowhere/x.png", 2, "nowhere: no such directory"),
-        (STILL, "x.png", 2, "moves nothing, so there is nothing to draw"),
+        (GOOD, "x.bmp", "x.bmp: the suffix must be one of .png, .svg, .pdf"),
+        (GOOD, "nowhere/x.png", "nowhere: no such directory"),
+        (STILL, "x.png", "moves nothing, so there is nothing to draw"),
     ],
 )
-def test_plot_says_in_one_line_why_it_cannot(text, name, code, said, written, tmp_path, capsys):
-    path = tmp_path / name
-    assert main(["plot", written(text), "--ini", MILL, "-o", str(path)]) == code
-    err = capsys.readouterr().err
+def test_plot_says_in_one_line_why_it_cannot(text, name, said, plot, tmp_path):
+    code, _, err = plot(text, to=name)
+    assert code == 2
     assert err.startswith("g12 plot: ") and said in err and err.count("\n") == 1
-    assert not path.exists()
+    assert not (tmp_path / name).exists()
 
 
 @pytest.mark.parametrize(
@@ -308,6 +302,6 @@ def test_plot_says_in_one_line_why_it_cannot(text, name, code, said, written, tm
 )
 def test_wrong_words_end_with_2(arguments, capsys):
     with pytest.raises(SystemExit) as end:
-        main(arguments)
+        main([*map(str, arguments)])
     assert end.value.code == 2
     assert f"usage: python3 python/g12 {arguments[0]} --help" in capsys.readouterr().err
