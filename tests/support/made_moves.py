@@ -18,8 +18,8 @@ METRIC = Modes(("G1", "G17", "G21", "G90"), ("M2",), 100.0, 0.0, (0.0, 0.0))
 class Hand:
     """Draws moves from where the last one ended; X Y Z C in mm and degrees, feed in mm/min."""
 
-    def __init__(self, *, tool=1, feed=600.0, offset=HOME):
-        self.moves, self.at, self.tool, self.feed, self.offset = [], HOME, tool, feed, offset
+    def __init__(self, *, tool=1, feed=600.0):
+        self.moves, self.at, self.tool, self.feed = [], HOME, tool, feed
         self.block = 1
 
     def rapid(self, **to):
@@ -36,18 +36,13 @@ class Hand:
         self.block += 1
         return self
 
-    def pocket(self, rings, depth=-1.0, turns=-1, lead=True):
-        """Plunge in the centre, cut rings outward with tangent half circles in and out."""
+    def pocket(self, rings, depth):
+        """Plunge in the centre, cut rings outward clockwise, half circles in and out."""
         x, y = self.at[:2]
-        self.line(z=depth)
+        self.line(z=depth).arc(-1, x + rings[0] / 2, y, x=x + rings[0])
         for radius in rings:
-            if lead and radius == rings[0]:
-                self.arc(turns, x + radius / 2, y, x=x + radius, y=y)
-            else:
-                self.line(x=x + radius, y=y)
-            self.arc(turns, x, y)
-        self.arc(turns, x + rings[-1] / 2, y, x=x, y=y)
-        return self
+            self.line(x=x + radius).arc(-1, x, y)
+        return self.arc(-1, x + rings[-1] / 2, y, x=x)
 
     def polar(self, points, feed=600.0):
         """Straight segments in X and C through points (complex) of the part plane."""
@@ -79,7 +74,7 @@ class Hand:
     def _add(self, kind, end, feed, plane=17, centre=None, turns=0):
         mode = "G94" if feed else ""
         where = (self.block, self.block, self.at, end)
-        how = (feed, mode, plane, self.tool, self.offset, centre, turns)
+        how = (feed, mode, plane, self.tool, HOME, centre, turns)
         self.moves.append(Move(kind, *where, *how))
         self.at = end
         return self
