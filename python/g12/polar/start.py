@@ -46,14 +46,17 @@ def polar_setup(
             "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
         )
     tolerance = tolerance_of(start, settings)
-    return SectionSetup(
-        _word_rules(start, settings),
-        _planning(start, settings, axes, tolerance)._replace(
-            face=_face_limits(start, settings, face, axes["C"]) if switches and face else None
-        ),
-        travel(start, axes),
-        tolerance,
+    planning = PolarSettings(
+        tolerance=tolerance,
+        least_x=LEAST_MM * start.millimetre,
+        x_acceleration=axes["X"].acceleration * start.machine_unit,
+        c_acceleration=axes["C"].acceleration,
+        c_speed=axes["C"].velocity * 60,
+        pole_refused=settings.polar_pole == "refuse",
+        face=_face_limits(start, settings, face, axes["C"]) if switches and face else None,
+        beside=settings.polar_tool_offset * start.machine_unit,
     )
+    return SectionSetup(_word_rules(start, settings), planning, travel(start, axes), tolerance)
 
 
 def _word_rules(start: SectionStart, settings: Settings) -> WordRules:
@@ -67,20 +70,6 @@ def _word_rules(start: SectionStart, settings: Settings) -> WordRules:
         third_with_others=settings.polar_z == "allow",
         rapid_feed=rapid_feed_of(start, settings),
         radius_tolerance=RADIUS_TOLERANCE_MM * start.millimetre,
-        beside=settings.polar_tool_offset * start.machine_unit,
-    )
-
-
-def _planning(
-    start: SectionStart, settings: Settings, axes: dict[str, Axis], tolerance: float
-) -> PolarSettings:
-    return PolarSettings(
-        tolerance=tolerance,
-        least_x=LEAST_MM * start.millimetre,
-        x_acceleration=axes["X"].acceleration * start.machine_unit,
-        c_acceleration=axes["C"].acceleration,
-        c_speed=axes["C"].velocity * 60,
-        pole_refused=settings.polar_pole == "refuse",
         beside=settings.polar_tool_offset * start.machine_unit,
     )
 
