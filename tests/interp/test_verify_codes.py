@@ -553,14 +553,14 @@ def test_what_a_flat_and_a_small_circle_have_not(proof_of):
 
 
 def test_a_picture_shows_what_is_uncut_and_where_findings_are(proof_of):
-    seen = scene_of_proof(proof_of("mill", "G12 I7 K40 Q15 Z-3 D5|G0 Z1")).seen
-    assert [(each.code, each.line) for each in seen.signs] == [("wrong-cutter", 6)]
-    assert [each.line for each in seen.uncut] == [6] and seen.uncut[0].values["shape"].area > 100
-    (air,) = scene_of_proof(proof_of("mill", "G13 I9 Z3 D4")).seen.signs
+    marks = scene_of_proof(proof_of("mill", "G12 I7 K40 Q15 Z-3 D5|G0 Z1")).marks
+    assert [(each.code, each.line) for each in marks.signs] == [("wrong-cutter", 6)]
+    assert [each.line for each in marks.uncut] == [6] and marks.uncut[0].values["shape"].area > 100
+    (air,) = scene_of_proof(proof_of("mill", "G13 I9 Z3 D4")).marks.signs
     assert air.code == "cuts-air"
     (crossed,) = (
         each
-        for each in scene_of_proof(proof_of("lathe", FLAT.replace("G41", "G42"))).seen.signs
+        for each in scene_of_proof(proof_of("lathe", FLAT.replace("G41", "G42"))).marks.signs
         if each.code == "side-crossed"
     )
     assert crossed.place == pytest.approx((30, 0, 2))

@@ -19,10 +19,10 @@ from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import clearest_axes, window_lines
 from g12.tools.plot.face import programmed_history
 from g12.tools.plot.labels import spread_out
+from g12.tools.plot.marks import Marks
 from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
-from g12.tools.plot.seen import Seen
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.result.finding import Finding
@@ -64,7 +64,7 @@ def both(hand, ini=MILL):
 
 
 def on_surface(shown):
-    return replace(shown, seen=Seen(surface=20.0))
+    return replace(shown, marks=Marks(surface=20.0))
 
 
 def turned():
@@ -229,7 +229,7 @@ def test_a_rapid_that_is_seen_end_on_has_a_mark(units):
         (rapid_through([0, 0, 5], [0.1, 0, 5]), [through]),
         (rapid_through([9, 0, 5], [9, 0, 2]), [down, through]),  # a line in the side view
     ):
-        shown = replace(scene(pocket(), units=units), seen=Seen((hit,)))
+        shown = replace(scene(pocket(), units=units), marks=Marks((hit,)))
         assert warned(shown) == said and drawn_in_red(shown) == (True, down in said)
 
 
@@ -237,15 +237,15 @@ def test_a_rapid_that_is_seen_end_on_has_a_mark(units):
 def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     """The path may be unrolled on a bar's radius."""
     hit = rapid_through([5.5, 0, 24], [5.5, 0, 18], surface=surface)
-    shown = unrolled(replace(scene(groove(), LATHE), seen=Seen((hit,), surface=20.0)))
+    shown = unrolled(replace(scene(groove(), LATHE), marks=Marks((hit,), surface=20.0)))
     assert warned(shown) == ["rapid straight down into material"]
     assert drawn_in_red(shown) == (1, 1)
-    assert [each.values["path"][0][0] for each in shown.seen.rapids] == [pytest.approx(shown_at)]
+    assert [each.values["path"][0][0] for each in shown.marks.rapids] == [pytest.approx(shown_at)]
 
 
 def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_view():
     found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
-    shown = replace(scene(pocket()), seen=Seen((uncut((50.0, 0.0)), found)))
+    shown = replace(scene(pocket()), marks=Marks((uncut((50.0, 0.0)), found)))
     assert warned(shown) == ["uncut material", "finding in line 3"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
@@ -278,7 +278,7 @@ def test_every_height_is_written_however_near_they_are(count):
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
     shown = scene(pocket())
     assert plan_view.top_of(shown) == 0.0
-    assert plan_view.top_of(replace(shown, seen=Seen(z0=-1.5))) == -1.5
+    assert plan_view.top_of(replace(shown, marks=Marks(z0=-1.5))) == -1.5
     assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
 
 

@@ -99,7 +99,7 @@ def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> tuple
 
 def judged_texts(proof: Proof, scene: Scene) -> Iterator[str]:
     """Yield what ``verify`` says, by kind; a finding that the picture marks is "in red"."""
-    marked = set(map(id, scene.seen.findings))
+    marked = set(map(id, scene.marks.findings))
     for name, attribute in KIND_WORDS.items():
         for each in (each for each in proof.judged if getattr(each, attribute)):
             kind = "in red" if id(each) in marked else name

@@ -118,7 +118,7 @@ def draw_side(view: SceneView, levels: Sequence[Level], stretch: float) -> None:
     for order, level in enumerate(reversed(levels)):
         removed = view.area(removed_at(level, max(top, level.z)))
         style.fill(axes, removed, *floor(scene, level), 1 + order / 100)
-    for each in scene.seen.uncut:
+    for each in scene.marks.uncut:
         style.hatch(axes, view.area(cut_through(each, top)))
     draw_heights(axes, scene, levels)
     draw_paths(view, levels)
@@ -134,7 +134,7 @@ def cut_through(uncut: Finding, top: float) -> BaseGeometry:
 
 def block_from_the_side(scene: Scene) -> BaseGeometry | None:
     """Return a block as seen along Y, if its depth is known."""
-    facts = scene.seen.stock
+    facts = scene.marks.stock
     if facts is None or facts.bottom is None:
         return None
     return box(facts.shape.bounds[0], facts.bottom, facts.shape.bounds[2], facts.top)

@@ -11,7 +11,7 @@ from g12.tools.plot.unrolled import draw_unrolled
 
 
 def picture_of(scene: Scene) -> Figure:
-    if scene.seen.surface:
+    if scene.marks.surface:
         return draw_unrolled(scene)
     if scene.path.part.turning:
         return draw_face(scene)

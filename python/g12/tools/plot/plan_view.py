@@ -100,7 +100,7 @@ def floors(scene: Scene, cutting: Sequence[int]) -> np.ndarray:
 def is_helical(scene: Scene, index: int) -> bool:
     """Return whether a move is helical about the tool's axis, or about the spindle's on a face."""
     move, (start, end) = scene.moves[index], scene.ends[index]
-    turns = move.end[C] != move.start[C] and not scene.seen.surface
+    turns = move.end[C] != move.start[C] and not scene.marks.surface
     return (turns or (move.kind == "arc" and move.plane == FLAT)) and end[2] < start[2] - SAME_DEPTH
 
 
@@ -142,12 +142,12 @@ def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.nda
     shown = scene.fed or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
-    uncut = (each.values["shape"] for each in scene.seen.uncut)
+    uncut = (each.values["shape"] for each in scene.marks.uncut)
     for shape in (*(level.area for level in levels), *uncut):
         bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
-    stock = scene.seen.stock
+    stock = scene.marks.stock
     if stock:
         bounds, deep = stock.shape.bounds, stock.bottom
         low = np.minimum(low, (*bounds[:2], low[2] if deep is None else deep))
@@ -173,7 +173,7 @@ def with_near_rapids(
 
 def top_of(scene: Scene) -> float:
     """Return the top of the part: Z0 if the tool passes it downward, else where the feed begins."""
-    z0, levels = scene.seen.z0, scene.ends[:, :, 2]
+    z0, levels = scene.marks.z0, scene.ends[:, :, 2]
     cutting = levels[scene.fed] if scene.fed else levels
     return z0 if cutting.min() < z0 < levels.max() else float(cutting.max())
 
@@ -194,21 +194,21 @@ def first_shown(scene: Scene) -> int:
 
 
 def draw_plan(view: SceneView, levels: Sequence[Level]) -> None:
-    seen = view.scene.seen
-    draw_stock(view, seen.stock.shape if seen.stock else None)
+    marks = view.scene.marks
+    draw_stock(view, marks.stock.shape if marks.stock else None)
     for order, level in enumerate(levels):
         style.fill(view.axes, view.area(level.area), *floor(view.scene, level), 1 + order / 100)
     draw_paths(view, levels)
     draw_plunges(view)
     draw_arrows(view)
-    for each in seen.uncut:
+    for each in marks.uncut:
         style.hatch(view.axes, view.area(each.values["shape"]))
     draw_signs(view)
 
 
 def draw_signs(view: SceneView) -> None:
     """Draw signs at the findings that are neither a rapid nor uncut material."""
-    for finding in view.scene.seen.signs:
+    for finding in view.scene.marks.signs:
         style.draw_sign(view.axes, view.shown(finding.place))
 
 
@@ -237,9 +237,9 @@ def draw_paths(view: SceneView, levels: Sequence[Level]) -> None:
         style.draw(view.axes, view.lines(path), shade, 2.6 if is_run else width)
     if is_run:
         draw_real(view)
-    hit = view.lines(found.values["path"] for found in scene.seen.rapids)
+    hit = view.lines(found.values["path"] for found in scene.marks.rapids)
     style.draw(view.axes, hit, style.CRASH, 3.0, 3.8)
-    for found, line in zip(scene.seen.rapids, hit):
+    for found, line in zip(scene.marks.rapids, hit):
         if is_point(found.values["path"][:, view.pair]):
             style.draw_hit(view.axes, line[0])
 
@@ -364,8 +364,8 @@ def cutter_text(scene: Scene, tool: int) -> str:
 def motion_entries(scene: Scene) -> list:
     """Return the legend's entries of the stock, of rapids and of the actual motion."""
     listed = []
-    if scene.seen.stock:
-        stock = scene.seen.stock.stock
+    if scene.marks.stock:
+        stock = scene.marks.stock.stock
         text = f"{'bar' if stock.diameter else 'stock'} {stock.text}"
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if scene.radial:
@@ -381,15 +381,15 @@ def motion_entries(scene: Scene) -> list:
 
 def warning_entries(scene: Scene) -> list:
     listed, part = [], scene.path.part
-    end_on = [is_point(found.values["path"][:, :2]) for found in scene.seen.rapids]
+    end_on = [is_point(found.values["path"][:, :2]) for found in scene.marks.rapids]
     has_side_view = not part.turning and part.letters[2] == "Z"
     if any(end_on):
         listed.append(style.hit("rapid straight down into material"))
-    if scene.seen.rapids and (has_side_view or not all(end_on)):
+    if scene.marks.rapids and (has_side_view or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
-    if scene.seen.uncut:
+    if scene.marks.uncut:
         listed.append(style.uncut_entry("uncut material"))
-    lines = dict.fromkeys(scene.user_line(each.line, each.file) for each in scene.seen.signs)
+    lines = dict.fromkeys(scene.user_line(each.line, each.file) for each in scene.marks.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed

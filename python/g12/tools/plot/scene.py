@@ -14,7 +14,7 @@ import numpy as np
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, x0_text
 from g12.tools.path.track import Track
-from g12.tools.plot.seen import Seen, seen_of_proof
+from g12.tools.plot.marks import Marks, marks_of_proof
 from g12.tools.preview.executed_blocks import COMMENTS
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
@@ -26,7 +26,7 @@ AXIS_LETTER = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
 MOST_HEAD_LINES = 20
 LONGEST_HEADING = 72
 SAME_POINT = 1e-6  # mm
-NOTHING_SEEN = Seen()
+NO_MARKS = Marks()
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class Scene:
     unit: Unit
     feed_colours: bool = False
     override: float = 100.0
-    seen: Seen = NOTHING_SEEN
+    marks: Marks = NO_MARKS
     contour: float | None = None
     user_line: Callable[[int, str], int] = lambda line, _file: line
 
@@ -67,7 +67,7 @@ class Scene:
     @cached_property
     def radial(self) -> list[int]:
         """The moves at feed whose tool points at the axis: the face's picture shows their path."""
-        if not self.path.part.turning or self.seen.surface:
+        if not self.path.part.turning or self.marks.surface:
             return []
         sideways = self.subject.sideways
         return [index for index in self.fed if sideways[index] == {True}]
@@ -126,7 +126,7 @@ def scene_of_proof(
     return replace(
         scene_of(proof.subject, units, feed_colours),
         override=override,
-        seen=seen_of_proof(proof),
+        marks=marks_of_proof(proof),
         contour=max((facts.deviation for facts in proof.sections), default=None),
         user_line=proof.user_line,
     )

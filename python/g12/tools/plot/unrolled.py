@@ -74,22 +74,22 @@ def panels_of(figure: Figure, top: float) -> list[Axes]:
 
 def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:
     """Frame a portion of the surface, with C's angles and ``x0``, the position of X0, above it."""
-    radius = scene.seen.surface / scene.unit.mm
+    radius = scene.marks.surface / scene.unit.mm
     style.frame(axes, low, high, scene.unit, ("along C", "Z"))
     axes.set_aspect("equal", adjustable="datalim")
     to_degrees = (lambda length: np.degrees(length / radius)), (lambda c: np.radians(c) * radius)
     above = axes.secondary_xaxis("top", functions=to_degrees)
     above.xaxis.set_major_locator(MaxNLocator(8, steps=NICE_ANGLES))
-    label = f"C, degrees, on the radius {scene.unit.text(scene.seen.surface)}"
+    label = f"C, degrees, on the radius {scene.unit.text(scene.marks.surface)}"
     above.set_xlabel("; ".join(filter(None, [label, x0])))
 
 
 def unrolled(scene: Scene) -> Scene:
     """Return a scene on the surface of its cylinder; a bar is round on the face alone."""
-    radius = scene.seen.surface
-    findings = tuple(on_radius(each, radius) for each in scene.seen.findings)
-    seen = scene.seen._replace(findings=findings, stock=None)
-    return replace(scene, subject=scene.subject.on_surface(radius), seen=seen)
+    radius = scene.marks.surface
+    findings = tuple(on_radius(each, radius) for each in scene.marks.findings)
+    marks = scene.marks._replace(findings=findings, stock=None)
+    return replace(scene, subject=scene.subject.on_surface(radius), marks=marks)
 
 
 def on_radius(finding: Finding, radius: float) -> Finding:

@@ -13,7 +13,7 @@ from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.workpiece import Workpiece
 
 
-class Seen(NamedTuple):
+class Marks(NamedTuple):
     """The findings that the picture marks, each with a place, and the stock if one is given.
 
     ``surface`` is the radius of the cylinder that the picture unrolls, 0 without one. ``z0`` is
@@ -41,7 +41,7 @@ class Seen(NamedTuple):
         return [each for each in self.findings if not {"path", "floor"} & each.values.keys()]
 
 
-def seen_of_proof(proof: Proof) -> Seen:
+def marks_of_proof(proof: Proof) -> Marks:
     """Return what the picture of a verified program marks.
 
     It is that of a cylinder's surface where all sections and holes are on one. Of sections the
@@ -58,7 +58,7 @@ def seen_of_proof(proof: Proof) -> Seen:
         for each in placed
         if id(each) not in elsewhere and bool(each.values.get("surface", surface)) == bool(surface)
     )
-    return Seen(tuple(marked), proof.given, surface, float(proof.subject.zero[Z]))
+    return Marks(tuple(marked), proof.given, surface, float(proof.subject.zero[Z]))
 
 
 def surface_of(cut: MeasuredCut) -> float:
