@@ -18,9 +18,8 @@ from g12.tools.install.config import features, forms
 from g12.tools.install.config.findings import PROBLEM
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, Python, codes_of, load_config, remaps_in
-from g12.tools.install.plan import Refused, make_plan
+from g12.tools.install.plan import Refused, make_plan, refuse_problems
 from g12.tools.install.rules import findings_of, installed_programs
-from g12.tools.install.trial import refuse_problems
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
 from support.small_configs import files_of_package

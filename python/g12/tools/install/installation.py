@@ -11,9 +11,16 @@ from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
 from g12.tools.install.config.loaded import load_config
 from g12.tools.install.lathe.spindle_c import Pins
-from g12.tools.install.plan import MODULE_MARK, InstallPlan, make_plan, names_copy, refuse
+from g12.tools.install.plan import (
+    MODULE_MARK,
+    InstallPlan,
+    make_plan,
+    names_copy,
+    refuse,
+    refuse_problems,
+)
 from g12.tools.install.rules import findings_of, installed_programs, shortened
-from g12.tools.install.trial import refuse_problems, try_out
+from g12.tools.install.trial import try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 

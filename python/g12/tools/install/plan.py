@@ -7,7 +7,7 @@ import lines in the user's own modules.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from g12.settings import INI_SECTION as SETTINGS
 from g12.tools.install import package_copy
 from g12.tools.install.config import features, forms
 from g12.tools.install.config.features import FILTER_SUFFIX
-from g12.tools.install.config.findings import problem
+from g12.tools.install.config.findings import PROBLEM, ConfigFinding, problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
     END_MARK,
@@ -53,6 +53,14 @@ def refuse(kind: str, text: str, cure: str) -> Refused:
     return Refused(problem(kind, text, cure))
 
 
+def refuse_problems(findings: Sequence[ConfigFinding]) -> list[ConfigFinding]:
+    """Return the warnings among the findings; refuse if there are problems."""
+    problems = [finding for finding in findings if finding.level == PROBLEM]
+    if problems:
+        raise Refused(*problems)
+    return list(findings)
+
+
 @dataclass
 class InstallPlan:
     """The changes of an installation, not written yet.
@@ -75,8 +83,10 @@ class InstallPlan:
     def codes(self) -> list[str]:
         return [feature for feature in self.requested if feature in features.REMAP_FILES]
 
-    def add(self, section: str, *lines: str) -> None:
-        self.added.setdefault(section, []).extend(lines)
+    def add(self, lines_of: Mapping[str, Iterable[str]]) -> None:
+        """Add lines to sections."""
+        for section, lines in lines_of.items():
+            self.added.setdefault(section, []).extend(lines)
 
     def is_ours(self, line: IniLine) -> bool:
         """Return whether an earlier installation wrote a line of the INI."""
@@ -111,7 +121,7 @@ def make_plan(
     if plan.codes:
         add_python(plan)
         add_subroutines(plan)
-        plan.add("RS274NGC", *(f"REMAP = {remap.text}" for remap in new_remaps(plan)))
+        plan.add({"RS274NGC": [f"REMAP = {remap.text}" for remap in new_remaps(plan)]})
     add_filter(plan)
     add_kinematics(plan)
     add_spindle(plan, pins)
@@ -210,11 +220,10 @@ def add_subroutines(plan: InstallPlan) -> None:
     name, ini = f"{plan.prefix}/ngc", plan.config.ini
     if not any(features.names_of(feature) for feature in plan.codes):
         return
-    for finding in odd_folder(folder_from_ini(ini, name)):
-        raise Refused(finding)
+    refuse_problems([*odd_folder(folder_from_ini(ini, name))])
     entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
     if not entries:
-        plan.add("RS274NGC", f"SUBROUTINE_PATH = {name}")
+        plan.add({"RS274NGC": [f"SUBROUTINE_PATH = {name}"]})
         return
     line, value = entries[0]
     folders = {folder_from_ini(ini, folder) for folder in value.split(":") if folder}
@@ -241,11 +250,8 @@ def add_filter(plan: InstallPlan) -> None:
             )
         if not present:
             command = f"python3 {plan.prefix}/python/g12 translate --control {name}"
-            plan.add(
-                "FILTER",
-                f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {name}",
-                f"{FILTER_SUFFIX} = {command}",
-            )
+            shown = f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {name}"
+            plan.add({"FILTER": [shown, f"{FILTER_SUFFIX} = {command}"]})
 
 
 def add_settings(plan: InstallPlan, control: Control) -> None:
@@ -255,7 +261,7 @@ def add_settings(plan: InstallPlan, control: Control) -> None:
         several = plan.config.ini.number("TRAJ", "SPINDLES", 1) > 1
         needed = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
         unset = (key for key in needed if not plan.config.ini.get(SETTINGS, key))
-        plan.add(SETTINGS, *(f"{key} = {needed[key]}" for key in unset))
+        plan.add({SETTINGS: [f"{key} = {needed[key]}" for key in unset]})
 
 
 def add_forms(plan: InstallPlan) -> None:
@@ -269,8 +275,7 @@ def add_forms(plan: InstallPlan) -> None:
     if not forms.files_of(plan.config, codes):
         cure = "install a code with them: --with haas forms"
         raise refuse("forms", "no code here has a form", cure)
-    for section, lines in forms.lines_for(plan.config, codes, plan.prefix).items():
-        plan.add(section, *lines)
+    plan.add(forms.lines_for(plan.config, codes, plan.prefix))
 
 
 def add_geometry(plan: InstallPlan) -> None:
@@ -286,16 +291,14 @@ def add_geometry(plan: InstallPlan) -> None:
     if present and plan.is_ours(present[0][0]):
         plan.text.replace(present[0][0], line_text)
     elif not present and config.ini.get("DISPLAY", "DISPLAY"):
-        plan.add("DISPLAY", line_text)
+        plan.add({"DISPLAY": [line_text]})
 
 
 def add_kinematics(plan: InstallPlan) -> None:
     config = plan.config
     if features.KINEMATICS not in plan.requested or uses_face_kinematics(config):
         return
-    reasons = list(kinematics_lines.obstacles(config, plan.text, plan.requested))
-    if reasons:
-        raise Refused(*reasons)
+    refuse_problems([*kinematics_lines.obstacles(config, plan.text, plan.requested)])
     for section, key, value in kinematics_lines.in_place(config):
         line, _ = plan.text.entries(section, key)[0]
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
@@ -303,26 +306,23 @@ def add_kinematics(plan: InstallPlan) -> None:
         for line, _ in plan.text.entries("SPINDLE_C", key):
             if plan.is_ours(line):
                 plan.text.replace(line, f"{key} = {signal}")
-    for section, lines in kinematics_lines.added(config, plan.requested, plan.prefix).items():
-        plan.add(section, *lines)
+    plan.add(kinematics_lines.added(config, plan.requested, plan.prefix))
 
 
 def add_spindle(plan: InstallPlan, pins: spindle_c.Pins | None) -> None:
     config, requested = plan.config, plan.requested
     if features.SPINDLE_AS_C not in requested or config.ini.get("SPINDLE_C", "JOINT"):
         return
-    reasons = list(spindle_c.spindle_obstacles(config, pins))
-    if reasons:
-        raise Refused(*reasons)
-    for section, lines in spindle_c.spindle_sections(config, requested, pins, plan.prefix).items():
-        plan.add(section, *lines)
+    refuse_problems([*spindle_c.spindle_obstacles(config, pins)])
+    plan.add(spindle_c.spindle_sections(config, requested, pins, plan.prefix))
 
 
 def add_python(plan: InstallPlan) -> None:
     """Add the lines for [PYTHON], or those for the user's own modules."""
     folder, config = f"{plan.prefix}/python", plan.config
     if not config.ini.get("PYTHON", "TOPLEVEL"):
-        plan.add("PYTHON", f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}")
+        lines = [f"TOPLEVEL = {folder}/toplevel.py", f"PATH_PREPEND = {folder}"]
+        plan.add({"PYTHON": lines})
         return
     with_path = "" if config.python.package else f'import sys; sys.path.append("{folder}"); '
     for path, statement, is_missing in own_modules(config, plan.codes):

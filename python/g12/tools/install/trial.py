@@ -10,10 +10,10 @@ from pathlib import Path
 
 from g12.tools.install.checking import check_config
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import PROBLEM, WARNING, ConfigFinding
+from g12.tools.install.config.findings import WARNING, ConfigFinding
 from g12.tools.install.config.forms import HERE
 from g12.tools.install.config.ini_edit import IniText, other_inis
-from g12.tools.install.plan import InstallPlan, Refused
+from g12.tools.install.plan import InstallPlan, refuse_problems
 from g12.tools.machine.ini import Ini, broken_line
 
 OWN_FILTER = "filter"  # kind of a finding about a line that the plan does not write
@@ -50,14 +50,6 @@ def of_other(finding: ConfigFinding, ini: Path, shared: Path) -> ConfigFinding:
     text = f"{ini.name} includes {shared.name} too and gets the same lines: {finding.text}"
     cure = f"in {ini.name}: {finding.cure}; if no machine uses {ini.name}, rename it to end in .old"
     return replace(finding, text=text, cure=cure)
-
-
-def refuse_problems(findings: Sequence[ConfigFinding]) -> list[ConfigFinding]:
-    """Return the warnings among the findings; refuse if there are problems."""
-    problems = [finding for finding in findings if finding.level == PROBLEM]
-    if problems:
-        raise Refused(*problems)
-    return list(findings)
 
 
 def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
