@@ -201,14 +201,12 @@ def test_every_feature_goes_in_and_out(samples, content, package, name):
     assert tree(path.parent) == before
 
 
-# One of each: screen, kind of machine, Python of its own, pages of its own, [DISPLAY] elsewhere.
+# One of each: screen, kind of machine, pages of its own; tests/sim has others, and runs them.
 KINDS = [
     "sim/axis/axis_mm.ini",
     "sim/axis/db_demo/db_ran.ini",
     "sim/axis/ngcgui/ngcgui.ini",
     "sim/gmoccapy/gmoccapy.ini",
-    "sim/gmoccapy/lathe_configs/lathe_C.ini",
-    "sim/qtdragon/qtdragon_xyz/qtdragon_metric.ini",
     "sim/tklinuxcnc/tklinuxcnc.ini",
     "sim/touchy/touchy.ini",
 ]

@@ -106,7 +106,7 @@ def with_lines(text: str, section: str, lines: str) -> str:
 def config_of(
     ini: Path, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
 ) -> Config:
-    """Return the config of an INI that no LinuxCNC was asked about."""
+    """Return the config of an INI that no LinuxCNC has loaded."""
     text = IniText(ini)
     loaded = Python(**python)
     return Config(
@@ -121,13 +121,13 @@ def content_of(folder: Path) -> dict[str, bytes]:
 
 
 def put_in(ini: Path, *names: str, pins: Pins | None = None, **python) -> list[str]:
-    """Install features in an INI that no LinuxCNC was asked about; return what was said."""
+    """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
     config = config_of(ini, **python)
     return installation.write_changes(make_plan(config, names, pins), config.folder)
 
 
 def take_out(ini: Path) -> list[str]:
-    """Uninstall; return what was said."""
+    """Uninstall; return the lines to show."""
     return list(removal.uninstall(IniText(ini), dry_run=False))
 
 

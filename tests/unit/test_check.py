@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What `check` finds in a config, rule by rule; no LinuxCNC is asked."""
+"""What `check` finds in a config, rule by rule; without LinuxCNC."""
 
 import json
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What `check` finds of the face's kinematics, mistake by mistake; no LinuxCNC is asked."""
+"""What `check` finds of the face's kinematics, mistake by mistake; without LinuxCNC."""
 
 import pytest
 

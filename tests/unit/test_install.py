@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What `install` writes and `uninstall` takes out; no LinuxCNC is asked."""
+"""What `install` writes and `uninstall` takes out; without LinuxCNC."""
 
 import os
 import re

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""install --with polar-kinematics: what it writes, gives back and leaves alone; no LinuxCNC."""
+"""install --with polar-kinematics: what it writes, gives back and leaves alone; without LinuxCNC."""
 
 import pytest
 

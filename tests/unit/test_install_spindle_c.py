@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""install --with spindle-c, and what check finds of it; no LinuxCNC is asked."""
+"""install --with spindle-c, and what check finds of it; without LinuxCNC."""
 
 import pytest
 
