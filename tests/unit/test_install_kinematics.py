@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""install --with polar-kinematics: what it writes, gives back and leaves alone; without LinuxCNC."""
+"""install --with polar-kinematics: what it writes, restores and refuses; without LinuxCNC."""
 
 import pytest
 

@@ -64,10 +64,10 @@ def belongs(text: str) -> bool:
     return bool(key_and_value(text)[0]) or text.startswith(END_MARK)
 
 
-def without(lines: Sequence[str], doomed: set[int]) -> list[str]:
+def without(lines: Sequence[str], removed: set[int]) -> list[str]:
     """Return lines without those at the indices; a missing last line end remains missing."""
-    kept = [line for index, line in enumerate(lines) if index not in doomed]
-    unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in doomed
+    kept = [line for index, line in enumerate(lines) if index not in removed]
+    unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in removed
     return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
 
 
@@ -229,9 +229,9 @@ class IniText:
             )
         return blocks
 
-    def remove(self, doomed: Sequence[IniLine]) -> None:
-        for file in {line.file for line in doomed}:
-            indices = {line.row for line in doomed if line.file == file}
+    def remove(self, removed: Sequence[IniLine]) -> None:
+        for file in {line.file for line in removed}:
+            indices = {line.row for line in removed if line.file == file}
             self.files[file] = without(self.files[file], indices)
 
 
