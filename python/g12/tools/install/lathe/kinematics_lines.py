@@ -16,6 +16,7 @@ from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.ini_edit import CONTINUED, NEXT, NOW, IniText
 from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.tools.install.lathe.hal import hal_files
 from g12.tools.install.lathe.kinematics_rules import (
     GUARD_HAL,
     KINEMATICS_PAGE,
@@ -23,7 +24,6 @@ from g12.tools.install.lathe.kinematics_rules import (
     SHARE,
     are_of_lathe,
     codes_off,
-    hal_files,
 )
 
 LIMIT_KEYS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")

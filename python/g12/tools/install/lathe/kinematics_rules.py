@@ -8,17 +8,26 @@ step of the page has a rule here.
 import re
 import shutil
 from collections.abc import Iterable, Iterator
-from itertools import chain, product
 from math import hypot
 from pathlib import Path
-from typing import NamedTuple
 
 from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
 from g12.tools.install.config.features import ROOT
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
-from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.tools.install.config.loaded import Config
+from g12.tools.install.lathe.hal import (
+    HalLine,
+    all_hal,
+    hal_files,
+    hal_lines,
+    later_hal,
+    names,
+    pins_taken,
+    signals,
+    substituted,
+)
 
 KINEMATICS_PAGE = "configs/kinematics/README.md"
 GUARD_HAL = Path("configs/kinematics/polar_kinematics.hal")
@@ -42,16 +51,7 @@ LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 LIMIT_SLACK = 1.001
 SHARE = 0.7  # of the slide's acceleration, for X and Y each
 SETS_PERIOD = re.compile(r"\b(traj|servo)_period_nsec=(\S+)")
-ARROW = re.compile(r"\s<?=>?\s")
-FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.comp
-
-
-class HalLine(NamedTuple):
-    """A line of a HAL file without its comment, and its location."""
-
-    text: str
-    location: str
 
 
 def module_file() -> Path | None:
@@ -202,15 +202,6 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
     yield from hal_in_the_way(config, [*others, *later_hal(config)])
 
 
-def pins_taken(
-    lines: Iterable[HalLine], pins: Iterable[str], owner: str, cure: str
-) -> Iterator[ConfigFinding]:
-    """Find pins in HAL lines that belong to ``owner``."""
-    for (text, location), pin in product(lines, pins):
-        if pin in text.split():
-            yield problem("pin-taken", f"{location}: {text}: {pin} {owner}", cure)
-
-
 def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
     """Find signals connected to the pins that G12.1 sets; LinuxCNC allows one writer."""
     nets = [line for line in lines if line.text.split()[:1] in (["net"], ["linksp"], ["linkps"])]
@@ -232,23 +223,6 @@ def periods_differ(config: Config) -> Iterator[ConfigFinding]:
                 f"waits {SETTLED} of the latter before it switches",
                 "take traj_period_nsec out of the line: it is the servo period then",
             )
-
-
-def substituted(text: str, config: Config) -> str:
-    """Return a HAL line with the INI's values in it."""
-    return FROM_INI.sub(lambda named: config.ini.get(named[1], named[2]) or "", text)
-
-
-def signals(lines: Iterable[HalLine]) -> dict[str, str]:
-    """Return the signal of each pin that HAL lines connect."""
-    found = {}
-    for text, _ in lines:
-        command, *words = ARROW.sub(" ", text).split() or [""]
-        if command == "linkps":
-            words.reverse()
-        if command in ("net", "linkps", "linksp") and words:
-            found.update(dict.fromkeys(words[1:], words[0]))
-    return found
 
 
 def hal_in_the_way(config: Config, lines: list[HalLine]) -> Iterator[ConfigFinding]:
@@ -282,25 +256,6 @@ def hal_in_the_way(config: Config, lines: list[HalLine]) -> Iterator[ConfigFindi
                 )
 
 
-def hal_files(config: Config, key: str = "HALFILE") -> list[list[HalLine]]:
-    """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
-    return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
-            for value in config.ini.all("HAL", key) if value.strip()]  # fmt: skip
-
-
-def hal_lines(path: Path) -> list[HalLine]:
-    """Return the lines of a HAL file that are not blank, without comments."""
-    if not path.is_file():
-        return []
-    texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    bare = ((text.partition("#")[0].strip(), number) for number, text in enumerate(texts, 1))
-    return [HalLine(text, f"{path.name}:{number}") for text, number in bare if text]
-
-
-def names(lines: list[HalLine], *words: str) -> bool:
-    return any(word in line.text for line in lines for word in words)
-
-
 def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find kinematics with another distance of the tool from the X line than G12.1's."""
     matches = (SETS_OFFSET.fullmatch(substituted(line.text, config)) for line in all_hal(config))
@@ -312,17 +267,6 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
             f"[G12] POLAR_TOOL_OFFSET = {offset:g}, but {OFFSET} is {found:g}: G12.1 is refused",
             f"HALFILE = …/{OFFSET_HAL} after the file that loads motion, and nothing else for it",
         )
-
-
-def later_hal(config: Config) -> list[HalLine]:
-    """Return the lines of HALCMD, and of the HAL files for after the screen's start."""
-    commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
-    return [*commands, *chain(*hal_files(config, "POSTGUI_HALFILE"))]
-
-
-def all_hal(config: Config) -> list[HalLine]:
-    """Return all HAL lines, in LinuxCNC's order."""
-    return [*chain(*hal_files(config)), *later_hal(config)]
 
 
 def codes_off(config: Config) -> list[str]:

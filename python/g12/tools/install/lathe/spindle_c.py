@@ -16,9 +16,7 @@ from g12.tools.errors import UsageError
 from g12.tools.install.config.features import KINEMATICS, ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config
-from g12.tools.install.lathe.kinematics_lines import joints
-from g12.tools.install.lathe.kinematics_rules import (
-    GUARD_HAL,
+from g12.tools.install.lathe.hal import (
     HalLine,
     all_hal,
     hal_files,
@@ -27,6 +25,8 @@ from g12.tools.install.lathe.kinematics_rules import (
     pins_taken,
     signals,
 )
+from g12.tools.install.lathe.kinematics_lines import joints
+from g12.tools.install.lathe.kinematics_rules import GUARD_HAL
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
 SPINDLE_C_HAL = "configs/include/spindle_c.hal"

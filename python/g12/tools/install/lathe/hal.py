@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The HAL lines of a machine config: its files and [HAL]'s commands, their signals and pins."""
+
+import re
+from collections.abc import Iterable, Iterator
+from itertools import chain, product
+from pathlib import Path
+from typing import NamedTuple
+
+from g12.tools.install.config.findings import ConfigFinding, problem
+from g12.tools.install.config.loaded import Config, folder_from_ini
+
+ARROW = re.compile(r"\s<?=>?\s")
+FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
+
+
+class HalLine(NamedTuple):
+    """A line of a HAL file without its comment, and its location."""
+
+    text: str
+    location: str
+
+
+def hal_files(config: Config, key: str = "HALFILE") -> list[list[HalLine]]:
+    """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
+    return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
+            for value in config.ini.all("HAL", key) if value.strip()]  # fmt: skip
+
+
+def hal_lines(path: Path) -> list[HalLine]:
+    """Return the lines of a HAL file that are not blank, without comments."""
+    if not path.is_file():
+        return []
+    texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
+    bare = ((text.partition("#")[0].strip(), number) for number, text in enumerate(texts, 1))
+    return [HalLine(text, f"{path.name}:{number}") for text, number in bare if text]
+
+
+def later_hal(config: Config) -> list[HalLine]:
+    """Return the lines of HALCMD, and of the HAL files for after the screen's start."""
+    commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
+    return [*commands, *chain(*hal_files(config, "POSTGUI_HALFILE"))]
+
+
+def all_hal(config: Config) -> list[HalLine]:
+    """Return all HAL lines, in LinuxCNC's order."""
+    return [*chain(*hal_files(config)), *later_hal(config)]
+
+
+def substituted(text: str, config: Config) -> str:
+    """Return a HAL line with the INI's values in it."""
+    return FROM_INI.sub(lambda named: config.ini.get(named[1], named[2]) or "", text)
+
+
+def names(lines: list[HalLine], *words: str) -> bool:
+    return any(word in line.text for line in lines for word in words)
+
+
+def signals(lines: Iterable[HalLine]) -> dict[str, str]:
+    """Return the signal of each pin that HAL lines connect."""
+    found = {}
+    for text, _ in lines:
+        command, *words = ARROW.sub(" ", text).split() or [""]
+        if command == "linkps":
+            words.reverse()
+        if command in ("net", "linkps", "linksp") and words:
+            found.update(dict.fromkeys(words[1:], words[0]))
+    return found
+
+
+def pins_taken(
+    lines: Iterable[HalLine], pins: Iterable[str], owner: str, cure: str
+) -> Iterator[ConfigFinding]:
+    """Find pins in HAL lines that belong to ``owner``."""
+    for (text, location), pin in product(lines, pins):
+        if pin in text.split():
+            yield problem("pin-taken", f"{location}: {text}: {pin} {owner}", cure)
