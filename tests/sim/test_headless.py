@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.tools.headless.errors import Timeout
+from g12.tools.headless.errors import MachineError, Timeout
 from g12.tools.headless.machine import StartupError
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from support.operated_machine import Machine, kept_machine
@@ -38,13 +38,19 @@ def machine(running):
 def test_real_motion_follows_the_trace(machine):
     program = ["G21 G90 G61 F1000", "G1 X10 Y5", "G3 X20 Y15 I0 J10", "G2 I5", "G0 Z3", "M2"]
     samples = machine.motion_of(program)
-    assert samples.lost == 0
     moves = trace_text(program, SIM / "mill_mm.ini").moves
     path = np.array([move.point(f)[:3] for move in moves for f in np.linspace(0, 1, 400)])
     real = np.column_stack([samples.axes[axis] for axis in "XYZ"])
     for point in real[::20]:
         assert np.min(np.hypot(*(path - point).T[:2])) < 0.06
     assert real[-1] == pytest.approx(moves[-1].end[:3], abs=1e-9)
+
+
+def test_a_recording_with_gaps_is_an_error(machine):
+    machine.sample()
+    machine.set("sampler.0.overruns", 3)
+    with pytest.raises(MachineError, match="3 samples of the motion are lost"):
+        machine.samples()
 
 
 def test_samples_tell_line_speed_and_kind_at_the_servo_rate(machine):

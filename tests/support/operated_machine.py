@@ -79,7 +79,7 @@ class Machine(machine.Machine):
 
     def samples(self) -> Samples:
         """Stop recording, which ``sample`` started, and return the motion."""
-        return self._samples(*self._request("samples"))
+        return self._samples(self._request("samples"))
 
     def run_text(self, text, timeout=600.0) -> Run:
         """Run a program given as text or as lines; see ``run``."""
@@ -97,7 +97,6 @@ class Machine(machine.Machine):
         Verify assumes the state of the machine at its start: see `reset`.
         """
         samples = self.motion_of(text)
-        assert samples.lost == 0
         return prove(self.folder / "program.ngc", self.ini, samples=samples)
 
     def reset(self) -> None:

@@ -144,7 +144,7 @@ class Machine:
         copy = self.folder / "programs" / Path(program).name
         shutil.copyfile(program, copy)
         answer = self._request("run", str(copy), timeout, timeout=timeout)
-        samples, errors = self._samples(*answer["recorded"]), answer["errors"]
+        samples, errors = self._samples(answer["recorded"]), answer["errors"]
         moving = samples.time[samples.moving()]
         return Run(
             samples=samples,
@@ -161,7 +161,7 @@ class Machine:
             self._connection.close()
         self._isolated.close()
 
-    def _samples(self, rows: bytes, lost: int) -> Samples:
+    def _samples(self, rows: bytes) -> Samples:
         columns = np.frombuffer(rows).reshape(-1, len(self.axes) + 4).T
         velocity, requested, line, kind = columns[len(self.axes) :]
         return Samples(
@@ -171,7 +171,6 @@ class Machine:
             requested=requested,
             line=line.astype(int),
             kind=kind.astype(int),
-            lost=lost,
         )
 
     # Starting.

@@ -45,17 +45,23 @@ class Sampler:
 
     def start(self) -> None:
         """Discard the samples so far and record from now on."""
-        self.stop()
+        self._halt()
         self.rows = array.array("d")
         hal.set_p("sampler.0.overruns", "0")
         hal.set_p("sampler.0.enable", "1")
 
-    def stop(self) -> tuple[bytes, int]:
-        """Stop and return the rows and the number of samples lost."""
+    def stop(self) -> bytes:
+        """Stop and return the rows; a recording with gaps is an error."""
+        self._halt()
+        lost = int(hal.get_value("sampler.0.overruns"))
+        if lost:
+            raise MachineError(f"{lost} samples of the motion are lost: run it on an idle computer")
+        return self.rows.tobytes()
+
+    def _halt(self) -> None:
         hal.set_p("sampler.0.enable", "0")
         time.sleep(DRAIN)
         self.drain()
-        return self.rows.tobytes(), int(hal.get_value("sampler.0.overruns"))
 
     def drain(self) -> None:
         row = self._stream.read()

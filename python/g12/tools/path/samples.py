@@ -13,7 +13,7 @@ class Samples:
     ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
     ``velocity`` is the speed along the path and ``requested`` the commanded one, machine units per
     second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
-    3 arc, 4 tool change, 5 probe, 6 rotary unlock.  ``lost`` counts samples that overran.
+    3 arc, 4 tool change, 5 probe, 6 rotary unlock.
     """
 
     time: np.ndarray
@@ -22,7 +22,6 @@ class Samples:
     requested: np.ndarray
     line: np.ndarray
     kind: np.ndarray
-    lost: int
 
     def moving(self) -> np.ndarray:
         return self.kind != 0
