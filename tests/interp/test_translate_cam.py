@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from g12.geometry.curve import sweep_between
 from g12.tools.commands import main
 from g12.tools.preview.tracer import Tracer
 from support.cam_parts import PARTS, points_of
@@ -159,15 +160,12 @@ def compensated(part):
         end = complex(*to[:2])
         if kind == "arc":
             centre = here + complex(*to[3:5])
-            sweep = np.angle((end - centre) / (here - centre)) * to[5] % (2 * np.pi) * to[5]
-            shapes.append(Round(here, centre, sweep))
+            shapes.append(Round(here, centre, sweep_between(here, end, centre, to[5])))
         else:
             shapes.append(Straight(here, end))
         here = end
-    segments = [
-        segment for group in outward(shapes, CUTTERS["mm"][part.tool] / 2) for segment in group
-    ]
-    return np.concatenate([spaced(segment, 0.1) for segment in segments])
+    groups = outward(shapes, CUTTERS["mm"][part.tool] / 2)
+    return np.concatenate([spaced(segment, 0.1) for group in groups for segment in group])
 
 
 def distances(points, path):

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from g12.geometry.curve import sweep_between
+
 
 class CamPart(NamedTuple):
     """A part: its tool, the feed in mm/min, the moves, and the side of compensation."""
@@ -133,11 +135,11 @@ def points_of(part, step=0.2):
 
 def along_arc(start, end, i, j, turns, step):
     """Return points of an arc or a helix."""
-    centre = complex(start[0] + i, start[1] + j)
-    arms = [complex(*point[:2]) - centre for point in (start, end)]
-    sweep = (np.angle(arms[1] / arms[0]) * turns) % math.tau * turns
-    share = np.linspace(0, 1, max(3, math.ceil(abs(sweep * arms[0]) / step) + 1))
-    plane = centre + arms[0] * np.exp(1j * sweep * share)
+    here, there = complex(*start[:2]), complex(*end[:2])
+    centre = here + complex(i, j)
+    sweep = sweep_between(here, there, centre, turns)
+    share = np.linspace(0, 1, max(3, math.ceil(abs(sweep * (here - centre)) / step) + 1))
+    plane = centre + (here - centre) * np.exp(1j * sweep * share)
     return np.column_stack([plane.real, plane.imag, start[2] + (end[2] - start[2]) * share])
 
 

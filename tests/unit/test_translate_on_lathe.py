@@ -16,14 +16,14 @@ CUT = "G1 Z-1. F100.\nX12.\n"
 DRILL = "G98 G81 X10. Y5. Z-6. R3. F80.\n"
 
 
-def control_of(name, *options):
-    control = read_control(name)
-    requested = translate.parsed(["--control", name, "part.nc", *options])
-    return translate.changed(control, requested)
+def with_options(name, *options):
+    return translate.changed(
+        read_control(name), translate.parsed(["--control", name, "part.nc", *options])
+    )
 
 
-FACE = control_of("mill-on-face")
-ROUND = control_of("mill-round-part", "--diameter", "40")
+FACE = with_options("mill-on-face")
+ROUND = with_options("mill-round-part", "--diameter", "40")
 
 
 def lines(text, control=FACE):
@@ -134,19 +134,21 @@ def test_what_is_refused(text, line, sentence):
 def test_the_safe_height_and_the_diameter_are_said():
     low = f"{HEAD}G0 Z1.\nG1 Z-1. F9.\n"
     assert "below 2" in refused(low).sentence
-    assert lines(f"{low}M30\n", control_of("mill-on-face", "--safe", "0.5"))
+    assert lines(f"{low}M30\n", with_options("mill-on-face", "--safe", "0.5"))
     assert refused(HEAD + CUT, read_control("mill-round-part")).sentence == (
         "the diameter of the part is not known: say --diameter, or diameter = … under [mill]"
     )
     with pytest.raises(UsageError, match="--diameter is for mill-on-face and mill-round-part"):
-        control_of("haas-mill", "--diameter", "40")
+        with_options("haas-mill", "--diameter", "40")
 
 
-@pytest.mark.parametrize("option", ["--safe", "--diameter"])
-@pytest.mark.parametrize("value", ["0", "-1", "nan", "inf", "x"])
+@pytest.mark.parametrize(
+    ("option", "value"),
+    [("--safe", "0"), ("--safe", "x"), ("--diameter", "nan"), ("--diameter", "inf")],
+)
 def test_heights_and_diameters_are_above_zero(option, value, capsys):
     with pytest.raises(SystemExit):
-        control_of("mill-round-part", option, value)
+        with_options("mill-round-part", option, value)
     assert f"argument {option}: '{value}' is not a number above 0" in capsys.readouterr().err
 
 
