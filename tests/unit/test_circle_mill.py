@@ -1,15 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The locals of the circle mill event without LinuxCNC: depths, radii, directions, feeds.
 
-What is refused is in test_cycles.py.
+What is refused is in test_cycles.py; random events are cut in test_valid_programs.py.
 """
 
 import itertools
-import math
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, plan_code
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
@@ -73,6 +70,7 @@ def test_pocket_in_millimetres():
         ("K.3 Q.02", [-0.2, -0.5, -0.8, -0.98, -1.0]),
         ("K.3 Q.02 L0", [-0.2, -0.5, -0.8, -1.0]),
         ("K.55", [-0.45, -1.0]),
+        ("K2 Q.02", [-0.98, -1.0]),
     ],
 )
 def test_depths_from_w_down(words, depths):
@@ -147,40 +145,9 @@ def test_the_tool_below_w_is_raised_first():
 
 def test_a_roughing_width_above_the_tool_diameter_is_a_message():
     assert ring_radii(code("J.7")) == pytest.approx([0.625, 1.25])
+    assert ring_radii(code("R.3")) == pytest.approx([0.05])
     assert event("J.7").message == (
         "G13.2: the roughing width 0.625 is greater than the tool diameter 0.5:"
         " material is left between the rings"
     )
     assert event("J.5").message is None
-
-
-@st.composite
-def events(draw):
-    radius = draw(st.floats(0.3, 5.0))
-    words = dict(X=0.0, Y=0.0, R=radius, I=0.1, Z=-draw(st.floats(0.05, 2.0)), H=2)
-    words |= draw(st.fixed_dictionaries({}, optional={"K": st.floats(0.02, 3.0)}))
-    words |= draw(st.fixed_dictionaries({}, optional={"J": st.floats(0.01, 0.5)}))
-    finish = draw(st.none() | st.floats(0.001, 0.04))
-    if finish:
-        words |= {"Q": finish, "L": draw(st.integers(0, 1))}
-    return words
-
-
-@given(words=events())
-def test_any_pocket_steps_evenly_within_j_and_k_and_ends_exactly(words):
-    numbers = plan_code(Words("G13.2", dict(words), INCH), None, True).locals
-    finish = words.get("Q", 0.0)
-    rings = [0.0, *ring_radii(numbers)]
-    widths = [b - a for a, b in zip(rings, rings[1:])]
-    assert max(widths) <= words.get("J", 0.49) + 1e-6
-    assert max(widths) == pytest.approx(min(widths))
-    assert rings[-1] == pytest.approx(words["R"] - 0.25 - finish)
-    assert len(widths) == max(1, math.ceil(rings[-1] / words.get("J", 0.49) - 1e-6))
-    levels = level_depths(numbers)
-    drops = [a - b for a, b in zip([0.1, *levels], levels)]
-    bottom = bool(finish) and words["L"] == 1
-    assert levels[-1] == words["Z"]
-    assert max(drops[: len(drops) - bottom]) <= words.get("K", 9.0) + 1e-6
-    assert min(drops) > 0
-    if bottom:
-        assert drops[-1] == pytest.approx(finish)
