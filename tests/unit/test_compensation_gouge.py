@@ -105,6 +105,13 @@ def test_a_pocket_that_begins_in_its_corner_is_refused():
     )
 
 
+def test_leads_from_the_other_side_of_a_closed_contour_suggest_the_other_code():
+    led = path(30 + 2j, *BOSS, 30 - 2j)
+    assert cut(led, LEFT, 3.0) == ("", [])
+    text, _ = cut(led, RIGHT, 3.0)
+    assert text.endswith("both lines 4 and 9: beside one of them it cuts into the other. G41?")
+
+
 def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
     slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
             *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip

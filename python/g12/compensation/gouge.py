@@ -9,9 +9,9 @@ level or below. That is valid
   a finishing pass;
 - where the contour runs through the air between two plunges.
 
-Everything else is refused, and so is a contour that crosses itself. Two cases are only reported:
-leads that cross each other, and an open contour's first or last move that a later pass cuts from
-its far side. `neighbours` checks the other contours of the section.
+Everything else is refused, and so is a contour of such passes that crosses itself. Two cases are
+only reported: leads that cross each other, and an open contour's first or last move that a later
+pass cuts from its far side. `neighbours` checks the other contours of the section.
 """
 
 from __future__ import annotations
