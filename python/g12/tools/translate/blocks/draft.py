@@ -112,6 +112,10 @@ class Draft:
         self.words = [word for word in self.words if word.letter != letter]
         return found[0] if found else None
 
+    def take_each(self, letters: str) -> list[ForeignWord]:
+        """Take the words of some letters out and return them, in the order of the letters."""
+        return [word for letter in letters if (word := self.take(letter))]
+
     def comment_out(self, letter: str, note: str = "") -> None:
         """Keep the word of a letter as a comment, if there is one."""
         word = self.take(letter)

@@ -14,7 +14,6 @@ from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
 from g12.tools.translate.rules.polar import own_block, own_feed_ended
 
 ANGLE_LETTERS = {"Y": "C", "V": "H"}
-RADIUS_SCALES = {"R": 1, "Q": 2}  # radius and diameter
 
 
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
@@ -43,16 +42,13 @@ def _named_radius(draft: Draft, code: str) -> str:
 
 def _mapped_radius(draft: Draft, code: str) -> str:
     """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
-    sizes = [
-        (word, RADIUS_SCALES[letter]) for letter in RADIUS_SCALES if (word := draft.take(letter))
-    ]
-    axes = [word for letter in "YC" if (word := draft.take(letter))]
+    sizes, axes = draft.take_each("RQ"), draft.take_each("YC")
     if not sizes and not axes:
         return ""
     if len(sizes) != 1 or len(axes) != 2 or not all(word.is_zero for word in axes):
         raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
-    ((word, times),) = sizes
-    return word.value if times == 1 else f"[{word.value} / 2]"
+    (size,) = sizes
+    return size.value if size.letter == "R" else f"[{size.value} / 2]"
 
 
 def on_the_surface(draft: Draft) -> None:
@@ -62,11 +58,7 @@ def on_the_surface(draft: Draft) -> None:
     radius = draft.sure("mapped", "Y is mapped onto a cylinder")
     if draft.letters() & {"C", "H"}:
         raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
-    draft.words = [
-        ForeignWord(
-            ANGLE_LETTERS[w.letter], f"[[{w.value}] * {degrees(1):.12f} / {radius}]", "expression"
-        )
-        if w.letter in ANGLE_LETTERS
-        else w
-        for w in draft.words
-    ]
+    for at, word in enumerate(draft.words):
+        if word.letter in ANGLE_LETTERS:
+            angle = f"[[{word.value}] * {degrees(1):.12f} / {radius}]"
+            draft.words[at] = ForeignWord(ANGLE_LETTERS[word.letter], angle, "expression")

@@ -95,7 +95,7 @@ def _both_increments(draft: Draft, kind: str) -> set[float]:
 def dwell(draft: Draft, code: ForeignWord) -> None:
     seconds = draft.control.value("dwell", "seconds")
     milliseconds = draft.control.value("dwell", "milliseconds")
-    times = [word for letter in seconds + milliseconds if (word := draft.take(letter))]
+    times = draft.take_each(seconds + milliseconds)
     if len(times) != 1:
         known = " or ".join(seconds + milliseconds)
         raise NotTranslated(f"{code.code} needs its time as {known}, once")

@@ -82,7 +82,7 @@ def _named_spindle(draft: Draft, turns: bool) -> str:
 
 def orientation(draft: Draft, code: ForeignWord) -> None:
     """Write M19 so that LinuxCNC waits for it: at the machine's own angle, or at R or P degrees."""
-    angles = [word for letter in "RP" if (word := draft.take(letter))]
+    angles = draft.take_each("RP")
     if len(angles) > 1:
         raise NotTranslated(f"{code.code} with R and P: one of them is its angle")
     draft.change(spindle=UNKNOWN)  # M19 stops it

@@ -212,7 +212,7 @@ def _pattern_repeating(draft: Draft, meaning: str) -> None:
 def finishing(draft: Draft, meaning: str) -> None:
     """G70: the contour with its own feeds, speeds and compensation."""
     start, (indices, follows) = start_point(draft), _contour_named(draft)
-    needless = [word.text for letter in "UWD" if (word := draft.take(letter))]
+    needless = [word.text for word in draft.take_each("UWD")]
     draft.comments += [f"{' '.join(needless)}: nothing for a finishing cut"] if needless else []
     before = draft.sure("compensation", "finishing takes over")
     segments, state = read_contour(draft, indices, start)

@@ -162,7 +162,7 @@ def _drill_hole(draft: Draft, meaning: str) -> None:
 
 def _is_side_hole(draft: Draft, kept: dict) -> bool:
     """Whether a hole is in the side, by I and K: the distance of the first rapid."""
-    shifts = [word for letter in "IK" if (word := draft.take(letter))]
+    shifts = draft.take_each("IK")
     if len(shifts) > 1 or not (shifts or "side" in kept):
         raise NotTranslated(
             "a drilling cycle needs I (a hole in the side) or K (in the face), and one of them"
@@ -283,9 +283,9 @@ def _tap_pitch(draft: Draft) -> float:
 
 def _lines_to_holes(draft: Draft, other: str) -> tuple[list[str], list[str]]:
     """Return the lines to the first hole, and those from hole to hole."""
-    own = (other, "C")
-    there = [word.text for axis in own if (word := draft.take(axis))]
-    steps = [word._replace(letter=a).text for a in own if (word := draft.take(STEPS[a]))]
+    there = [word.text for word in draft.take_each(f"{other}C")]
+    increments = draft.take_each(f"{STEPS[other]}H")
+    steps = [f"{PARTNERS[word.letter]}{word.value}" for word in increments]
     if {word[0] for word in there} & {word[0] for word in steps}:
         raise NotTranslated("a word of an axis and its increment in one block")
     step_lines = [" ".join(["G91", "G0", *steps]), "G90"] if steps else []
