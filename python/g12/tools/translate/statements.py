@@ -17,22 +17,17 @@ def _assign(draft: Draft, structure: Structure) -> None:
     draft.words = [*block.words, line_as_word(f"#{block.variable}={value}")]
 
 
-def _while_loop(draft: Draft, structure: Structure) -> None:
-    _refuse_skipped(draft)
-    _labelled(draft, f"o<while_{draft.index}> while {draft.block.expression.text}")
+def _opening(draft: Draft, structure: Structure) -> None:
+    _refuse_skipped_loop(draft)
+    kind = draft.block.kind
+    _labelled(draft, f"o<{kind}_{draft.index}> {kind} {draft.block.expression.text}")
 
 
-def _end_of_loop(draft: Draft, structure: Structure) -> None:
-    _refuse_skipped(draft)
-    _labelled(draft, f"o<while_{structure.partners[draft.index]}> endwhile")
-
-
-def _condition(draft: Draft, structure: Structure) -> None:
-    _labelled(draft, f"o<if_{draft.index}> if {draft.block.expression.text}")
-
-
-def _end_of_condition(draft: Draft, structure: Structure) -> None:
-    _labelled(draft, f"o<if_{structure.partners[draft.index]}> endif")
+def _closing(draft: Draft, structure: Structure) -> None:
+    _refuse_skipped_loop(draft)
+    start = structure.partners[draft.index]
+    kind = structure.blocks[start].kind
+    _labelled(draft, f"o<{kind}_{start}> end{kind}")
 
 
 def _goto(draft: Draft, structure: Structure) -> None:
@@ -58,19 +53,18 @@ def _labelled(draft: Draft, text: str) -> None:
     draft.words = [line_as_word(text)]
 
 
-def _refuse_skipped(draft: Draft) -> None:
-    """Refuse a loop of which one half is skipped."""
-    if draft.block.skipped:
+def _refuse_skipped_loop(draft: Draft) -> None:
+    if draft.block.skipped and draft.block.kind in ("while", "end"):
         raise NotTranslated("the head or the end of a loop cannot be skipped with /")
 
 
 STATEMENTS = {
     "tape": _tape,
     "assign": _assign,
-    "while": _while_loop,
-    "end": _end_of_loop,
-    "if": _condition,
-    "endif": _end_of_condition,
+    "while": _opening,
+    "end": _closing,
+    "if": _opening,
+    "endif": _closing,
     "goto": _goto,
     "stop": _stop,
 }

@@ -72,8 +72,8 @@ class ForeignWord(NamedTuple):
     """A word: its letter and its value as LinuxCNC can read it.
 
     ``kind`` is ``number``, ``expression``, ``bare`` (a letter alone beside a plane code) or
-    ``text`` (a line of LinuxCNC's that a rule has written); ``read``
-    holds the variables of an expression.
+    ``text`` (a line of LinuxCNC's that a rule has written); ``read`` holds the variables of an
+    expression.
     """
 
     letter: str
@@ -107,8 +107,8 @@ class ForeignWord(NamedTuple):
 class ForeignBlock(NamedTuple):
     """One block of a program, or a statement in its place.
 
-    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``do``, ``end``, ``if`` and
-    ``endif`` around the blocks that a condition rules, ``stop`` or ``goto``.
+    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, ``if`` and ``endif``
+    around the blocks that a condition rules, ``stop`` or ``goto``.
     """
 
     line: int  # from 1
