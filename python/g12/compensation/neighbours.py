@@ -32,10 +32,10 @@ SAMPLE_COUNT = 2  # passes of another contour: one of these mostly enters, if an
 def check_neighbours(contours: Sequence[CompensatedContour]) -> None:
     """Refuse a contour along which the tool cuts deep into another, closed one."""
     walled = [each for each in contours if each.walls]
-    sweep = Sweep(each for other in walled for each in other.passes)
+    section = Sweep(each for other in walled for each in other.passes)
     for wall in (each for each in walled if each.closing.closed):
         others = [other for other in walled if _may_cut(other, wall)]
-        found = _Neighbourhood(wall, others, sweep).deepest() if others else None
+        found = _Neighbourhood(wall, others, section).deepest() if others else None
         if found:
             point, cutting = found
             raise Refusal(wall.gouge_text(wall.moves[point.move_index].line, cutting.move.line))
@@ -57,10 +57,11 @@ class _Neighbourhood:
     """A contour that closes, and others of its section that may cut into it."""
 
     def __init__(
-        self, wall: CompensatedContour, others: Iterable[CompensatedContour], sweep: Sweep
+        self, wall: CompensatedContour, others: Iterable[CompensatedContour], section: Sweep
     ) -> None:
-        self._wall, self._sweep = wall, sweep
-        self._intended: dict[int, bool | None] = {id(other): None for other in others}
+        self._wall, self._section = wall, section
+        self._others = Sweep(each for other in others for each in other.passes)
+        self._intended: dict[int, bool] = {}
 
     def deepest(self) -> tuple[WallPoint, Pass] | None:
         """Return the wall's point with the deepest unintended cut, and the pass that cuts it.
@@ -69,14 +70,14 @@ class _Neighbourhood:
         """
         found, depth = None, ALLOWANCE * self._wall.radius
         for point in reversed(list(self._wall.points())):
-            depth, cutting = self._sweep.deepest(point, depth, partial(self._cuts, point))
+            depth, cutting = self._others.deepest(point, depth, partial(self._cuts, point))
             found = (point, cutting) if cutting else found
         return found
 
     def _cuts(self, point: WallPoint, cutting: Pass) -> bool:
         """Return whether a pass in range cuts a point and is not intended to."""
         other, curve = cutting.contour, cutting.move.curve
-        if self._intended.get(id(other), True) or self._wall.levels.isdisjoint(cutting.levels):
+        if self._intended.get(id(other)) or self._wall.levels.isdisjoint(cutting.levels):
             return False
         if other.is_lead(cutting.move_index, curve.point(curve.share_of(point.point))):
             return False
@@ -84,20 +85,20 @@ class _Neighbourhood:
 
     def _is_intended(self, other: CompensatedContour) -> bool:
         """Return whether the cut is on purpose: one contour enters the other, or cuts all of it."""
-        known, wall = self._intended[id(other)], self._wall
-        if known is None:
-            known = self._intended[id(other)] = (
+        if id(other) not in self._intended:
+            wall = self._wall
+            self._intended[id(other)] = (
                 enters(other.passes, wall, CHECK_STEP)
                 or enters(wall.passes, other, CHECK_STEP)
                 or all(other.sweep.cuts(point, wall.gouge_distance) for point in wall.points())
             )
-        return known
+        return self._intended[id(other)]
 
     def _is_removed(self, point: WallPoint) -> bool:
         """Return whether a contour that enters the material cuts the point, too."""
         return any(
             enters([each], self._wall, CHECK_STEP)
-            for each in self._sweep.cutting(point, self._wall.gouge_distance)
+            for each in self._section.cutting(point, self._wall.gouge_distance)
             if each.contour is not self._wall
         )
 
