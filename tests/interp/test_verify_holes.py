@@ -36,10 +36,9 @@ def test_the_line_of_a_call_has_its_time_but_for_taps(tmp_path, capsys):
     assert tap.endswith("allowed)")
 
 
-def findings(path, ini, **options):
-    proof = prove(path, ini, tools={1: 6.0}, **options)
-    others = ("not-", "rapid-turned")
-    return [(each.code, each.line) for each in proof.judged if not each.code.startswith(others)]
+def findings(path, ini):
+    judged = prove(path, ini, tools={1: 6.0}).judged
+    return [(each.code, each.line) for each in judged if not each.is_not_judged]
 
 
 def a_call(chance, scale):

@@ -7,7 +7,7 @@ several), those ``where`` an expression holds, and of these in each line the ``m
 
 - ``drop``: they are missing; ``again``: they come once more, all together
 - ``before``, ``after``: moves beside each, straight ones at its feed unless their fields say more
-- fields: ``x y z a c`` of the end and ``cx cy cz`` of the centre (machine coordinates, mm), ``p``
+- fields: ``x y z c`` of the end and ``cx cy cz`` of the centre (machine coordinates, mm), ``p``
   of both as x + iy, ``w`` of the end on a lathe's face, as X and C turned by C's angle, ``feed``,
   ``feed_mode``, ``kind``, ``turns``, ``exact``
 - ``event``: what happens in front of each
@@ -32,7 +32,7 @@ from dataclasses import replace
 from g12.tools.preview.moves import THIRD_AXIS, Event, Move, Trace
 
 Change = Mapping[str, object]
-AXES = {"x": 0, "y": 1, "z": 2, "a": 3, "c": 5}
+AXES = {"x": 0, "y": 1, "z": 2, "c": 5}
 PICKING = ("line", "where", "moves")
 OF_MOVES = (*PICKING, "drop", "again", "before", "after", "event")
 SPAN = re.compile(r"(-?\d+)(-?)(\d*)")
