@@ -374,9 +374,9 @@ def test_a_macro_that_asks_for_empty_variables(blocks):
 
 def test_least_increments_follow_the_units(tmp_path):
     own = tmp_path / "own.toml"
-    own.write_text('based_on = "fanuc-mill"\ndecimals = "least"\n')
+    own.write_text('based_on = "fanuc-mill"\ndecimals = "least"\naxes = "XYZA"\n')
     least = read_control(str(own))
-    assert lines_after(least, "G0 X0|G21 G0 X1234")[0] == "G21 G0 X1.234"
+    assert lines_after(least, "G0 X0|G21 G0 X1234 A1500")[0] == "G21 G0 X1.234 A1.500"
     assert lines_after(least, "G0 X0|G20 G0 X1234")[0] == "G20 G0 X0.1234"
     assert "neither G20 nor G21" in refusal(least, "G0 X0|G0 X1234")[1]
     own.write_text('based_on = "fanuc-mill"\ndecimals = "whole"\n')
