@@ -21,6 +21,7 @@ BEGINNINGS = {  # the machine, and the blocks before a row's
     "mill": ("mill_mm", "G21 G17 G40 G49 G90 G94 F600|T4 M6|G43 H4|S900 M3|G0 X0 Y0 Z1"),
     "lathe": ("lathe_mm", "G21 G18 G7 G40 G90 G94|T1 M6|S900 M3|G0 X60 Z2 C0"),
     "radii": ("lathe_mm", "G21 G18 G8 G40 G90 G94|T3 M6|S900 M3|G0 X18 Z2 C0"),
+    "two spindles": ("lathe_spindle_c_mm", "G21 G18 G7 G40 G90 G94|T1 M6|M254|G0 X60 Z2 C0"),
     "inch": ("mill_inch", "G20 G17 G40 G49 G90 G94 G64 P.001|T1 M6 G43|S3000 M3|G0 X0 Y0 Z.1"),
     "yasnac": ("mill_yasnac_mm", "G21 G17 G40 G49 G90 G94|T10 M6 G43|S3000 M3|G0 X0 Y0 Z2"),
     "helix": ("mill_helix_mm", "G21 G17 G40 G49 G90 G94 F600|T4 M6 G43|S3000 M3|G0 X0 Y0 Z1"),
@@ -43,6 +44,7 @@ POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
 GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
 P = "G13 I7 K20 Q6 Z-3 D4"
 NARROW = FLAT.replace("C25", "C6")
+OTHER_FLAT = "X-80|G41 X-27 C-25|Z-5|C25|G40 X-80 C0|Z2|G13.1"
 FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
@@ -129,7 +131,7 @@ CASES = [
     ("mill", "G0 Z-4|G13 I9 Z-4 D4|G0 Z1", "bored-assumed 6"),
     ("mill", "G0 X9 Z30|X0 Y0|Z1|G13 I9 Z5 D4|G0 Z1|X40|G13 I9 Z-2|G0 Z1",
      "cuts-air 9, above-zero 9"),
-    ("lathe", FLAT.replace("Z-5", "Z5"), "above-start 5, above-zero 5"),
+    ("lathe", FLAT.replace("Z-5", "Z5"), "above-zero 5, above-start 9"),
     ("lathe", FLAT.replace("Z-5", "Z2"), "above-zero 5"),
     ("lathe", f"G1 Z-5 F1000|{FLAT.replace('|Z-5', '').replace('G13.1', 'Z2|G13.1')}", ""),
     # the travel
@@ -224,7 +226,7 @@ CASES = [
     ("mill", f"{SHALLOW}|G0 Z1|Z-4|{CLEARED}|G0 Z1", "rapid-into 8"),
     ("mill", f"Z-2|{CLEARED}|G0 Z-2|X60|{CLEARED}", "bored-assumed 6, rapid-beside 9"),
     ("yasnac", "G0 Z-3|G12 I40 R38 D10 F300|G0 X20 Y2|Z2", "bored-assumed 6"),
-    ("mitsubishi", "G0 X0 Y0 Z5|G18 G1 Z-5|G12 I30 D10|G0 X100|Z5", ""),
+    ("mitsubishi", "G0 X0 Y0 Z5|G18 G1 Z-5|G12 I30 D10|G0 X100|Z5", "upright 6"),
     # the top of a pocket that is not below Z0 is where it began to feed
     ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z10|X100", "above-zero 6"),
     ("any mill", f"{AIR}|Z10|G13 I7 K20 Q6 Z5 D4|G0 Z7|X100", "above-zero 6, rapid-through 8"),
@@ -271,11 +273,11 @@ CASES = [
     ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "", "9"),
     ("lathe", f"G0 Z10|Z-15|X10|X60|{HOLES.replace('30', '40')}|G0 X80", "rapid-into 7", "40"),
     ("lathe", f"{HEXAGON}|G0 X70 Z-20|X36|G7.1 C25|G1 X36 F200|Z-40 C60|X70|G7.1 C0",
-     "plunge-into-stock 8, rapid-into 20, not-below-start 21, inside-surface 21", "50"),
+     "plunge-into-stock 8, rapid-into 20, inside-surface 21", "50"),
     ("lathe", f"{HEXAGON}|G0 X70 Z-20|X56|G7.1 C25|G1 X36 F200|Z-40 C60|X70|G7.1 C0",
      "plunge-into-stock 8", "50"),
     ("lathe", f"{GROOVE.replace('G7', 'X44|G7')}|G1 X60|G7.1 C0",
-     "rapid-into 6, not-below-start 7, inside-surface 7", "50"),
+     "rapid-into 6, inside-surface 7", "50"),
     ("lathe", f"{GROOVE.replace('G7', 'X52|G7')}|G1 X60|G7.1 C0", "", "50"),
     ("lathe", f"{HEXAGON.replace('Z-5', 'Z-15')}|G0 Z5|T2 M6|G0 X70 Z-3|"
      f"{HOLES.replace('-15', '-3')}|G0 X80",
@@ -316,7 +318,8 @@ CASES = [
     # what comes before the first move of a section, and after an element that makes none
     ("radii", "G12.1|M8|G1 X30 F500|Z-1|X30|M9|X20|G13.1", ""),
     # a contour of a line and an arc, a radius of 0 in a sub, words that cannot be read
-    ("radii", "G0 X40|G12.1|G1 C30 F900|G41 X12|C-16|G2 X12 C16 R-20|G1 G40 X40|Z-2|G13.1", ""),
+    ("radii", "G0 X40|G12.1|G1 C30 F900|G41 X12|C-16|G2 X12 C16 R-20|G1 G40 X40|Z-2|G13.1",
+     "contour-above 9"),
     ("lathe", "o7 sub|G7.1 C#1|G1 X40 F300|C90|X60|G7.1 C0|o7 endsub|G0 X60 Z-20|o7 call [0]|"
      "o7 call [25]", ""),
     ("radii", f"G12.1|G1 X30 F800|Z-1|X[28{'+0' * 122}]|G13.1", "contour-unread 5"),
@@ -358,8 +361,40 @@ CASES = [
      "above-zero 6, above-zero 12"),
     ("radii", "G0 X30|G1 X28 F900|G61|G12.1|G1 X28 C9|G13.1|G0 Z5", "above-zero 8"),
     ("radii", "G0 X30|G61.1|G1 X28 F900|G64|G12.1|G1 X28 C9|X20 C4|G13.1|G0 Z5", "above-zero 9"),
+    # contours of one section: crossed without compensation, in the air, compensation lost
+    ("radii", "G0 X30|G12.1|G1 C3 F900|G41 X12 C20|Z-5|C-20|G40 X30 C3|X-30|Z2|G13.1",
+     "cuts-contour 12"),
+    ("lathe", HEXAGON.replace("G40 X70", "G40 X70|X0"), "cuts-contour 17"),
+    ("lathe", HEXAGON.replace("Z2|G13.1", "Z2|X0|X70|G13.1"), ""),
+    ("lathe", f"G0 X80|G12.1|G1 G41 X27 C25 F1000|Z5|C-25|G40 X80 C0|Z2|{OTHER_FLAT}",
+     "above-start 9"),
+    ("lathe", f"G0 X80|G12.1|G1 G41 X27 C25 F1000|C-25|G40 X80 C0|{OTHER_FLAT}",
+     "contour-above 8"),
+    ("lathe", FLAT.replace("G41 ", ""), "side-cancelled 10"),
+    # the tool: no diameter, changed in a cut; the second spindle, which no preview shows
+    ("mill", "G10 L1 P4 R0|T4 M6 G43|S900 M3|G0 X0 Y0 Z1|G13 I9 Z-3 D3|G0 X100|Z1",
+     "loaded-unknown 10, rapid-through 11"),
+    ("radii", f"G10 L1 P3 R0|T3 M6|S900 M3|G0 X18 Z2 C0|{SLOT.replace('|Z2', '')}|G0 C180|Z2",
+     "rubs 9, rapid-no-diameter 14"),
+    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 6"),
+    ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
+    ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 8"),
+    ("two spindles", FLAT, "tool-spindle-unseen 5"),
+    # rapids before the first section, and a hole for it; in front of the face
+    ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-through 6"),
+    ("lathe", "G0 X60 Z-20|X10|X60|G7.1 C20|G1 X34 F80|Z-40|X60|G7.1 C0", "rapid-into 6"),
+    ("lathe", "G0 X10|Z-3|G12.1|G1 X20 F600|Z2|G13.1", "bored-assumed 6"),
+    ("lathe", f"G0 X10 Z50|X70 Z5|{SIDE_HOLE}", ""),
+    ("lathe", "G0 X34 Z10|G7.1 C20|G1 Z-20 F100|C90|X44|G7.1 C0", "", "40"),
+    ("lathe", f"G0 Z10|{FACE_HOLE}|G0 Z10", "", "40"),
+    # a boss that another cut removes, a tap faster than the machine
+    ("mill", "G12.2 X0 Y0 Z-3 I2 R15 D0 H1|G13 I9 K18 Q8 Z-3 D4|G0 Z1", "boss-cut 6"),
+    ("mill", "G13 I9 K40 Q8 Z-3 D4|G0 Z1|G12.2 X0 Y0 Z-3 I2 R15 D0 H1", "boss-cut 8"),
+    ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
+     "feed-cut-down 6"),
     # holes with C
-    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}", "no-diameter 6"),
+    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}",
+     "no-diameter 6, rapid-no-diameter 6"),
     ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{AROUND}", "no-diameter 6"),
     ("lathe", f"G0 Z10|{AROUND}", ""),
     ("lathe", f"G0 Z10|{AROUND.replace('[-10]', '[10]')}", "above-zero 6"),
@@ -381,7 +416,7 @@ CASES = [
     ("lathe", FLAT, "", "40"),
     ("lathe", NARROW, "bar-remains 5, plunge-into-stock 8", "40"),
     ("lathe", FLAT.replace("Z-5", "Z5"),
-     "above-start 5, no-stock-met 5, bar-remains 5, above-zero 5", "40"),
+     "no-stock-met 5, bar-remains 5, above-zero 5, above-start 9", "40"),
     ("lathe", f"{FLAT}|G0 C0|{FLAT.replace('X27', 'X44')}", "no-stock-met 14", "40"),
     ("lathe", f"{FLAT}|G0 C180|G12.1|G1 C25 F2000|G13.1|G0 Z-3|X20|Z2",
      "no-stock-met 14, above-zero 14, rapid-through 18", "40"),

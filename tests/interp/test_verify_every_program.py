@@ -24,7 +24,7 @@ def machine_of(program):
     ini = read_ini(SIM / f"{OTHERWISE.get(program.stem, folder)}_headless.ini")
     if not folder.startswith("lathe"):
         return ini
-    codes = [f"M{code} modalgroup=10 ngc=m35" for code in (*BUILDERS_CODES, 133)]
+    codes = [f"M{code} modalgroup=10 ngc=m35" for code in BUILDERS_CODES]
     remaps = {"REMAP": [*ini.all("RS274NGC", "REMAP"), *codes]}
     return ini.replaced({"RS274NGC": remaps, "TRAJ": {"SPINDLES": "2"}})
 

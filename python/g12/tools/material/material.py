@@ -138,8 +138,11 @@ class Material:
             self._solids.add(solid, solid.shape.bounds, *solid[1:])
             self.top = max(self.top, -math.inf if solid.shape.is_empty else solid.level)
         for each in openings:
-            cuts = self._perhaps_cut if each.perhaps else self._cuts
-            cuts.add(each, each.shape.bounds, each.level, each.since)
+            self.open(each)
+
+    def open(self, opening: Opening) -> None:
+        cuts = self._perhaps_cut if opening.perhaps else self._cuts
+        cuts.add(opening, opening.shape.bounds, opening.level, opening.since)
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3)."""

@@ -127,7 +127,7 @@ def measure_holes(
         **_times_of_holes(holes, pace(own, []), real),
     }
     cut = _called_cut(call, found, values, judged)
-    return replace(cut, feeds=() if holes.pitch else None)
+    return replace(cut, feeds=(holes.pitch * call.speed,) if holes.pitch else None)
 
 
 def _times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:

@@ -12,6 +12,7 @@ those that cut sections.
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 from shapely.geometry import LineString, Point
@@ -38,6 +39,8 @@ def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
     yield from _on_surfaces(workpiece)
     yield from judge_circles(flat_circles(workpiece.subject), workpiece.material)
     yield from _judged_in_stock(workpiece) if workpiece.stock else ()
+    yield from _tool_changes(workpiece)
+    yield from _upright(workpiece.subject)
     yield from assumptions(workpiece)
 
 
@@ -107,7 +110,11 @@ def _in_view(
             yield Finding("rapid-by-machine", subject.line(index))
     elif begins and not (workpiece.stock and workpiece.stock.is_whole):
         below = -math.inf if view.surface else workpiece.z0
-        if cutter and not material.covers(points, cutter, below):
+        in_front = view.surface and points[:, 1].min() > subject.z0 - SAME_LEVEL
+        is_low = not in_front and points[:, Z].min() < max(below, material.top) - SAME_LEVEL
+        if is_low and not cutter:
+            yield Finding("rapid-no-diameter", subject.line(index))
+        elif is_low and not material.covers(points, cutter, below):
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))
@@ -126,6 +133,7 @@ def _rapids_beside_holes(workpiece: Workpiece) -> Iterator[Finding]:
     known = np.append(False, subject.ends_known)
     for index, move in enumerate(() if views else subject.moves):
         is_low = min(move.start[X], move.end[X]) < surface - SAME_LEVEL
+        is_low = is_low and min(move.start[Z], move.end[Z]) < subject.z0 - SAME_LEVEL
         is_own = move.kind == "rapid" and subject.sideways[index] == {True}
         if is_low and is_own and index not in drilled and known[index : index + 2].all():
             yield Finding("rapid-beside", subject.line(index))
@@ -170,6 +178,30 @@ def _words_of(
 # ---------------------------------------------------------------- what is assumed
 
 
+def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield the tool changes with the tool in a cut, unless the machine takes it up first."""
+    subject = workpiece.subject
+    changes = [each for each in subject.trace.events if each.text.startswith("tool ") and each.at]
+    if subject.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0):
+        return
+    for event, view in product(changes, workpiece.views):
+        last = event.at - 1
+        point = view.part.points(np.array(subject.moves[last].end))[0]
+        is_low = subject.ends_known[last] and point[Z] < view.material.top - SAME_LEVEL
+        region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
+        is_cut = view.meets(subject, last) and view.material.is_cut(region, point[Z], event.at)
+        if is_low and is_cut:
+            values = {"tool": event.text.split()[1]}
+            yield Finding("change-in-cut", subject.line(last), values, subject.end(last))
+
+
+def _upright(subject: Subject) -> Iterator[Finding]:
+    """Yield the circles in another plane than XY, whose material is not known."""
+    lines = [target.line for _, target in subject.commanded.circles if target.wall.plane != Z]
+    if lines:
+        yield Finding("upright", lines[0], {"lines": lines})
+
+
 def _on_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the sections on a cylinder that begin inside of its surface, where nothing is cut.
 
@@ -180,7 +212,8 @@ def _on_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
         first, *_ = own = subject.moves[section.at : section.end]
         base = plane_of(section, first).base
         inside = base + section.surface - first.start[X]
-        if inside > SAME_LEVEL and not _is_cut_before(section, workpiece):
+        in_front = first.start[Z] > subject.z0 - SAME_LEVEL
+        if inside > SAME_LEVEL and not in_front and not _is_cut_before(section, workpiece):
             values = {"code": section.code, "radius": section.surface, "inside": inside}
             yield Finding("inside-surface", section.line, values, first.start[:3])
         lowest = min((move.end[X] for move in own if move.kind != "rapid"), default=math.inf) - base
@@ -220,12 +253,14 @@ def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
         for index in np.flatnonzero(subject.ends_known)
         if moves[index].kind != "rapid" and subject.cutter(index) and view.meets(subject, index)
     ]
-    yield from _once_a_line(filter(None, (_plunge(workpiece, index) for index in fed)))
+    drilled = {index for call in commanded.holes for index in call.moves}
+    plunges = (_plunge(workpiece, index) for index in fed if index not in drilled)
+    yield from _once_a_line(filter(None, plunges))
     cuts = [(each.line, range(each.at, each.end)) for each in commanded.on_face]
     cuts += [(to.line, range(block.at, block.end)) for block, to in commanded.circles]
     cuts += [(call.line, call.moves) for call in commanded.holes if not call.is_side]
     for line, own in cuts:
-        if not any(_meets_stock(workpiece, index) for index in own):
+        if subject.cutter(own[0]) and not any(_meets_stock(workpiece, index) for index in own):
             yield Finding("no-stock-met", line)
     lowest = min(fed, key=lambda index: moves[index].end[Z], default=0)
     if workpiece.bottom is not None and fed:
@@ -253,7 +288,7 @@ def _plunge(workpiece: Workpiece, index: int) -> Finding | None:
 def _meets_stock(workpiece: Workpiece, index: int) -> bool:
     subject = workpiece.subject
     cutter, move = subject.cutter(index), subject.moves[index]
-    if not cutter or move.end[Z] >= workpiece.top:
+    if move.end[Z] >= workpiece.top:
         return False
     points = subject.part.polyline(move)[:, :2]
     line = LineString(points) if len(points) > 1 else Point(points[0])

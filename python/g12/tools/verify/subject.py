@@ -119,13 +119,12 @@ class Subject:
 
     def cutter(self, index: int) -> float:
         """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
-        loaded = self.trace.diameters.get(self.moves[index].tool, 0.0) / 2
-        return loaded or self._named_cutters.get(index, 0.0)
+        tool = self.moves[index].tool
+        return self.trace.diameters.get(tool, 0.0) / 2 or self._named_cutters.get(tool, 0.0)
 
     @cached_property
     def _named_cutters(self) -> dict[int, float]:
-        circles = self.commanded.circles
-        return {i: to.cutter.radius for block, to in circles for i in range(block.at, block.end)}
+        return {each.cutter.tool: each.cutter.radius for _, each in self.commanded.circles}
 
     @cached_property
     def widest_cutter(self) -> float:

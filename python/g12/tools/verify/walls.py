@@ -28,7 +28,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split, transform, unary_union
 
-from g12.tools.material.material import SAME_LEVEL, Material, Opening, Solid
+from g12.tools.material.material import ALWAYS, SAME_LEVEL, Material, Opening, Solid
 from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
@@ -40,7 +40,6 @@ from g12.tools.verify.sections.outline import Outline, outlines_of, vectors
 from g12.tools.verify.subject import Subject
 
 WALL = 2.0  # how thick the wall of a pocket is, at least
-SAME_PLACE = 0.05
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 FAR = 1e6  # round a cylinder
@@ -85,21 +84,20 @@ def flat_circles(subject: Subject) -> list[tuple[Block, Target]]:
 
 def approached(subject: Subject) -> Approached:
     """Return the circles in the plane XY, each with how the tool comes down to it."""
-    return [(target, _approach_to(block, subject.moves)) for block, target in flat_circles(subject)]
+    circles = flat_circles(subject)
+    return [(to, _approach(range(block.at, block.end), subject.moves)) for block, to in circles]
 
 
-def _approach_to(block: Block, moves: Sequence[Move]) -> Approach:
-    """Return how the tool comes down to a circle, in its block or before it."""
-    sideways = [
-        i for i in range(block.at, block.end) if moves[i].kind != "rapid" and is_sideways(moves[i])
-    ]
-    first = next(iter(sideways), block.end)
+def _approach(own: range, moves: Sequence[Move]) -> Approach:
+    """Return how the tool comes down to a cut, in its ``own`` moves or before them."""
+    sideways = [i for i in own if moves[i].kind != "rapid" and is_sideways(moves[i])]
+    first = next(iter(sideways), own.stop)
     floor = min((moves[index].end[Z] for index in sideways), default=math.inf)
-    floor = floor if floor < moves[block.at].start[Z] + SAME_LEVEL else math.inf  # it is fed up to
+    floor = floor if floor < moves[own.start].start[Z] + SAME_LEVEL else math.inf  # it is fed up to
     begin = first
     while begin and not is_sideways(moves[begin - 1]):
         begin -= 1
-    down = [i for i in range(begin, block.end) if moves[i].end[Z] < moves[i].start[Z] - SAME_LEVEL]
+    down = [i for i in range(begin, own.stop) if moves[i].end[Z] < moves[i].start[Z] - SAME_LEVEL]
     fed = next((moves[i].start[Z] for i in down if moves[i].kind != "rapid"), None)
     rapid = next((i for i in reversed(down) if i < first and moves[i].kind == "rapid"), None)
     came = max(moves[i].start[Z] for i in range(begin, min(first, len(moves) - 1) + 1))
@@ -132,69 +130,81 @@ def solids_of_holes(subject: Subject) -> Iterator[Solid]:
                 yield Solid(disc(subject.end(index), subject.cutter(index) + WALL), face)
 
 
-def assumed_holes(subject: Subject, circles: Approached, material: Material) -> list[AssumedHole]:
-    """Return the holes of words (R of Yasnac), and those that the program enters by rapid.
+def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
+    """Return the holes of words (R of Yasnac), and those that cuts are entered into by rapid.
 
-    It does so if its first circle is entered by rapid.
+    Each opens the ``material``. Those by rapid are assumed if the first cut is entered so.
     """
-    holes = []
-    for target, _ in circles:
+    found = []
+    for _, target in flat_circles(subject):
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
             opening = Opening(disc((x, y), target.wall.bore), z)
-            holes.append(AssumedHole(target.line, (x, y, z), opening, "the word R names it"))
-    return holes + _holes_entered(subject, circles, material)
+            found.append(AssumedHole(target.line, (x, y, z), opening, "the word R names it"))
+            material.open(opening)
+    return found + list(_holes_entered(subject, material))
 
 
-def _holes_entered(subject: Subject, circles: Approached, material: Material) -> list[AssumedHole]:
-    found: list[AssumedHole] = []
-    positions: list[complex] = []
-    for target, (came, _, _, index) in circles:
-        position = complex(*target.wall.origin[:2])
-        if any(abs(position - other) < SAME_PLACE for other in positions):
-            continue
-        positions.append(position)
+def _holes_entered(subject: Subject, material: Material) -> Iterator[AssumedHole]:
+    is_first = True
+    for index, top in _entries(subject):
+        if index is None and is_first:
+            return
         if index is not None:
-            x, y, z = end = subject.moves[index].end[:3]
-            below = not found and z < min(target.wall.face, came) - SAME_LEVEL
-            if below or material.touched(np.array([end]), subject.cutter(index), 0):
-                opening = Opening(disc((x, y), subject.cutter(index)))
-                line, why = subject.line(index), "a rapid goes into it"
-                found.append(AssumedHole(line, (x, y, z), opening, why))
-        if not found:
-            break
-    return found
+            x, y, z = end = subject.end(index)
+            below = is_first and z < top - SAME_LEVEL
+            if below or material.touched(np.array([end]), subject.cutter(index), index):
+                opening = Opening(disc((x, y), subject.cutter(index)), z)
+                material.open(opening)
+                yield AssumedHole(subject.line(index), end, opening, "a rapid goes into it")
+            elif is_first:
+                return
+        is_first = False
+
+
+def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
+    """Yield for each cut along Z its last rapid straight down, and what it is entered below.
+
+    A section may begin below its face, where turning has cut before.
+    """
+    for target, (came, _, _, index) in approached(subject):
+        yield index, min(target.wall.face, came)
+    for section in subject.commanded.on_face:
+        yield _approach(range(section.at, section.at), subject.moves).move, -math.inf
 
 
 def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, list[Solid]]]:
     """Return what sections on the face are cut in, and those on each surface of a cylinder."""
     face: list[Solid] = []
     cylinders: dict[SurfaceKey, list[Solid]] = {}
-    for section, key, until in (*_spans(subject, Z), *_spans(subject, X)):
+    for section, key, since, until in (*_spans(subject, Z), *_spans(subject, X)):
         solids, own = _face_solids, face
         if key.radius:
             solids, own = _cylinder_solids, cylinders.setdefault(key, [])
         found = solids(section, subject.moves, subject.cutter(section.at))
-        own += [Solid(area, top, section.at, until) for area, top in found]
+        own += [Solid(area, top, since, until) for area, top in found]
     return face, cylinders
 
 
-def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, SurfaceKey, float]]:
-    """Yield the sections with a tool along an axis, and up to which move their material counts.
+def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, SurfaceKey, int, float]]:
+    """Yield the sections with a tool along an axis, and for which moves their material counts.
 
-    It is another part, or another end of it, where a section has another key: up to the retract
-    before that.
+    It does after the section before. It is another part, or another end of it, where a section has
+    another key: up to the retract before that.
     """
     moves = subject.moves
     sections = [each for each in subject.commanded.sections if each.third == axis]
     groups = [(key, list(own)) for key, own in groupby(sections, partial(_surface_key, moves))]
+    since = ALWAYS
     for (key, own), (_, following) in pairwise([*groups, (None, [])]):
         until = math.inf
         if following:
             begin, top = following[0].at, key.face - SAME_LEVEL
             up = (i for i in range(own[-1].end - 1, begin) if moves[i].end[axis] > top)
             until = next(up, begin)
-        yield from ((section, key, until) for section in own)
+        for section in own:
+            yield section, key, since, until
+            since = section.end - 1
 
 
 def _surface_key(moves: Sequence[Move], section: SectionContour) -> SurfaceKey:

@@ -28,7 +28,7 @@ from g12.tools.verify.walls import (
     AssumedHole,
     SurfaceKey,
     approached,
-    assumed_holes,
+    assume_holes,
     flat_circles,
     solids_of_circles,
     solids_of_holes,
@@ -98,11 +98,10 @@ def workpiece_of(subject: Subject, text: StockText | None) -> Workpiece:
 
 def assumed_workpiece(subject: Subject) -> Workpiece:
     """Return what a program's words assume that it is cut from."""
-    circles = approached(subject)
     face, cylinders = solids_of_sections(subject)
-    face += [*solids_of_circles(circles), *solids_of_holes(subject)]
-    holes = assumed_holes(subject, circles, Material(face))
-    view = _view(subject, subject.part, face, [hole.opening for hole in holes])
+    face += [*solids_of_circles(approached(subject)), *solids_of_holes(subject)]
+    view = _view(subject, subject.part, face)
+    holes = assume_holes(subject, view.material)
     return Workpiece(subject, [view, *_cylinder_views(subject, cylinders)], holes)
 
 

@@ -95,6 +95,7 @@ class SectionContour:
     ``acts`` are what its words command besides moving, ``events`` those of the trace.
     ``expected_state`` is the state after it by the words, ``state_after`` the actual one, both as
     ``Block.state_after`` has it; ``paths_after`` are G61 or G64, actual and expected, if known.
+    ``cancelled`` is the line of a G40 after cuts on the contour without G41 or G42, 0 without one.
     ``commanded_paths`` are G61 or G64 as in force where it begins, "" if that is not known, and
     those that the words command on the way.
     """
@@ -118,6 +119,7 @@ class SectionContour:
     paths_after: tuple[str, ...] = ()
     commanded_paths: tuple[str, ...] = ("",)
     surface: float = 0.0
+    cancelled: int = 0
     file: str = ""
 
     @property

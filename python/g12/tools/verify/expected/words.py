@@ -194,13 +194,18 @@ class SubCall:
         return None if feed is None else feed * self.settings.plunge_feed / 100
 
     @property
+    def speed(self) -> float:
+        """S in force, revolutions per minute."""
+        return self._state["_rpm"]
+
+    @property
     def _feed(self) -> float | None:
         return self.given.get("feed", feed_in_force(self._state))
 
     @property
     def _per_minute(self) -> float:
         """The mm per minute of a feed of 1: the unit, under G95 times the spindle's speed."""
-        return self.unit * (self._state["_rpm"] if self._state["_units_per_rev"] else 1.0)
+        return self.unit * (self.speed if self._state["_units_per_rev"] else 1.0)
 
     def turn_to(self, angle: float) -> float:
         """Return by how much C turns to an angle; the machine chooses the whole turns."""

@@ -27,6 +27,7 @@ def judge_circles(circles: Circles, material: Material) -> Iterator[Finding]:
     meetings = list(_meetings([target for _, target in circles]))
     yield from _cut_walls(circles, meetings)
     yield from _cut_before([circles[at] for at, _ in meetings], material)
+    yield from _bosses_cut([target for _, target in circles], material)
 
 
 def _cores(circles: Circles, material: Material) -> Iterator[Finding]:
@@ -50,9 +51,10 @@ def _area_in(target: Target, material: Material, before: int) -> float:
 
 def _cut_before(circles: Circles, material: Material) -> Iterator[Finding]:
     """Yield one note of the circles of which all was cut before their blocks."""
-    lines = [target.line for block, target in circles if _was_cut(block, target, material)]
-    if lines:
-        yield Finding("cut-before", lines[0], {"more": set(lines) - {lines[0]}})
+    found = [target for block, target in circles if _was_cut(block, target, material)]
+    for first in found[:1]:
+        more = {each.line for each in found} - {first.line}
+        yield Finding("cut-before", first.line, {"more": more}, file=first.file)
 
 
 def _was_cut(block: Block, target: Target, material: Material) -> bool:
@@ -62,6 +64,17 @@ def _was_cut(block: Block, target: Target, material: Material) -> bool:
     own = disc(wall.origin, wall.radius - ALLOWED)
     own = own.difference(disc(wall.origin, wall.cleared)) if wall.cleared > ALLOWED else own
     return material.standing(own, wall.height(target.deepest), block.at).area <= LEAST_AREA
+
+
+def _bosses_cut(targets: Sequence[Target], material: Material) -> Iterator[Finding]:
+    """Yield the bosses of which nothing remains at the program's end."""
+    for target in targets:
+        wall = target.wall
+        if not wall.inside and target.cutter.radius:
+            boss = disc(wall.origin, wall.radius - ALLOWED)
+            if material.standing(boss, wall.height(target.deepest)).area <= LEAST_AREA:
+                place = wall.machine((0j, target.deepest))
+                yield Finding("boss-cut", target.line, place=place, file=target.file)
 
 
 def _meetings(targets: Sequence[Target]) -> Iterator[tuple[int, np.ndarray]]:
@@ -97,4 +110,5 @@ def _cut_walls(circles: Circles, meetings: Sequence[tuple[int, np.ndarray]]) -> 
         if len(others) and line not in reported:
             reported.add(line)
             place = target.wall.machine((0j, target.deepest))
-            yield Finding("cuts-wall", line, {"line": circles[others[0]][1].line}, place)
+            values = {"line": circles[others[0]][1].line}
+            yield Finding("cuts-wall", line, values, place, target.file)

@@ -51,8 +51,10 @@ def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
     spindle = next((text for text in reversed(texts) if text in ("M3", "M4", "M5")), "")
     speed = next((text for text in reversed(texts) if SPEED.fullmatch(text)), "")
     runs = spindle in ("M3", "M4") and speed != "S0"
+    if several and turning:
+        return "main-spindle-turns" if runs else "tool-spindle-unseen"
     if several:
-        return "main-spindle-turns" if turning and runs else ""
+        return ""
     if turning and not runs:
         return "tool-spindle"  # another code of the machine may start it
     if spindle == "M5" or speed == "S0":
@@ -122,7 +124,9 @@ def judge_feeds(
     for cut in cuts:
         fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
         per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
-        feeds = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
+        feeds = [feed for feed in cut.feeds or () if feed] or [
+            move.feed for move in fed if move.feed_mode != "G95"
+        ]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
         if max(per_turn, default=0.0) > MOST_PER_TURN:
             values = {"feed": max(per_turn)}

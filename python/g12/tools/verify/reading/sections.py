@@ -27,9 +27,10 @@ from g12.tools.verify.expected.contour import ACTS, Act, Element, SectionContour
 from g12.tools.verify.expected.words import kept_state
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.reading.executed_subs import Copies, called_files, moves_differ
+from g12.tools.verify.result.tolerances import LEVEL
 
 ACTING_M = {*map(float, (3, 4, 5, 7, 8, 9, 48, 49, 50, 51, 52, 53)), *map(float, range(100, 200))}
-DWELL = 4.0
+DWELL, CANCEL = 4.0, 40.0
 PATH_CODES = (61.0, 61.1, 64.0)
 SPINDLE = re.compile(r"\$\s*(#?-?[\d.]+|#<[^>]*>)")
 RESTORE, SAVE_FOR_SUB = 72.0, 73.0
@@ -211,7 +212,11 @@ def section_of(
     start, height, diameters = pen.at, pen.depth, pen.x_unit < pen.unit
     elements: list[Element] = []
     acts: list[Act] = []
+    cancelled = 0
     for block in group[1:]:
+        has_cut = any(each.depth < pen.surface - LEVEL for each in elements)
+        if has_cut and CANCEL in block.codes and not any(each.side for each in elements):
+            cancelled = cancelled or block.text.number
         texts = (event.text for event in block.events if ACTS.match(event.text))
         acts += [Act(block.text.number, text, len(elements)) for text in texts]
         if block is not group[-1]:  # whose words are those of the code that switches off
@@ -233,5 +238,6 @@ def section_of(
         expected_state={**pen.leaves(first.state), **({} if restores(group) else kept)},
         state_after=last.state_after,
         surface=pen.surface,
+        cancelled=cancelled,
         file=first.text.file,
     )

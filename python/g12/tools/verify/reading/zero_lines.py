@@ -97,7 +97,8 @@ def _of_section(section: SectionContour, moves: Sequence[Move]) -> CutBefore:
     own, block = range(section.at, section.end), moves[section.at].block
     lines = (block, block) if section.file else (section.line, section.last)
     zero, c_after = moves[section.at].start[C], section.state_after.get("_c", math.nan)
-    offset = moves[section.end - 1].end[C] - c_after
+    after = moves[section.end].start if section.end < len(moves) else moves[section.end - 1].end
+    offset = after[C] - c_after  # the kinematics of the face turn C without a move of it
     return CutBefore(own, *lines, not section.surface, zero, offset)
 
 

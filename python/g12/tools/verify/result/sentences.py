@@ -123,6 +123,8 @@ NOTES = {
     ),
     "cuts-contour": "the tool cuts {size:fine} into the contour of line {line}",
     "goes-back": "goes back along line {line}: under {code} the tool cuts both sides of that line",
+    "change-in-cut": "T{tool} is changed with the tool in a cut: retract before M6",
+    "boss-cut": "nothing of the boss remains at its floor: other cuts remove it",
     "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "
@@ -161,6 +163,10 @@ NOTES = {
         "{code}.1 was never set on this machine: {code} is one rapid, its axes together, "
         "to machine zero; jog where tools are changed and run {code}.1 in MDI once"
     ),
+    "side-cancelled": (
+        "G40, but no G41 or G42 before it in the section: the tool's centre is on the contour"
+    ),
+    "contour-above": "its contour at {letter}{level:mm} stays above the part, others are below",
     "above-zero": "nothing of it goes below the program's Z0: its lowest Z is {level:mm} above",
     "travel-perhaps": (
         "with no work offset the {axis} axis would go to {position:mm}, its limit is {limit:length}"
@@ -192,6 +198,7 @@ NOT_JUDGED = {
     "rapid-after-cuts": (
         "rapids from the side to where other cuts may have removed the bar before: {lines:lines}"
     ),
+    "rapid-no-diameter": "rapids within the part of a tool without a diameter: {lines:lines}",
     "rapid-turned": "rapids of a tool between cuts on the face and in the side: {lines:lines}",
     "rapid-by-machine": (
         "what rapids by G53, G28 or G30 go through that start within the part: {lines:lines}"
@@ -203,6 +210,10 @@ NOT_JUDGED = {
         "whether the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; "
         "look for the code that starts it on your machine"
     ),
+    "tool-spindle-unseen": (
+        "whether the driven tool turns: LinuxCNC's preview shows the first spindle alone"
+    ),
+    "upright": "the material around a circle in another plane than G17: {lines:lines}",
     "block-delete": (
         "the program with block delete off: a preview skips what begins with /: {lines:lines}"
     ),

@@ -11,7 +11,8 @@ from the spindle's centre.
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from itertools import groupby, permutations, product
+from itertools import groupby, product
+from typing import NamedTuple
 
 import numpy as np
 from shapely.geometry import LineString, Polygon
@@ -177,9 +178,10 @@ def crosses(start: complex, end: complex, points: np.ndarray) -> bool:
 
 
 class CutContour:
-    """A compensated contour that is cut: its ``line``, the ``path`` of the tool's centre."""
+    """A contour that is cut: its ``line``, the ``path`` of the tool's centre."""
 
     def __init__(self, steps: Sequence[ContourStep]) -> None:
+        self.side = steps[0].element.side
         self.moves = [step.move for step in steps if step.move.curve.length > NO_LENGTH]
         elements = {id(step.element): step.element for step in steps}
         self.elements = [each for each in elements.values() if each.length > NO_LENGTH]
@@ -190,18 +192,38 @@ class CutContour:
 
 
 def neighbour_cuts(
-    steps: Sequence[ContourStep], tool: float, tolerance: float
+    steps: Sequence[ContourStep], tool: float, tolerance: float, zero: float = 0.0
 ) -> Iterator[Finding]:
-    """Yield the deepest cut of each contour into each other one that is not commanded."""
-    runs = groupby(steps, key=lambda step: (step.element.side, step.element.ramp))
-    contours = [CutContour(list(run)) for (side, ramp), run in runs if side and not ramp]
+    """Yield the deepest cut into each compensated contour that is not commanded.
+
+    Another contour may enter it. A toolpath without compensation that does so is a slot, or a
+    retract is missing. ``zero`` is the level of the part's face or surface.
+    """
+    across = (step for step in steps if step.move.curve.length > NO_LENGTH)
+    cuts = [CutContour(list(run)) for key, run in groupby(across, _run_of) if not key.ramp]
+    contours = [cut for cut in cuts if cut.side]
     reported: set[tuple[int, int]] = set()
-    for one, other in permutations(contours, 2):
-        if other.lowest <= one.highest + LEVEL and one.line.distance(other.path) < tool:
+    for one, other in ((one, other) for one in contours for other in cuts if one is not other):
+        level = one.highest if other.side else min(one.highest, zero - 2 * LEVEL)
+        if other.lowest <= level + LEVEL and one.line.distance(other.path) < tool:
             size, line, cut = max(cuts_into(one, other, tool, tolerance), default=(0.0, 0, 0))
             if size and (line, cut) not in reported:
                 reported.add((line, cut))
                 yield Finding("cuts-contour", line, {"size": size, "line": cut})
+
+
+class _Run(NamedTuple):
+    """What the steps of one contour have in common; without compensation also their level."""
+
+    side: int
+    ramp: bool
+    levels: tuple[float, ...]
+
+
+def _run_of(step: ContourStep) -> _Run:
+    move, element = step
+    levels = () if element.side else (move.start_level, move.end_level)
+    return _Run(element.side, element.ramp, levels)
 
 
 def cuts_into(
@@ -213,7 +235,9 @@ def cuts_into(
     """
     part = Outline(one.elements).part(2 * tool)
     swept = other.path.buffer(tool - tolerance).intersection(part)
-    entering = other.line.intersection(part.buffer(-ENTERED * tolerance))
+    entering = Polygon()
+    if other.side:
+        entering = other.line.intersection(part.buffer(-ENTERED * tolerance))
     for region in getattr(swept, "geoms", [swept]):
         wall = one.line.intersection(region.buffer(tolerance / 2))
         if wall.is_empty or region.area < tolerance**2:

@@ -26,7 +26,7 @@ from g12.tools.verify.expected.toolpath import NO_LENGTH, Expected
 from g12.tools.verify.result.cut import MeasuredCut, finite, in_file, pace_values
 from g12.tools.verify.result.finding import Finding, minus_hint
 from g12.tools.verify.result.tolerances import LEVEL, SIZE
-from g12.tools.verify.sections.outline import judge_side, neighbour_cuts
+from g12.tools.verify.sections.outline import judge_side, neighbour_cuts, stretches_of
 from g12.tools.verify.sections.section_motion import c_speed, judge_c, judge_motion, rubbing
 from g12.tools.verify.sections.section_size import contour_size
 from g12.tools.verify.sections.view import SectionView
@@ -71,7 +71,8 @@ def judge_section(view: SectionView) -> Iterator[Finding]:
     yield from judge_words(view)
     yield from judge_toolpath(view)
     yield from judge_c(view)
-    yield from neighbour_cuts(view.steps, view.tool, view.tolerance) if view.tool else ()
+    if view.tool:
+        yield from neighbour_cuts(view.steps, view.tool, view.tolerance, view.section.surface)
     yield from judge_motion(view)
     yield from judge_section_state(view.section, view.moves)
 
@@ -133,16 +134,33 @@ def judge_words(view: SectionView) -> Iterator[Finding]:
         yield Finding(code, section.line, values)
     if not zero.commanded and not zero.line:
         yield Finding("zero-line-unknown", section.line, {"angle": view.first.start[C]})
-    letter, factor = AXIS_LETTERS[third], 2 if section.surface and section.diameters else 1
-    depths = [each.depth for each in section.elements if each.side and not each.ramp]
-    if depths and min(depths) > section.height + LEVEL:
-        levels = {"level": factor * min(depths), "start": factor * section.height}
-        words = {"letter": letter, "hint": minus_hint(min(depths), section.surface)}
-        yield Finding("above-start", section.line, {**words, **levels})
-    if section.surface and view.lowest >= view.first.start[third] - SIZE:
+    yield from judge_depths(view)
+    letter, start = AXIS_LETTERS[third], view.first.start[third]
+    if section.surface and view.lowest >= start - SIZE and start > view.plane.face - SIZE:
         yield Finding("not-below-start", section.line, {"letter": letter, "code": section.code})
+    if section.cancelled:
+        yield Finding("side-cancelled", section.cancelled)
     if not view.tool and any(section.sides):
         yield Finding("no-diameter", section.line)
+
+
+def judge_depths(view: SectionView) -> Iterator[Finding]:
+    """Yield the compensated contours above the tool's level before them, or above the part.
+
+    What stays above the part as a whole is reported of the cut.
+    """
+    section, zero = view.section, view.section.surface
+    letter, factor = AXIS_LETTERS[section.third], 2 if zero and section.diameters else 1
+    lowest, before = min((each.depth for each in section.elements), default=zero), section.height
+    for own in stretches_of(section):
+        level, line = min(each.depth for each in own), own[0].line
+        if own[0].side and not own[0].ramp and level > before + LEVEL:
+            words = {"letter": letter, "hint": minus_hint(level, zero)}
+            levels = {"level": factor * level, "start": factor * before}
+            yield Finding("above-start", line, {**words, **levels})
+        elif own[0].side and not own[0].ramp and level > zero - LEVEL > lowest:
+            yield Finding("contour-above", line, {"letter": letter, "level": factor * level})
+        before = own[-1].depth
 
 
 def times_of_section(
