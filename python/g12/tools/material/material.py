@@ -111,7 +111,7 @@ class _Areas:
 
     @cached_property
     def _table(self) -> np.ndarray:
-        return np.array(self._rows).reshape(-1, 7).T
+        return np.ascontiguousarray(np.array(self._rows).reshape(-1, 7).T)
 
     def near(self, region: BaseGeometry, levels: Levels, move: float | None) -> list[BaseGeometry]:
         """Return the areas that may meet a region, between levels, at a move or at any."""
@@ -119,11 +119,12 @@ class _Areas:
             return []
         low_x, low_y, high_x, high_y = region.bounds
         x0, y0, x1, y1, level, since, until = self._table
-        found = (x0 <= high_x) & (x1 >= low_x) & (y0 <= high_y) & (y1 >= low_y)
-        found &= (levels[0] <= level) & (level <= levels[1])
+        found = np.flatnonzero((x0 <= high_x) & (x1 >= low_x))
+        found = found[(y0[found] <= high_y) & (y1[found] >= low_y)]
+        found = found[(levels[0] <= level[found]) & (level[found] <= levels[1])]
         if move is not None:
-            found &= (since < move) & (move <= until)
-        return [self._areas[index].shape for index in np.flatnonzero(found)]
+            found = found[(since[found] < move) & (move <= until[found])]
+        return [self._areas[index].shape for index in found]
 
 
 class Material:
@@ -185,8 +186,7 @@ class Material:
             return NOTHING
         cuts = self._cuts.near(region, (-math.inf, level), before)
         cuts += () if perhaps else self._perhaps_cut.near(region, (-math.inf, level), before)
-        region = region.intersection(unary_union(solids))
-        return region.difference(unary_union(cuts)) if cuts else region
+        return _without(_within(region, solids), cuts)
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
         """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
@@ -225,7 +225,7 @@ class Material:
         swept_area = swept(lines, radius)
         rest = [portion for portion, _ in self._turned(swept_area)]
         for areas in (self._solids, self._cuts):
-            rest = [each.difference(unary_union(areas.near(each, ANY, None))) for each in rest]
+            rest = [_without(each, areas.near(each, ANY, None)) for each in rest]
         return sum(each.area for each in rest) <= LEAST_AREA
 
     def touched(
@@ -243,6 +243,20 @@ class Material:
                 found.append(area)
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
+
+
+def _within(region: BaseGeometry, areas: Sequence[BaseGeometry]) -> BaseGeometry:
+    """Return what of a region lies in areas; one that covers it saves their union."""
+    if any(area.covers(region) for area in areas):
+        return region
+    return region.intersection(unary_union(areas))
+
+
+def _without(region: BaseGeometry, areas: Sequence[BaseGeometry]) -> BaseGeometry:
+    """Return what of a region lies in no area; one that covers it saves their union."""
+    if any(area.covers(region) for area in areas):
+        return NOTHING
+    return region.difference(unary_union(areas)) if areas else region
 
 
 def _below(top: float, points: np.ndarray) -> Iterator[Portion]:

@@ -42,6 +42,7 @@ from g12.tools.verify.subject import Subject
 WALL = 2.0  # how thick the wall of a pocket is, at least
 BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
+DECIMALS = 3  # of a hole's position
 FAR = 1e6  # round a cylinder
 
 Solids = Iterator[tuple[BaseGeometry, float]]  # areas, each with the level of its top
@@ -121,13 +122,17 @@ def solids_of_circles(circles: Approached) -> Iterator[Solid]:
 
 
 def solids_of_holes(subject: Subject) -> Iterator[Solid]:
-    """Yield what holes are drilled in: the face round them."""
+    """Yield what holes are drilled in: the face round each of them, once."""
+    drilled: set[tuple[float, ...]] = set()
     for call in (each for each in subject.commanded.holes if not each.is_side):
         face = call.zero[1]
         for index in call.moves:
-            move = subject.moves[index]
-            if move.kind != "rapid" and move.end[Z] < min(face, move.start[Z]):
-                yield Solid(disc(subject.end(index), subject.cutter(index) + WALL), face)
+            move, (x, y, _) = subject.moves[index], subject.end(index)
+            place = round(x, DECIMALS), round(y, DECIMALS), face, move.tool
+            goes_down = move.kind != "rapid" and move.end[Z] < min(face, move.start[Z])
+            if goes_down and place not in drilled:
+                drilled.add(place)
+                yield Solid(disc((x, y), subject.cutter(index) + WALL), face)
 
 
 def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
