@@ -14,14 +14,12 @@ from pathlib import Path
 from g12.errors import Refusal
 from g12.ini_sections import leading_number
 from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
-from g12.tools.install.config.features import ROOT
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.hal import (
     HalLine,
     all_hal,
     hal_files,
-    hal_lines,
     later_hal,
     names,
     pins_taken,
@@ -199,7 +197,8 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
     yield from accelerations_taken(all_hal(config))
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
-    yield from hal_in_the_way(config, [*others, *later_hal(config)])
+    guard = signals(line for number in guards for line in files[number])  # of a copy as well
+    yield from hal_in_the_way(config, [*others, *later_hal(config)], guard)
 
 
 def accelerations_taken(lines: Iterable[HalLine]) -> Iterator[ConfigFinding]:
@@ -225,10 +224,11 @@ def periods_differ(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
-def hal_in_the_way(config: Config, lines: list[HalLine]) -> Iterator[ConfigFinding]:
+def hal_in_the_way(
+    config: Config, lines: list[HalLine], guard: dict[str, str]
+) -> Iterator[ConfigFinding]:
     cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
     yield from pins_taken(lines, GUARD_PINS, "is the kinematics'", cure)
-    guard = signals(hal_lines(ROOT / GUARD_HAL))
     for text, location in lines:
         for pin, signal in signals([HalLine(substituted(text, config), location)]).items():
             if pin not in GUARD_PINS and guard.get(pin, signal) != signal:

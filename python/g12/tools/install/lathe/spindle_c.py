@@ -26,7 +26,7 @@ from g12.tools.install.lathe.hal import (
     signals,
 )
 from g12.tools.install.lathe.kinematics_lines import joints
-from g12.tools.install.lathe.kinematics_rules import GUARD_HAL
+from g12.tools.install.lathe.kinematics_rules import GUARD_HAL, uses_face_kinematics
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
 SPINDLE_C_HAL = "configs/include/spindle_c.hal"
@@ -158,7 +158,8 @@ def spindle_sections(
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
     joint, found = letters_of_joints(config).index("C"), signals(all_hal(config))
     named = {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
-    named |= shared_with_kinematics() if KINEMATICS in requested else {}
+    new_face = KINEMATICS in requested and not uses_face_kinematics(config)
+    named |= shared_with_kinematics() if new_face else {}
     drive = [
         line
         for name, pin in pins.drive.items()
