@@ -50,11 +50,11 @@ class Sampler:
         hal.set_p("sampler.0.overruns", "0")
         hal.set_p("sampler.0.enable", "1")
 
-    def stop(self) -> bytes:
-        """Stop and return the rows; a recording with gaps is an error."""
+    def stop(self, complete: bool = True) -> bytes:
+        """Stop and return the rows; if they have to be ``complete``, a gap is an error."""
         self._halt()
         lost = int(hal.get_value("sampler.0.overruns"))
-        if lost:
+        if lost and complete:
             raise MachineError(f"{lost} samples of the motion are lost: run it on an idle computer")
         return self.rows.tobytes()
 
@@ -97,12 +97,13 @@ class RecordingScreen:
         self.sampler.start()
         panel.start()
         panel.finish(timeout)
-        recorded, stat = self.sampler.stop(), panel.poll()
+        errors, stat = panel.errors(), panel.poll()
+        recorded = self.sampler.stop(complete=not errors)
         return {
             "recorded": recorded,
             "position": tuple(stat.position),
             "modes": modes_of(stat),
-            "errors": panel.errors(),
+            "errors": [*errors, *panel.errors()],
             "messages": panel.messages(),
         }
 
