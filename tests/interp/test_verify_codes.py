@@ -44,6 +44,7 @@ POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
 GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
 P = "G13 I7 K20 Q6 Z-3 D4"
 NARROW = FLAT.replace("C25", "C6")
+TURNED_BACK = FLAT.replace("G40 X60", "G40 X60 C0")
 OTHER_FLAT = "X-80|G41 X-27 C-25|Z-5|C25|G40 X-80 C0|Z2|G13.1"
 FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
@@ -88,6 +89,7 @@ CASES = [
     ("lathe", f"{FLAT}|G0 C180|{FLAT}", ""),
     ("lathe", f"{FLAT}|G0 C-39.805571|{FLAT}", ""),
     ("lathe", f"{FLAT}|G91 G0 C180|G90|{FLAT}", "zero-line-turned 15"),
+    ("lathe", f"{TURNED_BACK}|G91 G0 C60|G90|{TURNED_BACK}", ""),
     ("lathe", f"{FLAT}|G91 G0 C39.805571|C180|G90|{FLAT}", ""),
     ("lathe", f"G0 C30|{FLAT}|G0 Z10 C0|{ON_FACE.replace('[3]', '[1]', 1).replace('[20]', '[30]')}"
      f"|G0 X60 Z2|{FLAT}", ""),
@@ -165,6 +167,9 @@ CASES = [
     ("any mill", f"T3 M6|S900 M3|G43.2 H3|T4 M6|S900 M3|G0 Z1|{LOW}", "length-deeper 8"),
     ("any mill", f"T4 M6|S900 M3|G43 H1|o1 if [0]|G43.2 H1|o1 endif|G0 Z1|{LOW}",
      "length-deeper 9"),
+    ("any lathe", f"G10 L1 P1 X20 R6|G10 L1 P3 X5 R3|T1 M6 G43|S900 M3|G0 X60 Z50 C0|T3 M6|"
+     f"S900 M3|G0 X60 Z2|{FLAT}", "offset-beside 10"),
+    ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G0 X60 Z2 C0|{FLAT}", ""),
     # a length that changes before a cycle, with no move between
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43|G13 I9 Z-2 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43.1 Z30|G13 I9 Z-2 D4|G0 Z9", ""),
@@ -338,6 +343,7 @@ CASES = [
      "G41 X-27|Z-5|C25|G40 X-80|Z2|G13.1",
      "", "40"),
     # what a pass before has cleared
+    ("mill", "o7 sub|G13 I9 K18 Q4 Z-3 D4|G13 I18|o7 endsub|o7 call|G0 Z5", "cut-before 8"),
     ("mill", "G13 I9 K18 Q4 Z-3 D4|G13 I18|G0 Z5", "cut-before 7"),
     ("mill", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
     ("mill", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 6"),
@@ -371,14 +377,17 @@ CASES = [
     ("lathe", f"G0 X80|G12.1|G1 G41 X27 C25 F1000|C-25|G40 X80 C0|{OTHER_FLAT}",
      "contour-above 8"),
     ("lathe", FLAT.replace("G41 ", ""), "side-cancelled 10"),
+    ("radii", SLOT.replace("|Z2", "|Z2|G40"), "rubs 5"),
+    ("lathe", "G0 X80|G12.1|G1 C25 F2000|G41 X27 F1000|Z-5|C-25|G40 X80|C-45|X-80|C-25|G41 X-30|"
+     "Z-3|C25|G40 X-80|Z2|G13.1|G0 Z5", ""),
     # the tool: no diameter, changed in a cut; the second spindle, which no preview shows
     ("mill", "G10 L1 P4 R0|T4 M6 G43|S900 M3|G0 X0 Y0 Z1|G13 I9 Z-3 D3|G0 X100|Z1",
      "loaded-unknown 10, rapid-through 11"),
     ("radii", f"G10 L1 P3 R0|T3 M6|S900 M3|G0 X18 Z2 C0|{SLOT.replace('|Z2', '')}|G0 C180|Z2",
      "rubs 9, rapid-no-diameter 14"),
-    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 6"),
+    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
-    ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 8"),
+    ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 10"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),
     # rapids before the first section, and a hole for it; in front of the face
     ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-through 6"),
@@ -534,7 +543,7 @@ SAID = [  # a program, and a part of its report
     ("lathe", f"T3 M6|G0 X60 C0|{FLAT}",
      "the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; look for"),
     ("mill", f"G0 Z-4|{LOW}", "bored hole down to X0 Y0 Z−4, because a rapid goes into it; give"),
-    ("yasnac", R38, "bored hole down to X0 Y0 Z−5, because the word R names it; give"),
+    ("yasnac", R38, "bored hole down to X0 Y0 Z−5, because its word R or J names it; give"),
     ("mill", f"G0 X60 Z10|Z-4|{RING}|G0 Z10|X0|Z-4|{RING}", "goes into it (also in line 11); give"),
     ("radii", "G12.1|G1 X30 F800|X[#<_x>-5]|G13.1",
      "line 5: nothing of the section is judged: its contour cannot be read from the words, line 7 "

@@ -216,6 +216,16 @@ class Material:
         levels = (-math.inf, level + SAME_LEVEL)
         return any(self._cuts.near(each, levels, before) for each, _ in self._turned(region))
 
+    def was_solid(self, region: BaseGeometry, level: float, before: float) -> bool:
+        """Return whether a portion of a region was material above a level."""
+        levels = (level + SAME_LEVEL, math.inf)
+        portions = [portion for portion, _ in self._turned(region)]
+        return any(
+            area.intersects(portion)
+            for portion in portions
+            for area in self._solids.near(portion, levels, before)
+        )
+
     def covers(self, points: np.ndarray, radius: float, below: float = -math.inf) -> bool:
         """Return whether all that a cutter sweeps below the top is solid or cut at some move.
 

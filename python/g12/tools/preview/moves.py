@@ -187,7 +187,8 @@ class Trace:
     is the text of ``(print, …)`` and of Python, ``position`` the end of the last move, ``globals``
     the global named parameters after the program. ``events`` include the messages. ``files`` are
     those of subs outside the program that execute a remapped code with motion. ``diameters`` and
-    ``lengths`` (along Z) are those of the tool table, in mm by tool number.
+    ``lengths`` (along Z) and ``offsets`` (along X) are those of the tool table, in mm by tool
+    number.
     """
 
     moves: list[Move]
@@ -201,6 +202,7 @@ class Trace:
     files: tuple[str, ...] = ()
     diameters: Mapping[int, float] = field(default_factory=dict)
     lengths: Mapping[int, float] = field(default_factory=dict)
+    offsets: Mapping[int, float] = field(default_factory=dict)
 
     @property
     def messages(self) -> list[Message]:

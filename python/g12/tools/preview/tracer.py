@@ -152,7 +152,7 @@ class Tracer:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{error}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
-        self.diameters, self.lengths = sizes_in_mm(answer["tool_sizes"], self.ini.mm)
+        self.diameters, self.lengths, _ = sizes_in_mm(answer["tool_sizes"], self.ini.mm)
 
     def _stop(self) -> None:
         if self._process:
@@ -239,16 +239,13 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def sizes_in_mm(
-    sizes: Mapping[int, Sequence[float]], mm: float
-) -> tuple[dict[int, float], dict[int, float]]:
-    """Convert tool sizes in machine units to diameters and lengths in mm."""
-    diameters, lengths = ({tool: size[at] * mm for tool, size in sizes.items()} for at in (0, 1))
-    return diameters, lengths
+def sizes_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> list[dict[int, float]]:
+    """Convert tool sizes in machine units to diameters, lengths and offsets along X in mm."""
+    return [{tool: size[at] * mm for tool, size in sizes.items()} for at in range(3)]
 
 
 def _trace(answer: dict, mm: float) -> Trace:
-    diameters, lengths = sizes_in_mm(answer["tool_sizes"], mm)
+    diameters, lengths, offsets = sizes_in_mm(answer["tool_sizes"], mm)
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
         events=[Event._make(event) for event in answer["events"]],
@@ -258,4 +255,5 @@ def _trace(answer: dict, mm: float) -> Trace:
         files=tuple(answer["files"]),
         diameters=diameters,
         lengths=lengths,
+        offsets=offsets,
     )

@@ -508,14 +508,16 @@ def for_canon(entry) -> tuple:
     return (entry.toolno, *axes, entry.diameter, *angles)
 
 
-def tool_sizes(count: int) -> dict[int, tuple[float, float]]:
-    """Return tool number to diameter and length, machine units, of the first ``count`` entries.
+def tool_sizes(count: int) -> dict[int, tuple[float, float, float]]:
+    """Return tool number to diameter and offsets in Z and X, machine units, of ``count`` entries.
 
     The interpreter's table has the values of G10. The first entry of a tool counts.
     """
     table = interpreter_object().tool_table
     entries = [table[index] for index in reversed(range(count))]
-    return {e.toolno: (e.diameter, e.offset.tran.z) for e in entries if e.toolno > 0}
+    return {
+        e.toolno: (e.diameter, e.offset.tran.z, e.offset.tran.x) for e in entries if e.toolno > 0
+    }
 
 
 def interpreter_object():

@@ -187,12 +187,12 @@ def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
     for event, view in product(changes, workpiece.views):
         last = event.at - 1
         point = view.part.points(np.array(subject.moves[last].end))[0]
-        is_low = subject.ends_known[last] and point[Z] < view.material.top - SAME_LEVEL
         region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
-        is_cut = view.meets(subject, last) and view.material.is_cut(region, point[Z], event.at)
-        if is_low and is_cut:
+        known = subject.ends_known[last] and view.meets(subject, last)
+        where = region, point[Z], event.at
+        if known and view.material.was_solid(*where) and view.material.is_cut(*where):
             values = {"tool": event.text.split()[1]}
-            yield Finding("change-in-cut", subject.line(last), values, subject.end(last))
+            yield Finding("change-in-cut", event.line, values, subject.end(last))
 
 
 def _upright(subject: Subject) -> Iterator[Finding]:

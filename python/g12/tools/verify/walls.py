@@ -19,8 +19,6 @@ surface.
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import partial
-from itertools import groupby, pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -145,7 +143,7 @@ def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
             opening = Opening(disc((x, y), target.wall.bore), z)
-            found.append(AssumedHole(target.line, (x, y, z), opening, "the word R names it"))
+            found.append(AssumedHole(target.line, (x, y, z), opening, "its word R or J names it"))
             material.open(opening)
     return found + list(_holes_entered(subject, material))
 
@@ -173,9 +171,15 @@ def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
     A section may begin below its face, where turning has cut before.
     """
     for target, (came, _, _, index) in approached(subject):
-        yield index, min(target.wall.face, came)
+        yield _known(subject, index), min(target.wall.face, came)
     for section in subject.commanded.on_face:
-        yield _approach(range(section.at, section.at), subject.moves).move, -math.inf
+        index = _approach(range(section.at, section.at), subject.moves).move
+        yield _known(subject, index), -math.inf
+
+
+def _known(subject: Subject, index: int | None) -> int | None:
+    """Return a move if its end is known: G28 and G53 lead to a place of the machine."""
+    return index if index is not None and subject.ends_known[index] else None
 
 
 def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, list[Solid]]]:
@@ -194,22 +198,28 @@ def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, 
 def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, SurfaceKey, int, float]]:
     """Yield the sections with a tool along an axis, and for which moves their material counts.
 
-    It does after the section before. It is another part, or another end of it, where a section has
+    On the face it does from the retract after the section before: a cylinder may be a step of a
+    shaft that no other section shows. It is another part, or another end of it, where a section has
     another key: up to the retract before that.
     """
     moves = subject.moves
     sections = [each for each in subject.commanded.sections if each.third == axis]
-    groups = [(key, list(own)) for key, own in groupby(sections, partial(_surface_key, moves))]
-    since = ALWAYS
-    for (key, own), (_, following) in pairwise([*groups, (None, [])]):
-        until = math.inf
-        if following:
-            begin, top = following[0].at, key.face - SAME_LEVEL
-            up = (i for i in range(own[-1].end - 1, begin) if moves[i].end[axis] > top)
-            until = next(up, begin)
-        for section in own:
-            yield section, key, since, until
-            since = section.end - 1
+    keys = [_surface_key(moves, section) for section in sections]
+    retracts = [
+        next((i for i in range(one.end - 1, other.at) if moves[i].end[axis] > top), other.at)
+        for one, other, key in zip(sections, sections[1:], keys)
+        for top in [key.face - SAME_LEVEL]
+    ]
+    until = math.inf
+    found = []
+    for at in reversed(range(len(sections))):
+        if at < len(retracts) and keys[at] != keys[at + 1]:
+            until = retracts[at]
+        since = ALWAYS
+        if at:
+            since = sections[at].at if axis == X else retracts[at - 1]
+        found.append((sections[at], keys[at], since, until))
+    yield from reversed(found)
 
 
 def _surface_key(moves: Sequence[Move], section: SectionContour) -> SurfaceKey:

@@ -6,6 +6,7 @@ every cylinder whose unrolled surface is cut. Lengths are mm in machine coordina
 """
 
 import math
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -160,7 +161,8 @@ def _view(
     """
     moves, period = subject.moves, 2 * math.pi * getattr(part, "radius", 0.0)
     view = PartView(part, Material(solids, openings, period))
-    for (rapid, level, *_), group in groupby(range(len(moves)), partial(_kind_of_cut, part, moves)):
+    kind = partial(_kind_of_cut, part, moves, [block.at for block, _ in subject.commanded.circles])
+    for (rapid, level, *_), group in groupby(range(len(moves)), kind):
         own = list(group)
         if rapid or (view.surface and not view.meets(subject, own[0])):
             continue
@@ -175,8 +177,10 @@ def _view(
     return view
 
 
-def _kind_of_cut(part: Part, moves: Sequence[Move], index: int) -> tuple:
+def _kind_of_cut(part: Part, moves: Sequence[Move], circles: Sequence[int], index: int) -> tuple:
     """Return what the moves of one cut have in common: rapid or not, their level, and more.
+
+    ``circles`` are the first moves of the cycles, of which one sub may have several.
 
     The level is None where it may change.
     """
@@ -186,7 +190,7 @@ def _kind_of_cut(part: Part, moves: Sequence[Move], index: int) -> tuple:
         return rapid, None, move.tool, is_sideways(move), index // CHUNK, move.block
     if move.start[Z] != move.end[Z] or move.plane != FLAT:
         return rapid, None, index
-    return rapid, move.end[Z], move.tool, move.block
+    return rapid, move.end[Z], move.tool, move.block, bisect_right(circles, index)
 
 
 def _points_along(subject: Subject, part: Part, own: Sequence[int]) -> np.ndarray:

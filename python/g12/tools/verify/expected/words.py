@@ -147,6 +147,7 @@ class SubCall:
         values = (*block.arguments, *[0.0] * len(names))  # LinuxCNC passes 0 for the missing
         self.given = {n: value for n, value in zip(names, values) if value != LEFT_OUT}
         self.cutter, self.settings = cutter, ini.settings
+        self._several = ini.number("TRAJ", "SPINDLES", 1) > 1
         self._state = state = block.state
         self.unit = 1.0 if state["_metric"] else MM_PER_INCH
         in_g7 = bool(state["_lathe_diameter_mode"])
@@ -195,8 +196,8 @@ class SubCall:
 
     @property
     def speed(self) -> float:
-        """S in force, revolutions per minute."""
-        return self._state["_rpm"]
+        """S in force, revolutions per minute, 0 if it may be another spindle's."""
+        return 0.0 if self._several else self._state["_rpm"]
 
     @property
     def _feed(self) -> float | None:
@@ -205,7 +206,7 @@ class SubCall:
     @property
     def _per_minute(self) -> float:
         """The mm per minute of a feed of 1: the unit, under G95 times the spindle's speed."""
-        return self.unit * (self.speed if self._state["_units_per_rev"] else 1.0)
+        return self.unit * (self._state["_rpm"] if self._state["_units_per_rev"] else 1.0)
 
     def turn_to(self, angle: float) -> float:
         """Return by how much C turns to an angle; the machine chooses the whole turns."""

@@ -13,7 +13,7 @@ from itertools import groupby
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X, Z
 from g12.tools.path.track import Limits, Track
-from g12.tools.preview.moves import Event, Move
+from g12.tools.preview.moves import Event, Move, Trace
 from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import LEVEL, SIZE
@@ -65,23 +65,26 @@ def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
 def judge_tool_length(
     cuts: Sequence[MeasuredCut],
     moves: Sequence[Move],
-    lengths: Mapping[int, float],
-    events: Sequence[Event],
+    trace: Trace,
 ) -> Iterator[Finding]:
-    """Yield the cuts that are made with another length than the loaded tool's (``lengths``, mm)."""
+    """Yield the cuts that are made with another length than the loaded tool's, or offset in X."""
+    lengths, events = trace.lengths, trace.events
     compensated = uses_lengths(moves)
     reported: set[tuple[int, float]] = set()
     with_length: set[int] = set()  # the tools that have cut with the length of the table
     for cut in cuts:
         at, first = cut.own.start, moves[cut.own.start]
-        deeper = missing_length(first, lengths)
+        deeper, set_by = missing_length(first, lengths), length_set_by(events, at)
+        beside = trace.offsets.get(first.tool, 0.0) - first.tool_offset[X]
+        if abs(beside) > SIZE and compensated and set_by not in ("G49", "G43.1", "G43.2"):
+            values = {"tool": first.tool, "offset": first.tool_offset[X], "off": abs(beside)}
+            yield Finding("offset-beside", cut.line, values, first.end[:3], cut.file)
         if abs(deeper) < SIZE:
             with_length.add(first.tool)
         if abs(deeper) < SIZE or (first.tool, deeper) in reported:
             continue
         reported.add((first.tool, deeper))
         code = "length-deeper" if deeper > 0.0 else "length-higher"
-        set_by = length_set_by(events, at)
         touched_off = set_by == "G49" and first.tool not in with_length
         code = "length-not-used" if touched_off or not compensated else code
         added = set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0)
@@ -94,7 +97,7 @@ def judge_tool_length(
 
 def uses_lengths(moves: Sequence[Move]) -> bool:
     """Tell whether a program works with tool lengths at all."""
-    return any(abs(move.tool_offset[Z]) > SIZE for move in moves)
+    return any(abs(move.tool_offset[axis]) > SIZE for move in moves for axis in (X, Z))
 
 
 def missing_length(move: Move, lengths: Mapping[int, float]) -> float:

@@ -214,13 +214,14 @@ def section_of(
     acts: list[Act] = []
     cancelled = 0
     for block in group[1:]:
-        has_cut = any(each.depth < pen.surface - LEVEL for each in elements)
-        if has_cut and CANCEL in block.codes and not any(each.side for each in elements):
-            cancelled = cancelled or block.text.number
         texts = (event.text for event in block.events if ACTS.match(event.text))
         acts += [Act(block.text.number, text, len(elements)) for text in texts]
+        has_cut = any(each.depth < pen.surface - LEVEL for each in elements)
         if block is not group[-1]:  # whose words are those of the code that switches off
-            elements += pen.draw(block)
+            drawn = list(pen.draw(block))
+            if has_cut and CANCEL in block.codes and any(each.length for each in drawn):
+                cancelled = cancelled or block.text.number
+            elements += drawn
     kept = kept_state(group[0].state, [code for block in group for code in block.codes])
     return SectionContour(
         first.text.number,
@@ -238,6 +239,6 @@ def section_of(
         expected_state={**pen.leaves(first.state), **({} if restores(group) else kept)},
         state_after=last.state_after,
         surface=pen.surface,
-        cancelled=cancelled,
+        cancelled=0 if any(each.side for each in elements) else cancelled,
         file=first.text.file,
     )

@@ -6,7 +6,7 @@ unless the program commands C in between, or gives it another zero.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
@@ -44,25 +44,35 @@ class CLines:
     def __init__(self, program: Path, codes: Codes, ini: Ini) -> None:
         texts = read_lines(program)
         flagged = codes.with_switches(texts)
-        self._program = _with_c(text for text, switch, inside in flagged if not (inside or switch))
-        subs = _with_c(chain.from_iterable(map(read_lines, called_files(texts, ini))))
-        self._subs = {**subs, **self._program}
+        own = (text for text, switch, inside in flagged if not (inside or switch))
+        self._program = _c_words(own)
+        self._every = _c_words(chain.from_iterable(map(read_lines, called_files(texts, ini))))
+        for line, words in self._program.items():
+            self._every.setdefault(line, []).extend(words)
+
+    def words(self, move: Move) -> list[str]:
+        """Return the C words of a move's line; the move of a sub may be in a file of its own."""
+        lines = self._program if move.line == move.block else self._every
+        return lines.get(move.line, [])
 
     def set_angle(self, move: Move, offset: float) -> bool:
-        """Tell whether a move's line commands the angle of C that it goes to.
+        """Tell whether C goes to an angle that is commanded, and not by an increment (G91).
 
-        An increment (G91) keeps the angle that the cut before left. ``offset`` is the program's
-        C0. The move of a sub may be in a file of its own.
+        ``offset`` is the program's C0.
         """
-        words = self._program if move.line == move.block else self._subs
-        word = words.get(move.line)
-        if word is None:
+        words = self.words(move)
+        if not words:
             return move.end[C] != move.start[C]
-        return not is_number(word) or _apart(move.end[C] - offset, float(word)) < SAME_ANGLE
+        to = move.end[C] - offset
+        return any(not is_number(word) or _apart(to, float(word)) < SAME_ANGLE for word in words)
 
 
-def _with_c(texts: Iterator[Text]) -> dict[int, str]:
-    return {text.number: dict(text.words)["C"] for text in texts if "C" in dict(text.words)}
+def _c_words(texts: Iterable[Text]) -> dict[int, list[str]]:
+    found: dict[int, list[str]] = {}
+    for text in texts:
+        if "C" in dict(text.words):
+            found.setdefault(text.number, []).append(dict(text.words)["C"])
+    return found
 
 
 def _apart(one: float, other: float) -> float:
@@ -119,6 +129,8 @@ def zero_line(
         return ZeroLine(commanded)
     last, faces = before[-1], [cut for cut in before if cut.on_face]
     commanded = commanded or abs(offset - last.offset) > SAME_ANGLE
+    if _apart(moves[last.own.stop].start[C], last.zero) < SAME_ANGLE:  # an increment divides
+        commanded = commanded or any(map(lines.words, between))
     zeros = [cut.zero for cut in faces] or [offset]
     turned = math.remainder(angle - zeros[-1], 360.0)
     if any(_apart(angle, zero) < SAME_ANGLE for zero in zeros):

@@ -34,6 +34,10 @@ FINDINGS = {
         "the tool length in force, {length:mm}, is not that of T{tool}: "
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
+    "offset-beside": (
+        "the tool offset in force in X, {offset:mm}, is not that of T{tool}: "
+        "it cuts {off:fine} beside its words (G43 H{tool} after M6?)"
+    ),
     "rapid-length": (
         "with the length of T{tool} in the table the tip goes by rapid to Z{level:mm}: "
         "the length in force is {length:mm} (G43 H{tool} after M6?)"
@@ -144,7 +148,7 @@ NOTES = {
     ),
     "feed-per-revolution": "F is {feed:mm} per revolution here (G95): was it meant per minute?",
     "feed-per-minute": "F is {feed:feed} here (G94): was it meant per revolution?",
-    "feed-cut-down": "F asks for {feed:feed}, the machine's limits allow {most:feed}",
+    "feed-cut-down": "a feed of {feed:feed}, the machine's limits allow {most:feed}",
     "native-c": (
         "C turns together with X or Z outside of a section, where F counts for X and Z alone: "
         "the part's edge sees {feeds:feeds}"
@@ -198,7 +202,7 @@ NOT_JUDGED = {
     "rapid-after-cuts": (
         "rapids from the side to where other cuts may have removed the bar before: {lines:lines}"
     ),
-    "rapid-no-diameter": "rapids within the part of a tool without a diameter: {lines:lines}",
+    "rapid-no-diameter": "rapids below the top, of a tool without a diameter: {lines:lines}",
     "rapid-turned": "rapids of a tool between cuts on the face and in the side: {lines:lines}",
     "rapid-by-machine": (
         "what rapids by G53, G28 or G30 go through that start within the part: {lines:lines}"

@@ -145,22 +145,25 @@ def judge_words(view: SectionView) -> Iterator[Finding]:
 
 
 def judge_depths(view: SectionView) -> Iterator[Finding]:
-    """Yield the compensated contours above the tool's level before them, or above the part.
+    """Yield the compensated contours above the start of the section, or above the part.
 
     What stays above the part as a whole is reported of the cut.
     """
     section, zero = view.section, view.section.surface
     letter, factor = AXIS_LETTERS[section.third], 2 if zero and section.diameters else 1
-    lowest, before = min((each.depth for each in section.elements), default=zero), section.height
-    for own in stretches_of(section):
-        level, line = min(each.depth for each in own), own[0].line
-        if own[0].side and not own[0].ramp and level > before + LEVEL:
-            words = {"letter": letter, "hint": minus_hint(level, zero)}
-            levels = {"level": factor * level, "start": factor * before}
-            yield Finding("above-start", line, {**words, **levels})
-        elif own[0].side and not own[0].ramp and level > zero - LEVEL > lowest:
-            yield Finding("contour-above", line, {"letter": letter, "level": factor * level})
-        before = own[-1].depth
+    contours = [own for own in stretches_of(section) if own[0].side and not own[0].ramp]
+    levels = [min(each.depth for each in own) for own in contours]
+    start, lowest = (
+        section.height + LEVEL,
+        min((each.depth for each in section.elements), default=0.0),
+    )
+    for own, level in zip(contours, levels):
+        values = {"letter": letter, "level": factor * level, "start": factor * section.height}
+        if level > start and (level > zero - LEVEL or min(levels) > start):
+            values["hint"] = minus_hint(level, zero)
+            yield Finding("above-start", own[0].line, values)
+        elif level > zero + LEVEL and lowest < zero - LEVEL:
+            yield Finding("contour-above", own[0].line, values)
 
 
 def times_of_section(
