@@ -82,7 +82,7 @@ CASES = [
     ("mill", "G0 X10 Y10 Z5|G91|o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] "
      "[-9999] [.3] [150] [800] [400]", ""),
     ("mill", f"G92 X4 Y5 Z1|G0 X10 Y20 Z1|G90.1|{P}", ""),
-    # where C stands
+    # where C is
     ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
     ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),
     ("lathe", f"{FLAT}|G0 C0|{FLAT}", ""),
@@ -141,12 +141,12 @@ CASES = [
     ("mill", f"{HIGH}|G55 G0 X3000|{HIGH}", "travel-perhaps 9"),
     ("mill", f"{HIGH}|G0 X300|{HIGH}", ""),
     # the spindle
-    ("any mill", f"T4 M6 G43|G0 Z1|{LOW}", "spindle-stands 4"),
+    ("any mill", f"T4 M6 G43|G0 Z1|{LOW}", "spindle-off 4"),
     ("any mill", f"T4 M6 G43|G0 Z1|{LOW} S900 M3", ""),
-    ("mill", f"M5|{LOW}", "spindle-stands 7"),
-    ("mill", f"T4 M6|{LOW}", "spindle-stands 7"),
+    ("mill", f"M5|{LOW}", "spindle-off 7"),
+    ("mill", f"T4 M6|{LOW}", "spindle-off 7"),
     ("mill", f"{LOW}|M5", ""),
-    ("any mill", f"T4 M6 G43|G0 Z1|M3|{LOW}", "spindle-stands 5"),
+    ("any mill", f"T4 M6 G43|G0 Z1|M3|{LOW}", "spindle-off 5"),
     ("mill", f"M5|M3|G0 X1|{LOW}", ""),
     ("any mill", f"T4 M6 G43|G0 Z1|M103 P1|{LOW}", ""),  # a user's code may turn a spindle
     ("mill", f"S900 M4|{LOW}", "spindle-m4 7"),
@@ -209,8 +209,8 @@ CASES = [
     ("lathe", f"G0 X60 Z10|{FACE_HOLE.replace('120', '12000')}|G0 Z10", "feed-cut-down 6"),
     # pockets that meet
     ("mill", f"{CLEARED}|G0 Z1|{RING}", ""),
-    ("mill", RING, "core-stands 6"),
-    ("mill", f"{SHALLOW}|G0 Z1|{RING}", "core-stands 8"),
+    ("mill", RING, "core-remains 6"),
+    ("mill", f"{SHALLOW}|G0 Z1|{RING}", "core-remains 8"),
     ("mill", f"{CLEARED}|G0 Z1|X50|{CLEARED}", ""),
     ("mill", f"{CLEARED}|G0 Z1|X20|{CLEARED}", "cuts-wall 9"),
     ("mill", f"{CLEARED}|G0 Z1|X2|{SHALLOW.replace('K20', 'K8')}", "cut-before 9"),
@@ -227,7 +227,7 @@ CASES = [
     ("mill", f"Z10|{P}|G0 Z1|X100", ""),
     ("mill", f"Z10|{P}|G0 Z-1|X100", "rapid-through 9"),
     ("mill", f"{P}|G1 X60|{P}|G0 X0|Z2", ""),  # along the channel
-    ("mill", f"{RING}|G0 X-15.2|Z1", "core-stands 6, rapid-through 7"),
+    ("mill", f"{RING}|G0 X-15.2|Z1", "core-remains 6, rapid-through 7"),
     ("mill", f"{SHALLOW}|G0 Z1|Z-4|{CLEARED}|G0 Z1", "rapid-into 8"),
     ("mill", f"Z-2|{CLEARED}|G0 Z-2|X60|{CLEARED}", "bored-assumed 6, rapid-beside 9"),
     ("yasnac", "G0 Z-3|G12 I40 R38 D10 F300|G0 X20 Y2|Z2", "bored-assumed 6"),
@@ -255,8 +255,8 @@ CASES = [
     ("inch", f"G0 Z-.3|{POCKET.replace(' Z-.3', '')}|G0 Z.1", "rapid-into 5", "4x4x1"),
     ("inch", f"G0 Z-.3|{POCKET.replace(' Z-.3', '')}|G0 Z.1", "", "4x4x1 bore .7"),
     ("inch", f"{POCKET}|G0 Z.1|G53 G0 Z0", "plunge-into-stock 5", "4x4x1"),
-    ("yasnac", R38, "plunge-into-stock 5, rapid-through 6, core-stands 6", "200x200x20"),
-    ("yasnac", R38, "rapid-through 6, core-stands 6", "200x200x20 bore 30"),
+    ("yasnac", R38, "plunge-into-stock 5, rapid-through 6, core-remains 6", "200x200x20"),
+    ("yasnac", R38, "rapid-through 6, core-remains 6", "200x200x20 bore 30"),
     ("yasnac", R38, "no-stock-met 6", "200x200x20 bore 80"),
     ("lathe", f"G0 X60 Z10|{FACE_HOLE}|G0 Z10", ""),
     ("lathe", f"G0 X60 Z10|{FACE_HOLE}|G0 X20 Z-3|X30", "rapid-through 8"),
@@ -385,7 +385,7 @@ CASES = [
      "loaded-unknown 10, rapid-through 11"),
     ("radii", f"G10 L1 P3 R0|T3 M6|S900 M3|G0 X18 Z2 C0|{SLOT.replace('|Z2', '')}|G0 C180|Z2",
      "rubs 9, rapid-no-diameter 14"),
-    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7"),
+    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7, after-arc 7"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
     ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 10"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),
@@ -483,7 +483,7 @@ def test_a_run_beside_its_path_is_found(beginning, blocks, axis, found, proof_of
 
 @pytest.mark.parametrize(
     ("pocket", "found"),
-    [("G13 I17 Z-3 D4", "core-stands 6, rapid-through 7, rapid-through 8"), (P, "")],
+    [("G13 I17 Z-3 D4", "core-remains 6, rapid-through 7, rapid-through 8"), (P, "")],
 )
 def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(
     pocket, found, proof_of, codes
@@ -522,12 +522,12 @@ MOVED = "positions below are the machine's; the program's zero is at machine"
 AT_X10 = "X0, the spindle's axis, is at machine X10\n"
 SAID = [  # a program, and a part of its report
     ("lathe", f"{FLAT}|{FLAT}",
-     "line 13: C stands where line 11 left it, turned by −39.8° against the cut of line 5: G0"),
+     "line 13: C is where line 11 left it, turned by −39.8° against the cut of line 5: G0"),
     ("lathe", f"G0 Z5|{POLYGON}|{FLAT}",
-     "line 7: C stands where line 6 left it, turned by 30° against the cut of line 6: G0"),
+     "line 7: C is where line 6 left it, turned by 30° against the cut of line 6: G0"),
     ("lathe", f"{FLANK}|X44|G7.1 C0|G0 Z2|X60|{FLAT}",
-     "line 13: C stands where line 10 left it: the contour begins turned on the part by 90°; G0"),
-    ("any lathe", f"T1 M6|G0 X60 Z2|{FLAT}", "its zero line is where C stands, at 0°"),
+     "line 13: C is where line 10 left it: the contour begins turned on the part by 90°; G0"),
+    ("any lathe", f"T1 M6|G0 X60 Z2|{FLAT}", "its zero line is where C is, at 0°"),
     ("radii", SLOT, "C turns in place at the centre, by 360° in all: there the tool rubs for 1 s"),
     ("lathe", "G12.1|G1 X100 F2000|G42 X60|Z-5|C-30|X-60|C30|X60|C0|Z2|G40 X100|G13.1",
      "the tool is inside the closed contour, it comes from outside: G41? "

@@ -38,7 +38,7 @@ def _cores(circles: Circles, material: Material) -> Iterator[Finding]:
         line = target.line
         values = {"area": area, "more": {each.line for each, _ in found} - {line}}
         place = target.wall.machine((0j, target.deepest))
-        yield Finding("core-stands", line, values, place, target.file)
+        yield Finding("core-remains", line, values, place, target.file)
 
 
 def _area_in(target: Target, material: Material, before: int) -> float:

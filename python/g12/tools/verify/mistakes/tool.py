@@ -58,7 +58,7 @@ def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
     if turning and not runs:
         return "tool-spindle"  # another code of the machine may start it
     if spindle == "M5" or speed == "S0":
-        return "spindle-stands"
+        return "spindle-off"
     return "spindle-m4" if spindle == "M4" and runs else ""
 
 
@@ -109,6 +109,17 @@ def length_set_by(events: Sequence[Event], at: int) -> str:
     """Return the code that set the tool length of a move (index), if no tool was changed since."""
     changes = (event.text for event in reversed(events) if event.at <= at)
     return next((each for each in changes if each.startswith(("tool ", "G43", "G49"))), "")
+
+
+def judge_tool_changes(moves: Sequence[Move], events: Sequence[Event]) -> Iterator[Finding]:
+    """Yield the tool changes after an arc.
+
+    LinuxCNC's preview then goes on from the end of the last straight move, the machine does not.
+    """
+    changes = (each for each in events if each.text.startswith("tool ") and each.at)
+    lines = [each.line for each in changes if moves[each.at - 1].kind == "arc"]
+    if lines:
+        yield Finding("after-arc", lines[0], {"lines": lines})
 
 
 def judge_levels(cuts: Sequence[MeasuredCut], moves: Sequence[Move]) -> Iterator[Finding]:

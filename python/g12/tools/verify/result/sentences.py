@@ -61,7 +61,7 @@ FINDINGS = {
         "(else go {here} before the line with {code})"
     ),
     "zero-line-turned": (
-        "C stands where line {line} left it, turned by {turned:1}° against the cut of line {cut}: "
+        "C is where line {line} left it, turned by {turned:1}° against the cut of line {cut}: "
         "G0 C0 missing?"
     ),
     "above-start": (
@@ -88,8 +88,8 @@ NOTES = {
         "verify assumes a bored hole down to {at:place}, because {why}{more:also}; "
         "give the real stock with --stock"
     ),
-    "core-stands": (
-        "{area:mm2} stand in its middle when it is cut{more:also}: right only where that is bored "
+    "core-remains": (
+        "{area:mm2} remain in its middle when it is cut{more:also}: right only where that is bored "
         "before, or is to stay: --stock gives what there is"
     ),
     "cuts-wall": "it and line {line} cut into each other's walls",
@@ -114,10 +114,10 @@ NOTES = {
         "nothing of the section is judged: its contour cannot be read from the words, {why}"
     ),
     "zero-line-unknown": (
-        "no C word comes before the section: its zero line is where C stands, at {angle:3}°"
+        "no C word comes before the section: its zero line is where C is, at {angle:3}°"
     ),
     "zero-line-left": (
-        "C stands where line {line} left it: the contour begins turned on the part by {turned:1}°; "
+        "C is where line {line} left it: the contour begins turned on the part by {turned:1}°; "
         "G0 C0 missing?"
     ),
     "not-below-start": "no move goes below the {letter} of {code}",
@@ -157,7 +157,7 @@ NOTES = {
         "{code} outside of a section is a return level of drilling cycles to LinuxCNC, "
         "no feed mode: write {meant}"
     ),
-    "spindle-stands": (
+    "spindle-off": (
         "the spindle does not turn here: write S and M3 before this line, "
         "and M3 again after an M5 or M6"
     ),
@@ -193,11 +193,11 @@ NOT_JUDGED = {
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
     "rapid-from-unknown": (
-        "what rapids go through whose start is not known, to a point within the part: {lines:lines}"
+        "rapids from an unknown start to a point below the part's top or Z0: {lines:lines}"
     ),
     "rapid-beside": (
         "rapids below the part's top or Z0, beside what is cut: {lines:lines}; "
-        "--stock gives what stands there"
+        "--stock defines the material there"
     ),
     "rapid-after-cuts": (
         "rapids from the side to where other cuts may have removed the bar before: {lines:lines}"
@@ -205,7 +205,7 @@ NOT_JUDGED = {
     "rapid-no-diameter": "rapids below the top, of a tool without a diameter: {lines:lines}",
     "rapid-turned": "rapids of a tool between cuts on the face and in the side: {lines:lines}",
     "rapid-by-machine": (
-        "what rapids by G53, G28 or G30 go through that start within the part: {lines:lines}"
+        "rapids by G53, G28 or G30 that begin below the part's top: {lines:lines}"
     ),
     "travel-unplaced": (
         "whether it is within the travel: no work offset is set; --var gives the machine's"
@@ -216,6 +216,10 @@ NOT_JUDGED = {
     ),
     "tool-spindle-unseen": (
         "whether the driven tool turns: LinuxCNC's preview shows the first spindle alone"
+    ),
+    "after-arc": (
+        "positions after an M6 that follows an arc, where LinuxCNC's preview is wrong: "
+        "{lines:lines}; retract before M6"
     ),
     "upright": "the material around a circle in another plane than G17: {lines:lines}",
     "block-delete": (
