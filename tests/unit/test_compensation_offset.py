@@ -35,6 +35,12 @@ def along_part(contour):
     return [move for move in path if 2 < move.line < 9000]
 
 
+def farthest(line, other):
+    """Return how far a line is at most from another; shapely's buffers differ by its version."""
+    points = (line.interpolate(share, normalized=True) for share in np.linspace(0.0, 1.0, 500))
+    return max(map(other.distance, points))
+
+
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side):
     count = 0
@@ -48,8 +54,7 @@ def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side)
             outline, way = Polygon(as_shapely(part.body).coords), as_shapely(made)
             outside = outline.exterior.is_ccw == (side == RIGHT)
             ring = outline.buffer(part.radius if outside else -part.radius, 100).exterior
-            assert way.buffer(TOLERANCE).covers(ring), seed
-            assert ring.buffer(TOLERANCE).covers(way), seed
+            assert max(farthest(way, ring), farthest(ring, way)) < TOLERANCE, seed
             count += 1
     assert count > 40
 

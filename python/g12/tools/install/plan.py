@@ -354,7 +354,7 @@ def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, st
 
 def is_package_module(path: Path) -> bool:
     own = features.ROOT / "python" / path.name
-    return own.is_file() and own.read_bytes() == path.read_bytes()
+    return path.is_file() and own.is_file() and own.read_bytes() == path.read_bytes()
 
 
 def refuse_own_names(config: Config) -> None:
