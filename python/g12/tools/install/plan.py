@@ -337,6 +337,12 @@ def add_python(plan: InstallPlan) -> None:
 def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, str, bool]]:
     """Return the user's TOPLEVEL and module remap, with the imports, and if they are missing."""
     python, toplevel = config.python, config.ini.file("PYTHON", "TOPLEVEL")
+    if not toplevel.is_file():
+        raise refuse(
+            "no-toplevel",
+            f"[PYTHON] TOPLEVEL = {toplevel}: there is no such file",
+            "name the machine's own toplevel.py, or take the line out",
+        )
     if python.remap and not python.remap_file:
         raise refuse(
             "remap-module",
@@ -354,7 +360,7 @@ def own_modules(config: Config, requested: Sequence[str]) -> list[tuple[Path, st
 
 def is_package_module(path: Path) -> bool:
     own = features.ROOT / "python" / path.name
-    return path.is_file() and own.is_file() and own.read_bytes() == path.read_bytes()
+    return own.is_file() and own.read_bytes() == path.read_bytes()
 
 
 def refuse_own_names(config: Config) -> None:
