@@ -261,6 +261,8 @@ def test_where_nothing_may_be_written_nothing_is(tmp_path):
     (tmp_path / "remap.py").write_text("def mine(self): pass\n")
     ini, own = own_config(outside)
     assert refused_kind(ini, "haas", **{**own, "remap_file": "../remap.py"}) == "outside"
+    (outside / "python" / "toplevel.py").unlink()
+    assert refused_kind(ini, "haas", **own) == "no-toplevel"
 
 
 def test_two_machines_share_the_copy_and_the_import(tmp_path):
