@@ -40,7 +40,7 @@ def circle(centre, radius, depth=-5.0, side=1, line=20):
 def found(*contours):
     """Return line, other line and depth of what is cut, the deepest first."""
     elements = [element for each in contours for element in each]
-    cuts = neighbour_cuts(contour_path(elements, UP, TOOL, TOLERANCE), TOOL, TOLERANCE)
+    cuts = neighbour_cuts(contour_path(elements, UP, TOOL, TOLERANCE), TOOL, TOLERANCE, 0.0)
     return sorted(
         ((each.line, each.values["line"], each.values["size"]) for each in cuts),
         key=lambda cut: -cut[2],

@@ -127,7 +127,8 @@ def measure_holes(
         **_times_of_holes(holes, pace(own, []), real),
     }
     cut = _called_cut(call, found, values, judged)
-    return replace(cut, feeds=(holes.pitch * call.speed,) if holes.pitch else None)
+    tapping = [holes.pitch * call.speed] if call.speed else []
+    return replace(cut, feeds=tuple(tapping) if holes.pitch else None)
 
 
 def _times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:

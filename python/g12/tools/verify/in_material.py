@@ -189,8 +189,7 @@ def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
         point = view.part.points(np.array(subject.moves[last].end))[0]
         region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
         known = subject.ends_known[last] and view.meets(subject, last)
-        where = region, point[Z], event.at
-        if known and view.material.was_solid(*where) and view.material.is_cut(*where):
+        if known and view.material.was_solid(region, point[Z], event.at):
             values = {"tool": event.text.split()[1]}
             yield Finding("change-in-cut", event.line, values, subject.end(last))
 

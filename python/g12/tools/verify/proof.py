@@ -228,7 +228,7 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     trace, ini, moves = subject.trace, subject.ini, subject.moves
     cuts = [*found.pockets, *found.sections, *found.holes]
     texts = read_lines(subject.program)
-    yield from judge_tool_length(cuts, moves, trace)
+    yield from judge_tool_length(cuts, trace)
     yield from judge_rapid_lengths(subject, known) if not part_of(ini).turning else ()
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)

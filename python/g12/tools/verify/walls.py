@@ -61,11 +61,10 @@ class Approach(NamedTuple):
 
 
 class AssumedHole(NamedTuple):
-    """A hole that is assumed: the line that does and why, the point that is entered, its area."""
+    """A hole that is assumed: the line that does and why, the point that is entered."""
 
     line: int
     place: tuple[float, float, float]
-    opening: Opening
     why: str
 
 
@@ -142,27 +141,28 @@ def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
     for _, target in flat_circles(subject):
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
-            opening = Opening(disc((x, y), target.wall.bore), z)
-            found.append(AssumedHole(target.line, (x, y, z), opening, "its word R or J names it"))
-            material.open(opening)
+            material.open(Opening(disc((x, y), target.wall.bore), z))
+            found.append(AssumedHole(target.line, (x, y, z), "its word R or J names it"))
     return found + list(_holes_entered(subject, material))
 
 
 def _holes_entered(subject: Subject, material: Material) -> Iterator[AssumedHole]:
-    is_first = True
-    for index, top in _entries(subject):
-        if index is None and is_first:
-            return
-        if index is not None:
+    for number, (index, top) in enumerate(_entries(subject)):
+        if _is_entered(subject, material, index, -math.inf if number else top):
             x, y, z = end = subject.end(index)
-            below = is_first and z < top - SAME_LEVEL
-            if below or material.touched(np.array([end]), subject.cutter(index), index):
-                opening = Opening(disc((x, y), subject.cutter(index)), z)
-                material.open(opening)
-                yield AssumedHole(subject.line(index), end, opening, "a rapid goes into it")
-            elif is_first:
-                return
-        is_first = False
+            material.open(Opening(disc((x, y), subject.cutter(index)), z))
+            yield AssumedHole(subject.line(index), end, "a rapid goes into it")
+        elif not number:
+            return
+
+
+def _is_entered(subject: Subject, material: Material, index: int | None, top: float) -> bool:
+    """Tell whether a rapid goes into material, or below a top; the end of G28 is not known."""
+    if index is None or not subject.ends_known[index]:
+        return False
+    end = subject.end(index)
+    touch = material.touched(np.array([end]), subject.cutter(index), index)
+    return end[Z] < top - SAME_LEVEL or touch is not None
 
 
 def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
@@ -171,15 +171,9 @@ def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
     A section may begin below its face, where turning has cut before.
     """
     for target, (came, _, _, index) in approached(subject):
-        yield _known(subject, index), min(target.wall.face, came)
+        yield index, min(target.wall.face, came)
     for section in subject.commanded.on_face:
-        index = _approach(range(section.at, section.at), subject.moves).move
-        yield _known(subject, index), -math.inf
-
-
-def _known(subject: Subject, index: int | None) -> int | None:
-    """Return a move if its end is known: G28 and G53 lead to a place of the machine."""
-    return index if index is not None and subject.ends_known[index] else None
+        yield _approach(range(section.at, section.at), subject.moves).move, -math.inf
 
 
 def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, list[Solid]]]:
@@ -206,20 +200,19 @@ def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, Surfac
     sections = [each for each in subject.commanded.sections if each.third == axis]
     keys = [_surface_key(moves, section) for section in sections]
     retracts = [
-        next((i for i in range(one.end - 1, other.at) if moves[i].end[axis] > top), other.at)
+        _retract(moves, range(one.end - 1, other.at), axis, key.face)
         for one, other, key in zip(sections, sections[1:], keys)
-        for top in [key.face - SAME_LEVEL]
     ]
-    until = math.inf
-    found = []
-    for at in reversed(range(len(sections))):
-        if at < len(retracts) and keys[at] != keys[at + 1]:
-            until = retracts[at]
-        since = ALWAYS
-        if at:
-            since = sections[at].at if axis == X else retracts[at - 1]
-        found.append((sections[at], keys[at], since, until))
-    yield from reversed(found)
+    ends = [retract for retract, one, other in zip(retracts, keys, keys[1:]) if one != other]
+    for section, key, before in zip(sections, keys, [ALWAYS, *retracts]):
+        since = section.at if axis == X and before != ALWAYS else before
+        yield section, key, since, next((end for end in ends if end >= section.at), math.inf)
+
+
+def _retract(moves: Sequence[Move], between: range, axis: int, face: float) -> int:
+    """Return the first move that ends above a face, of none the last."""
+    up = (index for index in between if moves[index].end[axis] > face - SAME_LEVEL)
+    return next(up, between.stop)
 
 
 def _surface_key(moves: Sequence[Move], section: SectionContour) -> SurfaceKey:

@@ -180,9 +180,8 @@ def _view(
 def _kind_of_cut(part: Part, moves: Sequence[Move], circles: Sequence[int], index: int) -> tuple:
     """Return what the moves of one cut have in common: rapid or not, their level, and more.
 
-    ``circles`` are the first moves of the cycles, of which one sub may have several.
-
-    The level is None where it may change.
+    The level is None where it may change. ``circles`` are the first moves of the cycles, of which
+    one sub may have several.
     """
     move = moves[index]
     rapid = move.kind == "rapid"

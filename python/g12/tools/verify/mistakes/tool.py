@@ -62,21 +62,20 @@ def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
     return "spindle-m4" if spindle == "M4" and runs else ""
 
 
-def judge_tool_length(
-    cuts: Sequence[MeasuredCut],
-    moves: Sequence[Move],
-    trace: Trace,
-) -> Iterator[Finding]:
+def judge_tool_length(cuts: Sequence[MeasuredCut], trace: Trace) -> Iterator[Finding]:
     """Yield the cuts that are made with another length than the loaded tool's, or offset in X."""
-    lengths, events = trace.lengths, trace.events
+    moves, events = trace.moves, trace.events
     compensated = uses_lengths(moves)
     reported: set[tuple[int, float]] = set()
+    beside_reported: set[tuple[int, float]] = set()
     with_length: set[int] = set()  # the tools that have cut with the length of the table
     for cut in cuts:
         at, first = cut.own.start, moves[cut.own.start]
-        deeper, set_by = missing_length(first, lengths), length_set_by(events, at)
+        deeper, set_by = missing_length(first, trace.lengths), length_set_by(events, at)
         beside = trace.offsets.get(first.tool, 0.0) - first.tool_offset[X]
-        if abs(beside) > SIZE and compensated and set_by not in ("G49", "G43.1", "G43.2"):
+        intended = set_by in ("G49", "G43.1", "G43.2") or not compensated
+        if abs(beside) > SIZE and not intended and (first.tool, beside) not in beside_reported:
+            beside_reported.add((first.tool, beside))
             values = {"tool": first.tool, "offset": first.tool_offset[X], "off": abs(beside)}
             yield Finding("offset-beside", cut.line, values, first.end[:3], cut.file)
         if abs(deeper) < SIZE:
@@ -138,9 +137,7 @@ def judge_feeds(
     for cut in cuts:
         fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
         per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
-        feeds = [feed for feed in cut.feeds or () if feed] or [
-            move.feed for move in fed if move.feed_mode != "G95"
-        ]
+        feeds = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
         if max(per_turn, default=0.0) > MOST_PER_TURN:
             values = {"feed": max(per_turn)}

@@ -216,11 +216,11 @@ def section_of(
     for block in group[1:]:
         texts = (event.text for event in block.events if ACTS.match(event.text))
         acts += [Act(block.text.number, text, len(elements)) for text in texts]
-        has_cut = any(each.depth < pen.surface - LEVEL for each in elements)
         if block is not group[-1]:  # whose words are those of the code that switches off
             drawn = list(pen.draw(block))
-            if has_cut and CANCEL in block.codes and any(each.length for each in drawn):
-                cancelled = cancelled or block.text.number
+            if CANCEL in block.codes and any(each.length for each in drawn) and not cancelled:
+                has_cut = any(each.depth < pen.surface - LEVEL for each in elements)
+                cancelled = block.text.number * has_cut
             elements += drawn
     kept = kept_state(group[0].state, [code for block in group for code in block.codes])
     return SectionContour(

@@ -129,7 +129,8 @@ def zero_line(
         return ZeroLine(commanded)
     last, faces = before[-1], [cut for cut in before if cut.on_face]
     commanded = commanded or abs(offset - last.offset) > SAME_ANGLE
-    if _apart(moves[last.own.stop].start[C], last.zero) < SAME_ANGLE:  # an increment divides
+    if _apart(moves[last.own.stop].start[C], last.zero) < SAME_ANGLE:
+        # from the zero line an increment indexes the part
         commanded = commanded or any(map(lines.words, between))
     zeros = [cut.zero for cut in faces] or [offset]
     turned = math.remainder(angle - zeros[-1], 360.0)

@@ -11,8 +11,7 @@ from the spindle's centre.
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from itertools import groupby, product
-from typing import NamedTuple
+from itertools import groupby, permutations, product
 
 import numpy as np
 from shapely.geometry import LineString, Polygon
@@ -182,9 +181,8 @@ class CutContour:
 
     def __init__(self, steps: Sequence[ContourStep]) -> None:
         self.side = steps[0].element.side
-        self.moves = [step.move for step in steps if step.move.curve.length > NO_LENGTH]
-        elements = {id(step.element): step.element for step in steps}
-        self.elements = [each for each in elements.values() if each.length > NO_LENGTH]
+        self.moves = [step.move for step in steps]
+        self.elements = list({id(step.element): step.element for step in steps}.values())
         levels = [level for move in self.moves for level in (move.start_level, move.end_level)]
         self.lowest, self.highest = min(levels), max(levels)
         self.line = joined([drawn(each.curve) for each in self.elements])
@@ -192,7 +190,7 @@ class CutContour:
 
 
 def neighbour_cuts(
-    steps: Sequence[ContourStep], tool: float, tolerance: float, zero: float = 0.0
+    steps: Sequence[ContourStep], tool: float, tolerance: float, zero: float
 ) -> Iterator[Finding]:
     """Yield the deepest cut into each compensated contour that is not commanded.
 
@@ -200,30 +198,23 @@ def neighbour_cuts(
     retract is missing. ``zero`` is the level of the part's face or surface.
     """
     across = (step for step in steps if step.move.curve.length > NO_LENGTH)
-    cuts = [CutContour(list(run)) for key, run in groupby(across, _run_of) if not key.ramp]
-    contours = [cut for cut in cuts if cut.side]
+    cuts = [CutContour(list(run)) for (ramp, *_), run in groupby(across, _kind_of_run) if not ramp]
+    cuts = [cut for cut in cuts if cut.side or cut.lowest < zero - LEVEL]
     reported: set[tuple[int, int]] = set()
-    for one, other in ((one, other) for one in contours for other in cuts if one is not other):
-        level = one.highest if other.side else min(one.highest, zero - 2 * LEVEL)
-        if other.lowest <= level + LEVEL and one.line.distance(other.path) < tool:
+    for one, other in permutations(cuts, 2):
+        is_low = one.side and other.lowest <= one.highest + LEVEL
+        if is_low and one.line.distance(other.path) < tool:
             size, line, cut = max(cuts_into(one, other, tool, tolerance), default=(0.0, 0, 0))
             if size and (line, cut) not in reported:
                 reported.add((line, cut))
                 yield Finding("cuts-contour", line, {"size": size, "line": cut})
 
 
-class _Run(NamedTuple):
-    """What the steps of one contour have in common; without compensation also their level."""
-
-    side: int
-    ramp: bool
-    levels: tuple[float, ...]
-
-
-def _run_of(step: ContourStep) -> _Run:
+def _kind_of_run(step: ContourStep) -> tuple[float, ...]:
+    """Return what the steps of one contour share; without compensation also their level."""
     move, element = step
     levels = () if element.side else (move.start_level, move.end_level)
-    return _Run(element.side, element.ramp, levels)
+    return element.ramp, element.side, *levels
 
 
 def cuts_into(

@@ -145,24 +145,21 @@ def judge_words(view: SectionView) -> Iterator[Finding]:
 
 
 def judge_depths(view: SectionView) -> Iterator[Finding]:
-    """Yield the compensated contours above the start of the section, or above the part.
+    """Yield the compensated contours above the part: above the section's start they cut air.
 
-    What stays above the part as a whole is reported of the cut.
+    Below the start they may be a dry pass, unless all of the cut is: that is reported of the cut.
     """
     section, zero = view.section, view.section.surface
     letter, factor = AXIS_LETTERS[section.third], 2 if zero and section.diameters else 1
-    contours = [own for own in stretches_of(section) if own[0].side and not own[0].ramp]
-    levels = [min(each.depth for each in own) for own in contours]
-    start, lowest = (
-        section.height + LEVEL,
-        min((each.depth for each in section.elements), default=0.0),
-    )
-    for own, level in zip(contours, levels):
+    lowest = min((each.depth for each in section.elements), default=zero)
+    for own in stretches_of(section):
+        level = min(each.depth for each in own)
+        is_above = own[0].side and not own[0].ramp and level > zero + LEVEL
         values = {"letter": letter, "level": factor * level, "start": factor * section.height}
-        if level > start and (level > zero - LEVEL or min(levels) > start):
+        if is_above and level > section.height + LEVEL:
             values["hint"] = minus_hint(level, zero)
             yield Finding("above-start", own[0].line, values)
-        elif level > zero + LEVEL and lowest < zero - LEVEL:
+        elif is_above and lowest < zero - LEVEL:
             yield Finding("contour-above", own[0].line, values)
 
 
