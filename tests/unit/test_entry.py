@@ -59,11 +59,12 @@ def test_what_the_subroutine_is_told(first, side):
     assert (passed["turns"], passed["fall"]) == helix.descent(3.0)
     assert (passed["next_turns"], passed["next_fall"]) == helix.descent(2.0)
     assert passed["last_turns"] == 3
+    assert not passed["restart"]
 
 
 def test_straight_down_is_at_its_share_of_the_feed():
     passed = down(3.0, (3.0, 2.0), PocketEntry(feed=40.0))
-    assert passed == {"turns": 0, "feed": 600.0, "plunge_feed": 240.0}
+    assert passed == {"restart": True, "turns": 0, "feed": 600.0, "plunge_feed": 240.0}
 
 
 def test_a_helix_of_a_thousand_turns_is_refused_by_the_first_level_alone():

@@ -76,6 +76,7 @@ def pocket_descent(
     check_helix(words, helix, heights[0], cutter)
     to_first, further = map(helix.descent, heights)
     numbers = {
+        "restart": heights[1] != 0 and not further.turns,
         "turns": to_first.turns,
         "feed": feed,
         "plunge_feed": feed * (entry.feed / 100.0),

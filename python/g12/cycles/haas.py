@@ -77,7 +77,6 @@ def plan_pocket(
         "z_step": z_step,
         "levels": levels,
         "first_radius": first_radius,
-        "restart": z_step != 0 and not down["turns"],
         "rings": clearing != "spiral",
     }
     message = upward(words, depth)
