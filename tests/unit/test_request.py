@@ -53,6 +53,7 @@ def test_the_steps_are_enough_and_one_less_would_not_be(first, way, step):
 def test_a_quotient_beyond_all_counting_is_still_a_count():
     for step in (1e-300, 1e-310):
         assert steps_between(0.0, 1e6, step, TOLERANCE) == 1_000_000_000
+        assert steps_between(0.0, step, step, TOLERANCE) == 0
 
 
 # ---------------------------------------------------------------- the tool of D

@@ -113,4 +113,4 @@ def steps_between(first: float, last: float, step: float, tolerance: float) -> i
 
     A remainder shorter than ``tolerance`` is rounding, not a step of its own.
     """
-    return max(0, math.ceil(min((last - first - tolerance) / step, COUNTLESS)))
+    return math.ceil(max(0.0, min((last - first - tolerance) / step, COUNTLESS)))
