@@ -84,6 +84,7 @@ REFUSED = {
          "it must be between X0 and X50, where I50 puts it")),
         ("I50 R30 K30 Q1 D2", beyond("K30", 20, WITH_D,
          "it must be between X20 and X40, where I50 puts it")),
+        ("I50 L0", "L0 must be at least 1"),
         ("I50 D3", "D3 has the negative diameter -4 in the tool table"),
         ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
         ("I50 Z-1", "Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
