@@ -12,7 +12,6 @@ import os
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -87,9 +86,8 @@ class Settings:
     polar_z: str = setting("refuse", words("refuse", "allow"))
     polar_g0: str = setting("refuse", words("refuse", "feed"))
     polar_g0_feed: float | None = setting(None, number_rule())
-    polar_tolerance: float | None = setting(
-        None, number_rule(least=0.00001)
-    )  # below any resolution
+    # From 0.00001 on: that is below the resolution of any machine.
+    polar_tolerance: float | None = setting(None, number_rule(least=0.00001))
     polar_pole: str = setting("rotate", words("rotate", "refuse"))
     polar_kinematics: str = setting("0", words("0", "1"))
     polar_switch_time: float = setting(10.0, number_rule(most=3600.0))
@@ -116,6 +114,8 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
     values: dict[str, Any] = {}
     for _, key, text in entries_of(lines, INI_SECTION):
         if key not in TABLE:
+            from difflib import get_close_matches  # not needed at LinuxCNC's start
+
             (nearest,) = get_close_matches(key.upper(), TABLE, 1, 0.0)
             raise Refusal(f"[{INI_SECTION}] {key:.40} is not a setting; the nearest is {nearest}")
         if key.lower() in values:
