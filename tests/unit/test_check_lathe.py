@@ -46,6 +46,7 @@ def with_codes(text, names):
     ("lines", "expected"),
     [
         ("GEOMETRY = XZC\n", {"geometry": WARNING}),  # moved first, then turned
+        ("GEOMETRY = CZ\n", {"geometry": WARNING}),  # never moved along X
         ("GEOMETRY = CXZ!\n", {}),
         ("GEOMETRY = -CXZ\n", {}),
     ],

@@ -24,7 +24,8 @@ def geometry_for(axes: str) -> str:
 
 def without_geometry(config: Config) -> Iterator[ConfigFinding]:
     found = config.ini.get("DISPLAY", "GEOMETRY") or ""
-    turns_first = "C" in found.upper().partition("X")[0]
+    letters = found.upper()
+    turns_first = 0 <= letters.find("C") < letters.find("X")
     if screen_of(config) in WITH_PREVIEW and not turns_first:
         yield warning(
             "geometry",
