@@ -96,6 +96,20 @@ def test_another_file_in_front_of_the_sub(tmp_path, capsys):
     assert trace_text(POCKET, ini).moves[0].end[0] == 99
 
 
+def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
+    event = "".join(f"REMAP = {line.text}\n" for line in features.remaps_of("circle-mill"))
+    own = "PATH_PREPEND = mine\n"
+    text = with_lines(with_lines(GOOD, "RS274NGC", event), "PYTHON", own)
+    ini = write_config(
+        tmp_path,
+        text.replace(f"{ROOT}/python/toplevel.py", "mine/toplevel.py"),
+        mine__toplevel_py="import remap, oword\n",
+        mine__oword_py="def circle_mill(self, *entries):\n    return 0.0\n",
+    )
+    assert kinds(ini, capsys) == ["shadowed"]
+    assert trace_text(["F100", "o<circle_mill> call [7]", "M2"], ini).moves == []
+
+
 def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
     folder = tmp_path / "my mill"
     folder.mkdir()
@@ -223,6 +237,7 @@ def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
             "G13 is remapped here already",
         ),
         (LATHE, {}, "haas", "haas needs axis Y"),
+        (MILL + "[G12\n", {}, "haas", "[G12: begins no section"),
         (MILL + OWN, remap("import nowhere\n"), "haas", "No module named 'nowhere'"),
         (MILL + OWN, remap("def g12_haas(self): pass\n"), "haas", "has a function g12_haas"),
         (MILL + OWN, {"mine__toplevel_py": "class remap: f = len\n"}, "haas", "is no module"),

@@ -6,6 +6,7 @@ import re
 import shutil
 import stat
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,7 @@ from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniError, IniText
 from g12.tools.install.plan import Refused
 from g12.tools.machine import files
+from g12.tools.preview.loading import UNREAD
 from g12.tools.system import COMMAND
 from support.small_configs import (
     MILL,
@@ -606,6 +608,20 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
     assert capsys.readouterr().out == f"{ini}: haas: installed already, nothing to do\n"
     assert install.main([str(ini), "--with", "yasnac"]) == 1
     assert "haas and yasnac exclude each other" in capsys.readouterr().err
+    assert install.main([*words, "yasnac"]) == 2
+    assert "haas and yasnac exclude each other: choose one" in capsys.readouterr().err
+
+
+def test_an_ini_that_linuxcnc_does_not_read_is_refused_with_its_problem(
+    tmp_path, monkeypatch, capsys
+):
+    """LinuxCNC 2.10 reads nothing of an INI with a broken header; its Python is unknown."""
+    ini = write_config(tmp_path, MILL + "[G12\n")
+    config = replace(config_of(ini, failure=f"{UNREAD}: line 13"), python=None)
+    monkeypatch.setattr(installation, "load_config", lambda _: config)
+    assert install.main([str(ini), "--with", "haas"]) == 1
+    (said,) = capsys.readouterr().err.splitlines()
+    assert said.startswith("g12 install: [header] mill.ini:13: [G12: begins no section")
 
 
 @pytest.mark.parametrize(

@@ -19,12 +19,12 @@ from g12.tools.install.plan import (
     refuse,
     refuse_problems,
 )
-from g12.tools.install.rules import findings_of, installed_programs, shortened
+from g12.tools.install.rules import STOPPING, findings_of, installed_programs, shortened
 from g12.tools.install.trial import try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND
 
-PREVENTING = {"no-linuxcnc", "python-fails", "does-not-load"}  # kinds: the config is unreadable
+PREVENTING = {"python-fails", "does-not-load"}  # kinds: what the config does is unknown
 
 
 def install(
@@ -38,7 +38,8 @@ def install(
             return
         yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
     config = load_config(text)
-    refuse_problems([finding for finding in findings_of(config) if finding.kind in PREVENTING])
+    preventing = PREVENTING if config.python else PREVENTING | STOPPING
+    refuse_problems([finding for finding in findings_of(config) if finding.kind in preventing])
     programs = [f"programs-{control}" for control in installed_programs(config)]
     for pair in excluding([*config.features, *programs, *requested]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
