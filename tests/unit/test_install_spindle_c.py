@@ -67,6 +67,23 @@ def installed(folder, text=LATHE, hal=HAL):
     return ini
 
 
+@pytest.fixture
+def kinematics_module(tmp_path, monkeypatch):
+    """LinuxCNC has the module of the kinematics."""
+    monkeypatch.setattr(kinematics_rules, "module_file", lambda: tmp_path)
+    monkeypatch.setattr(kinematics_rules, "is_outdated", lambda _: False)
+
+
+def loaded(folder):
+    """Return what the interpreter has loaded of a machine with the package."""
+    return {"remap_file": "g12/python/remap.py", "package": folder / "g12" / "python" / "g12"}
+
+
+def findings(ini):
+    config = config_of(ini)
+    return [*spindle_c_findings(config), *kinematics_findings(config)]
+
+
 def test_check_finds_nothing_and_uninstall_gives_every_byte_back(tmp_path):
     ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
     assert list(spindle_c_findings(config_of(ini))) == []  # of a machine without it
@@ -84,18 +101,33 @@ def test_check_finds_nothing_and_uninstall_gives_every_byte_back(tmp_path):
     ],
 )
 def test_the_kinematics_of_the_face_and_this_share_a_signal_in_each_order(
-    tmp_path, monkeypatch, steps
+    tmp_path, kinematics_module, steps
 ):
-    monkeypatch.setattr(kinematics_rules, "module_file", lambda: tmp_path)
-    monkeypatch.setattr(kinematics_rules, "is_outdated", lambda _: False)
     ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
-    loaded = {"remap_file": "g12/python/remap.py", "package": tmp_path / "g12" / "python" / "g12"}
     with restored(ini):
         for number, names in enumerate(steps):
-            put_in(ini, *names, pins=pins_of(tmp_path), **(loaded if number else {}))
-        config = config_of(ini)
-        assert [*spindle_c_findings(config), *kinematics_findings(config)] == []
-        assert config.ini.get("SPINDLE_C", "ENABLED") == "polar-enabled"
+            put_in(ini, *names, pins=pins_of(tmp_path), **(loaded(tmp_path) if number else {}))
+        assert findings(ini) == []
+        assert config_of(ini).ini.get("SPINDLE_C", "ENABLED") == "polar-enabled"
+
+
+def test_a_copy_of_the_kinematics_hal_file_names_the_machines_own_signal(
+    tmp_path, kinematics_module
+):
+    motion = f"{HAL}net machine-on motion.motion-enabled => lamp\n"
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=motion)
+    put_in(ini, "polar", features.KINEMATICS)
+    assert [finding.kind for finding in findings(ini)] == ["pin-taken"]
+    guard = kinematics_rules.GUARD_HAL
+    copy = (features.ROOT / guard).read_text().replace("net polar-enabled ", "net machine-on ")
+    (tmp_path / "own.hal").write_text(copy)
+    ini.write_text(ini.read_text().replace(f"g12/{guard}", "own.hal"))
+    assert findings(ini) == []
+    pins = pins_of(tmp_path)
+    put_in(ini, features.KINEMATICS, features.SPINDLE_AS_C, pins=pins, **loaded(tmp_path))
+    assert config_of(ini).ini.get("SPINDLE_C", "ENABLED") == "machine-on"
+    (tmp_path / "own.hal").write_text(copy.replace("machine-on", "[SPINDLE_C](ENABLED)"))
+    assert findings(ini) == []
 
 
 def test_what_is_written(tmp_path):

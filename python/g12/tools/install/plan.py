@@ -302,7 +302,7 @@ def add_kinematics(plan: InstallPlan) -> None:
     for section, key, value in kinematics_lines.in_place(config):
         line, _ = plan.text.entries(section, key)[0]
         plan.text.put_in_place(line, f"{key} = {value}", BEGIN_LINE)
-    for key, signal in spindle_c.shared_with_kinematics().items():
+    for key, signal in spindle_c.shared_with_kinematics(config).items():
         for line, _ in plan.text.entries("SPINDLE_C", key):
             if plan.is_ours(line):
                 plan.text.replace(line, f"{key} = {signal}")

@@ -56,11 +56,11 @@ def names(lines: list[HalLine], *words: str) -> bool:
     return any(word in line.text for line in lines for word in words)
 
 
-def signals(lines: Iterable[HalLine]) -> dict[str, str]:
-    """Return the signal of each pin that HAL lines connect."""
+def signals(config: Config, lines: Iterable[HalLine]) -> dict[str, str]:
+    """Return the signal of each pin that HAL lines connect, with the INI's values in both."""
     found = {}
     for text, _ in lines:
-        command, *words = ARROW.sub(" ", text).split() or [""]
+        command, *words = ARROW.sub(" ", substituted(text, config)).split() or [""]
         if command == "linkps":
             words.reverse()
         if command in ("net", "linkps", "linksp") and words:

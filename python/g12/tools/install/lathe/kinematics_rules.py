@@ -8,6 +8,7 @@ step of the page has a rule here.
 import re
 import shutil
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from math import hypot
 from pathlib import Path
 
@@ -197,7 +198,7 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
     yield from accelerations_taken(all_hal(config))
     others = [line for number, lines in enumerate(files) if number not in guards for line in lines]
-    guard = signals(line for number in guards for line in files[number])  # of a copy as well
+    guard = signals(config, chain(*(files[number] for number in guards)))  # of a copy as well
     yield from hal_in_the_way(config, [*others, *later_hal(config)], guard)
 
 
@@ -229,12 +230,12 @@ def hal_in_the_way(
 ) -> Iterator[ConfigFinding]:
     cure = "use another pin here, or change it in a copy of polar_kinematics.hal"
     yield from pins_taken(lines, GUARD_PINS, "is the kinematics'", cure)
-    for text, location in lines:
-        for pin, signal in signals([HalLine(substituted(text, config), location)]).items():
+    for line in lines:
+        for pin, signal in signals(config, [line]).items():
             if pin not in GUARD_PINS and guard.get(pin, signal) != signal:
                 yield problem(
                     "pin-taken",
-                    f"{location}: {text}: {pin} is {guard[pin]} to the kinematics, and "
+                    f"{line.location}: {line.text}: {pin} is {guard[pin]} to the kinematics, and "
                     "HAL connects a pin to one signal: LinuxCNC does not start",
                     f"call the signal {guard[pin]} in your HAL files, not {signal}",
                 )

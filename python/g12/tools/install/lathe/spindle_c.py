@@ -128,7 +128,7 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
                       f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
     lines = all_hal(config)
     for pin in (SIGNALS[key][0] for key in ENCODER):
-        if pin not in signals(lines):
+        if pin not in signals(config, lines):
             yield problem(
                 "spindle-c",
                 f"no HAL file connects {pin}",
@@ -143,12 +143,12 @@ def letters_of_joints(config: Config) -> str:
     return joints(config) or face_joints(config.ini.get)
 
 
-def shared_with_kinematics() -> dict[str, str]:
+def shared_with_kinematics(config: Config) -> dict[str, str]:
     """Return the signals, by their keys, that the HAL file of the face's kinematics names.
 
     HAL connects a pin to one signal.
     """
-    found = signals(hal_lines(ROOT / GUARD_HAL))
+    found = signals(config, hal_lines(ROOT / GUARD_HAL))
     return {key: found[pin] for key, (pin, _) in SIGNALS.items() if pin in found}
 
 
@@ -156,10 +156,10 @@ def spindle_sections(
     config: Config, requested: Sequence[str], pins: Pins, prefix: str
 ) -> dict[str, list[str]]:
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
-    joint, found = letters_of_joints(config).index("C"), signals(all_hal(config))
+    joint, found = letters_of_joints(config).index("C"), signals(config, all_hal(config))
     named = {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
     new_face = KINEMATICS in requested and not uses_face_kinematics(config)
-    named |= shared_with_kinematics() if new_face else {}
+    named |= shared_with_kinematics(config) if new_face else {}
     drive = [
         line
         for name, pin in pins.drive.items()
@@ -195,7 +195,7 @@ def keys_missing(config: Config) -> Iterator[ConfigFinding]:
         yield problem("spindle-c", f"[SPINDLE_C] lacks {', '.join(missing)}: LinuxCNC does not "
                       "start", f"each key is in {SPINDLE_C_PAGE}")  # fmt: skip
         return
-    joint, found = config.ini.get("SPINDLE_C", "JOINT"), signals(other_lines(config))
+    joint, found = config.ini.get("SPINDLE_C", "JOINT"), signals(config, other_lines(config))
     for key, (pin, _) in SIGNALS.items():
         pin, signal = pin.format(joint=joint), config.ini.get("SPINDLE_C", key)
         if found.get(pin, "" if key in ENCODER else signal) != signal:
@@ -241,7 +241,7 @@ def feedback_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def index_shared(config: Config) -> Iterator[ConfigFinding]:
-    found = signals(all_hal(config))
+    found = signals(config, all_hal(config))
     index = found.get(SIGNALS["INDEX"][0])
     for pin, signal in found.items():
         if index and signal == index and re.fullmatch(r"joint\.\d+\.index-enable", pin):
