@@ -612,6 +612,10 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
     assert "haas and yasnac exclude each other: choose one" in capsys.readouterr().err
 
 
+def test_each_feature_has_a_first_step():
+    assert all(map(features.first_step, features.FEATURE_NAMES))
+
+
 def test_an_ini_that_linuxcnc_does_not_read_is_refused_with_its_problem(
     tmp_path, monkeypatch, capsys
 ):

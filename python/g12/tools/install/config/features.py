@@ -122,7 +122,7 @@ def names_of(feature: str) -> list[str]:
 
 
 def first_step(feature: str) -> str:
-    """Return what to try of a feature, and what happens: nothing moves."""
+    """Return what to try first of an installed feature, and what happens then."""
     if feature in FIRST_STEPS:
         return FIRST_STEPS[feature]
     if feature in CONTROLS:
