@@ -172,6 +172,27 @@ def test_an_axis_that_is_not_commanded_starts_where_it_ends(mill, system, change
 
 
 @pytest.mark.parametrize(
+    ("before", "start"),
+    [
+        ("G2 X9 I4", (10.0, 2.0, 3.0)),
+        ("G18 G2 X9 Z5 I4 K1", (10.0, 2.0, 5.0)),
+        ("G92 X5 Y5 Z5", (2.0, 2.0, 3.0)),
+        ("G10 L2 P1 Y9 R30", (2.0, 2.0, 3.0)),
+        ("G55", (2.0, 2.0, 3.0)),
+        ("G20", (2.0, 2.0, 3.0)),
+        ("G43 H1", (2.0, 2.0, -7.0)),
+    ],
+)
+@pytest.mark.parametrize("change", ["T2 M6", "G10 L0"])
+def test_a_tool_change_does_not_move_the_tip(mill, before, start, change):
+    """LinuxCNC then reads its position, which the preview does not know after such blocks."""
+    lines = ["G0 X1 Y2 Z3", f"{before} F99", change, "G91 G0 C9"]
+    move = mill.trace_text(lines, parameters={5221: 1.0, 5243: 7.7}).moves[-1]
+    assert move.start[:3] == near(start)
+    assert move.end == near((*start, 0.0, 0.0, 9.0, 0.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(
     ("block", "feed", "mode"),
     [
         ("G21\nG94 G1 X60 F300", 300.0, "G94"),

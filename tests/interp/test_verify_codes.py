@@ -177,8 +177,11 @@ CASES = [
     ("any mill", "T4 M6|S900 M3|G43|G0 X0 Y0 Z5|G49|G13 I9 Z-2 D4|G0 Z9", "length-not-used 7"),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G91 G43|G13 I9 Z-22 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G43.1 Z20|G0 X0 Y0 Z5|G13 I9 Z-2 D4", "length-deeper 6"),
-    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z9|T10 M6 G43|S900 M3|G0 X40 Z9|G49|"
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z20|T10 M6 G43|S900 M3|G0 X40 Z9|G49|"
      f"T4 M6|S900 M3|G43|G0 X80 Z1|{LOW}|G0 Z9", ""),
+    # a tool that is 10 mm longer has its tip in the pocket
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z9|T10 M6 G43|S900 M3|G0 X40 Z9",
+     "rapid-through 9"),
     # a rapid with another length than the tool's
     ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z5|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}",
      "rapid-length 5"),
@@ -385,7 +388,7 @@ CASES = [
      "loaded-unknown 10, rapid-through 11"),
     ("radii", f"G10 L1 P3 R0|T3 M6|S900 M3|G0 X18 Z2 C0|{SLOT.replace('|Z2', '')}|G0 C180|Z2",
      "rubs 9, rapid-no-diameter 14"),
-    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7, after-arc 7"),
+    ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
     ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 10"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),

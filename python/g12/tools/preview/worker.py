@@ -26,6 +26,10 @@ UNLOADED = (0, *[0.0] * 12, 0)  # after T0 M6
 Position = tuple[float, float, float, float, float, float, float, float, float]  # XYZABCUVW
 NO_OFFSET = (0.0,) * 9
 LINEAR_AXES = (0, 1, 2, 6, 7, 8)
+CURRENT = (
+    "current_x", "current_y", "current_z", "AA_current", "BB_current", "CC_current",
+    "u_current", "v_current", "w_current",
+)  # fmt: skip
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
@@ -192,13 +196,9 @@ class Canon:
         self.line = 0
         self.on_face = False  # on the face, where Y is the tool's
         self.share = 1.0  # of the INI's accelerations of X and Y there
-        self.tip = NO_OFFSET  # in program coordinates
-        self.position = self._beside_x(NO_OFFSET)  # in machine coordinates
+        self.position: tuple[float, ...] = ()  # of the tip, in machine coordinates, from the start
         self.work = self.g92 = self.length = NO_OFFSET
-        self.shift: tuple[float, ...] = NO_OFFSET  # of the tip since the last move, no axis moving
         self.length_code = 490  # ten times the G code that set it
-        self.changed_tool = False  # in this block
-        self.stale = False  # the interpreter's position, since the last move
         self.rotation, self.cos, self.sin = 0.0, 1.0, 0.0
         self.plane = 17
         self.feed = self.program_feed = 0.0
@@ -225,8 +225,14 @@ class Canon:
         return False
 
     def get_tool(self, index: int) -> tuple:
-        """Return a record of the tool table; index 0 is the spindle."""
+        """Return a record of the tool table; index 0 is the spindle.
+
+        The interpreter reads all of them, that of the spindle first, when it starts, after M6 and
+        after G10 L0, each time right after its position.
+        """
         if not index:
+            if self.position:
+                self._correct_position()
             return self.spindle
         return self.tools[index] if index < len(self.tools) else NO_TOOL
 
@@ -234,7 +240,6 @@ class Canon:
 
     def next_line(self, state) -> None:
         self.line = state.sequence_number
-        self._read_position_after_tool_change()
         self._convert_feed()
         if self.started:
             self._note_conditions(state)
@@ -246,13 +251,13 @@ class Canon:
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
             self.modal_feed, self.units = 0.0, this.length_units
-            self.position = self._resolved(self.tip)
+            self._read_position()
         self._convert_feed()
         prefix, changed, share = text.partition(MEANINGS_CHANGED)
         if changed and not prefix:
             self.on_face = not self.on_face
             self.share = float(share)
-            self._read_position_after_kinematics_switch()
+            self._read_position()
         if text == START:
             self.started = True
             self.moves.clear()
@@ -270,11 +275,11 @@ class Canon:
         self.g92 = in_mm(offset)
 
     def tool_offset(self, *offset: float) -> None:
-        """Note the tool length offset, inches, and the code that sets it."""
+        """Note the tool length offset, inches, and the code; it moves the tip, not the axes."""
         this = interpreter_object()
         self.length_code = this.blocks[this.remap_level].g_modes[LENGTH_GROUP]
         before, self.length = self.length, in_mm(offset)
-        self.shift = tuple(a + b - c for a, b, c in zip(self.shift, before, self.length))
+        self.position = tuple(a + b - c for a, b, c in zip(self.position, before, self.length))
 
     def set_xy_rotation(self, degrees: float) -> None:
         self.rotation = degrees
@@ -301,12 +306,11 @@ class Canon:
     def change_tool(self, _which: int) -> None:
         """Note the tool in the spindle; LinuxCNC 2.9 passes its index, 2.10 its number.
 
-        LinuxCNC then requests the whole table; the values of G10 L1 remain, as on a machine.
+        LinuxCNC then reads the whole table; the values of G10 L1 remain, as on a machine.
         """
         index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
         self.tools[1:] = [for_canon(table[each]) for each in range(1, len(self.tools))]
         self.spindle = self.tools[index] if index else UNLOADED
-        self.changed_tool = True
         self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
@@ -373,7 +377,7 @@ class Canon:
         """Record both strokes and the pitch, the only event that distinguishes them from a cut."""
         self.pitch = ""
         self._note_pitch()
-        back = self.tip
+        back = self._tip()
         self._move("feed", (*in_mm((x, y, z))[:3], *back[3:]), self.feed)
         self._move("feed", back, self.feed)
 
@@ -384,19 +388,21 @@ class Canon:
         one, two, three = ARC_AXES[self.plane]
         target[one], target[two], target[three] = first, second, third
         centre[one], centre[two] = first_centre, second_centre
-        centre[three] = self.tip[three] / INCH
+        centre[three] = self._tip()[three] / INCH
         resolved = self._resolved(in_mm((*centre, *NO_OFFSET[3:])))
         self._move("arc", in_mm((*target, *others)), self.feed, resolved[:3], turns)
 
     def _rate(self, target: tuple) -> float:
         """Feed of a straight move: degrees per minute if only rotary axes move."""
-        axes = tuple(zip(self.position, self.shift, self._resolved(in_mm(target))))
-        lengths = (before + by - end for before, by, end in (axes[axis] for axis in LINEAR_AXES))
-        only_rotary = all(abs(length) < CART_FUZZ for length in lengths)
+        lengths = tuple(map(float.__sub__, self.position, self._resolved(in_mm(target))))
+        only_rotary = all(abs(lengths[axis]) < CART_FUZZ for axis in LINEAR_AXES)
         return self.program_feed if only_rotary else self.feed
 
     def _move(self, kind: str, tip: tuple, feed: float, centre=None, turns=0) -> None:
-        start, self.tip, self.position = self._start(tip), tip, self._resolved(tip)
+        before, self.position = self.position, self._resolved(tip)
+        start = tuple(  # an axis that the move does not command starts exactly where it ends
+            end if abs(at - end) < CART_FUZZ else at for at, end in zip(before, self.position)
+        )
         mode = FEED_MODE_CODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
         path = (kind, self.line, self.lines.now(), start, self.position)
@@ -406,47 +412,46 @@ class Canon:
         if remap:
             self.files |= self.lines.files()
 
-    def _start(self, tip: tuple) -> tuple:
-        """Return the start of a move to ``tip``: a G43 before it moves the tip, not the axes.
-
-        An axis that the move does not command starts exactly where it ends.
-        """
-        shift, self.shift = self.shift, NO_OFFSET
-        moved = [before + by for before, by in zip(self.position, shift)]
-        starts, self.stale = self.position if self.stale else moved, False
-        pairs = zip(moved, starts, self._resolved(tip))
-        return tuple(end if abs(at - end) < CART_FUZZ else start for at, start, end in pairs)
-
-    def _read_position_after_tool_change(self) -> None:
-        """Shift the tip after a block with M6, when the interpreter queries its position.
-
-        The preview answers with the end of the last move in program coordinates, without regard to
-        offsets that have changed since: then it is ``stale``, and no machine's tip is there.
-        """
-        if self.changed_tool:
-            self.stale = any(self.shift)
-            self.shift = tuple(map(float.__sub__, self._resolved(self.tip), self.position))
-            self.changed_tool = False
-
-    def _read_position_after_kinematics_switch(self) -> None:
+    def _read_position(self) -> None:
         """Copy the interpreter's position, which a switch of kinematics changes without a move."""
         this = interpreter_object()
-        linear = (this.current_x, this.current_y, this.current_z)
-        scale = 1.0 if this.length_units == METRIC else INCH
-        self.tip = (*(value * scale for value in linear), *self.tip[3:5], this.CC_current,
-                    *self.tip[6:])  # fmt: skip
-        self.position = self._resolved(self.tip)
+        self.position = self._resolved(
+            tuple(getattr(this, name) * unit for name, unit in program_units().items())
+        )
+
+    def _correct_position(self) -> None:
+        """Set the interpreter's position to the machine's.
+
+        The preview reports the end of the last straight move as commanded there, without regard
+        to arcs, units and offsets since.
+        """
+        this = interpreter_object()
+        for (name, unit), value in zip(program_units().items(), self._tip()):
+            setattr(this, name, value / unit)
+
+    def _tip(self) -> tuple:
+        """Return the tip in program coordinates, mm: the inverse of `_resolved`."""
+        x, y, *rest = map(float.__sub__, self.position, self.work)
+        y -= self._beside_x()
+        unrotated = (x * self.cos + y * self.sin, y * self.cos - x * self.sin, *rest)
+        return tuple(map(float.__sub__, unrotated, self.g92))
 
     def _resolved(self, tip: tuple) -> tuple:
         """Machine coordinates of a point in program coordinates, both in mm."""
         x, y, *rest = map(float.__add__, tip, self.g92)
         rotated = (x * self.cos - y * self.sin, x * self.sin + y * self.cos, *rest)
-        return self._beside_x(tuple(map(float.__add__, rotated, self.work)))
+        x, y, *rest = map(float.__add__, rotated, self.work)
+        return (x, y + self._beside_x(), *rest)
 
-    def _beside_x(self, position: tuple) -> tuple:
-        """Return the tool's position on a lathe whose tool is beside the X line."""
-        x, y, *rest = position
-        return (x, y if self.on_face else y + self.machine["beside"], *rest)
+    def _beside_x(self) -> float:
+        """Return Y of the tool, mm, on a lathe whose tool is beside the X line."""
+        return 0.0 if self.on_face else self.machine["beside"]
+
+
+def program_units() -> dict[str, float]:
+    """Return one program unit of each of the interpreter's coordinates in mm or degrees."""
+    length = 1.0 if interpreter_object().length_units == METRIC else INCH
+    return {name: length if axis in LINEAR_AXES else 1.0 for axis, name in enumerate(CURRENT)}
 
 
 def work_offsets() -> dict[str, tuple]:

@@ -33,7 +33,6 @@ from g12.tools.verify.mistakes.tool import (
     judge_levels,
     judge_native_c,
     judge_spindle,
-    judge_tool_changes,
     judge_tool_length,
 )
 from g12.tools.verify.mistakes.travel import judge_travel
@@ -233,7 +232,6 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
-    yield from judge_tool_changes(moves, trace.events)
     yield from judge_reversals([each.commanded for each in found.sections])
     yield from judge_preview(texts, min((cut.line for cut in cuts), default=0))
     yield from not_judged(moves, known)

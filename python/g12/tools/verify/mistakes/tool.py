@@ -110,17 +110,6 @@ def length_set_by(events: Sequence[Event], at: int) -> str:
     return next((each for each in changes if each.startswith(("tool ", "G43", "G49"))), "")
 
 
-def judge_tool_changes(moves: Sequence[Move], events: Sequence[Event]) -> Iterator[Finding]:
-    """Yield the tool changes after an arc.
-
-    LinuxCNC's preview then goes on from the end of the last straight move, the machine does not.
-    """
-    changes = (each for each in events if each.text.startswith("tool ") and each.at)
-    lines = [each.line for each in changes if moves[each.at - 1].kind == "arc"]
-    if lines:
-        yield Finding("after-arc", lines[0], {"lines": lines})
-
-
 def judge_levels(cuts: Sequence[MeasuredCut], moves: Sequence[Move]) -> Iterator[Finding]:
     """Yield the cuts of which nothing goes below Z0, the top of the part as a rule."""
     for cut in cuts:

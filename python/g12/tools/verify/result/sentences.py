@@ -217,10 +217,6 @@ NOT_JUDGED = {
     "tool-spindle-unseen": (
         "whether the driven tool turns: LinuxCNC's preview shows the first spindle alone"
     ),
-    "after-arc": (
-        "positions after an M6 that follows an arc, where LinuxCNC's preview is wrong: "
-        "{lines:lines}; retract before M6"
-    ),
     "upright": "the material around a circle in another plane than G17: {lines:lines}",
     "block-delete": (
         "the program with block delete off: a preview skips what begins with /: {lines:lines}"
