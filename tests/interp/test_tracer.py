@@ -19,6 +19,8 @@ PARAMETER_FILE = machine.var
 SUBROUTINE_PATH = subs
 REMAP = G88.5 modalgroup=1 prolog=check ngc=body argspec=I
 REMAP = G88.6 modalgroup=1 python=straight argspec=I
+REMAP = G88.7 modalgroup=1 ngc=clamped
+REMAP = M35 modalgroup=10 ngc=clamp
 [PYTHON]
 TOPLEVEL = code/toplevel.py
 PATH_PREPEND = code
@@ -60,6 +62,8 @@ FILES = {
     "code/toplevel.py": "import remap\n",
     "code/remap.py": REMAP,
     "subs/body.ngc": "o<body> sub\n(first a comment)\nG1 X#<i> F100\nG1 Y1\no<body> endsub\n",
+    "subs/clamp.ngc": "o<clamp> sub\no<clamp> endsub\n",
+    "subs/clamped.ngc": "o<clamped> sub\nG1 X2 F9 M35\nX3\no<clamped> endsub\n",
     "subs/sub.ngc": "o<sub> sub\nG1 X9 F100\nG88.5 I#1\no<sub> endsub\n",
 }
 
@@ -229,6 +233,15 @@ def test_block_is_the_line_of_the_program_however_deep(mill):
     moves = mill.trace_text(blocks).moves
     assert [move.block for move in moves] == [1, 3, 3, 4, 5, 6, 7, 7, 7, 8]
     assert [move.line for move in moves] == [1, 3, 4, 4, 0, 6, 2, 3, 4, 8]
+
+
+def test_the_remainder_of_a_block_is_no_move_of_its_remapped_m_code(mill):
+    blocks = (
+        "o<own> sub\nG1 X1 F9 M35\no<own> endsub\n\nG1 X2 F9 M35\no<own> call\nG88.7\nG0 X1 M35"
+    )
+    moves = mill.trace_text(blocks).moves
+    found = [(move.block, move.remap) for move in moves]
+    assert found == [(5, ""), (6, ""), (7, "G88.7"), (7, "G88.7"), (8, "")]
 
 
 def test_the_repeats_of_m98_are_moves_of_its_line(mill):

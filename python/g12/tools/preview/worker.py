@@ -122,10 +122,13 @@ class Lines:
         self._lines = text.split(b"\n")
 
     def now(self) -> int:
-        """Return the program's line during execution."""
+        """Return the program's line during execution.
+
+        The interpreter has none for the remainder of a block, after its remapped M code.
+        """
         this = interpreter_object()
         if not this.call_level:
-            return this.sequence_number
+            return self._of_remap(this) if this.remap_level else this.sequence_number
         if this.sub_context[1].call_type == CALL_OF_REMAP:
             own = this.filename == self._program and this.sequence_number  # a remap may set it
             return own or self._of_remap(this)
@@ -144,9 +147,13 @@ class Lines:
         return this.sequence_number
 
     def remap(self) -> str:
-        """Return the remapped code that makes the present motion, in upper case, "" without one."""
+        """Return the remapped code that makes the present motion, in upper case, "" without one.
+
+        It has a call; the remainder of a block, after its remapped M code, has none.
+        """
         this = interpreter_object()
-        level = this.remap_level
+        calls = (this.sub_context[level].call_type for level in range(1, this.call_level + 1))
+        level = sum(call == CALL_OF_REMAP for call in calls)
         return this.blocks[level].executing_remap.name.upper() if level else ""
 
     def files(self) -> set[str]:
