@@ -251,6 +251,15 @@ def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_vie
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
 
 
+@pytest.mark.parametrize(("hand", "ini", "at"), [(pocket, MILL, (2, 0)), (turned, LATHE, (-1, 2))])
+def test_a_sign_is_where_its_finding_is(hand, ini, at):
+    found = Finding("wall-run", 3, {"size": 0.1}, (50.8, 0.0, -25.4))
+    shown = replace(scene(hand(), ini, units="inch"), marks=Marks((found,)))
+    lines = picture_of(shown).axes[0].lines
+    signs = [line.get_xydata()[0] for line in lines if line.get_marker() == style.SIGN["marker"]]
+    assert signs == [pytest.approx(at)]
+
+
 def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view():
     found = uncut((50.0, 7.0))
     level = plan_view.Level(-4.0, style.shades(1)[0], [], found.values["shape"])
