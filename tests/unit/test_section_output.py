@@ -152,6 +152,19 @@ def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     assert alone == ["G61.1", FIRST, OLD, *RELEASED]
 
 
+@pytest.mark.parametrize(("feed_mode", "first"), [(0, []), (2, ["G94"])])
+def test_feed_per_revolution_is_left_and_comes_back_with_each_part(feed_mode, first):
+    interp = Interpreter()
+    interp.feed_mode = feed_mode
+    emission = emission_of(interp)
+    modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
+    for _ in range(2):
+        assert list(emission.run([run()], modes, ())) == []
+    part = [SMOOTH, FIRST, *NEXT, OLD, "G95F0.2", "G91"]
+    assert interp.done == [*first, *part, "G94", *part]
+    assert interp.motion_mode == 30
+
+
 def test_comments_need_no_modes():
     assert handed_over([Action(8, "(MSG,x)", None), run()]).done[:2] == ["(MSG,x)", SMOOTH]
 
