@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Polygon
 
 from g12.compensation import offset
 from g12.compensation.contour import Contour, PlaneMove
@@ -59,6 +59,17 @@ def points_of(shape):
 def as_shapely(shapes):
     points = np.concatenate([points_of(shape) for shape in shapes])
     return LineString(np.column_stack([points.real, points.imag]))
+
+
+def outline(part):
+    """Return the outline of a closed part, each corner once: twice, rounding makes it a loop."""
+    points = np.concatenate([points_of(shape)[:-1] for shape in part.body])
+    return Polygon(np.column_stack([points.real, points.imag]))
+
+
+def stands(part):
+    """Return whether the material is inside of a closed part, by the tool's side."""
+    return outline(part).exterior.is_ccw == (part.side == 42)
 
 
 def blind_path(monkeypatch, contour):

@@ -10,7 +10,7 @@ import random
 from collections import Counter
 
 import pytest
-from shapely.geometry import JOIN_STYLE, Polygon
+from shapely.geometry import JOIN_STYLE
 from shapely.geometry.polygon import orient
 from shapely.ops import nearest_points
 
@@ -30,7 +30,9 @@ from support.random_contours import (
     contour_of,
     depth,
     drawn,
+    outline,
     polygon,
+    stands,
 )
 
 LEFT, RIGHT = 41, 42
@@ -277,15 +279,6 @@ def test_a_tool_smaller_than_the_tolerance_cuts_into_nothing():
 
 
 # Contours made at random.
-
-
-def outline(part):
-    return Polygon(as_shapely(part.body).coords)
-
-
-def stands(part):
-    """Return whether the material is inside of a contour."""
-    return outline(part).exterior.is_ccw == (part.side == RIGHT)
 
 
 def enters(one, other):
