@@ -50,6 +50,7 @@ FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
+EVENT = "G13.2 Y0 I2 R20 K5 D2 H2"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
 AIR = "T4 M6 G43|S900 M3|G0 X0 Y0 Z30"
 LONGEST, LONGEST_CALL = (  # as long as LinuxCNC reads a line
@@ -82,6 +83,11 @@ CASES = [
     ("mill", "G0 X10 Y10 Z5|G91|o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] "
      "[-9999] [.3] [150] [800] [400]", ""),
     ("mill", f"G92 X4 Y5 Z1|G0 X10 Y20 Z1|G90.1|{P}", ""),
+    # X words are diameters under G7
+    ("mill", f"G7|G0 X60|{P} X60|G0 Z1|G91|{P} X96 G8|G90|G0 Z1", ""),
+    ("mill", f"{P} X20 G7|G0 Z1|{P} X140|G0 Z1", ""),
+    ("mill", f"G7|{EVENT} Z-5 X60|o<circle_mill> call [7] [90] [0] [-5] [2] [-9999] [20] [0] [2] "
+     "[5] [-9999] [-9999] [150] [800] [-9999]", ""),
     # where C is
     ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
     ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),
@@ -568,6 +574,9 @@ SAID = [  # a program, and a part of its report
     ("mill", CLEARED, "  left inside     0 mm²"),
     ("mill", f"{P}|G13 X60 I7 K20 Q6 Z-3|G0 Z2",
      "line 7: a rapid goes through material, from X15.372 Y0 Z−3 to "),
+    ("lathe", f"G8 G0 X30|G12.1|G1 X20 F900|Z-5|Z2|G13.1|G7|G0 X60 C0|{FLAT}|G0 X20 Z-4|X12",
+     "line 22: a rapid goes through material, from X20 C−39.806 Z−4 to X12 "),
+    ("lathe", f"{FLAT}|G0 X22 Z-4|X9 G8|X8", "through material, from X11 C−39.806 Z−4 to X9 C"),
     ("mill", "G12 I20 Z-1 D6",
      "the loaded tool T4 (⌀ 10) is not D6 (⌀ 20): the wall comes out at radius 15, not 20"),
     *(("mill", P, f"it plunges with {share} % of the cutter into the stock, at X0 Y0", stock)

@@ -28,6 +28,7 @@ class Commanded(NamedTuple):
     ``idle`` are the line and the code of each cycle that moves nothing, though it should.
     ``clamp_is_traced`` says that events show the codes of C's clamp. ``moves_there`` are the moves
     with the work offsets of the machine's var file, None where they differ by more than those.
+    ``in_g7`` says from which move on X words are diameters or not.
     """
 
     circles: Sequence[tuple[Block, Target]] = ()
@@ -37,11 +38,16 @@ class Commanded(NamedTuple):
     holes: Sequence[SubCall] = ()
     clamp_is_traced: bool = False
     moves_there: Sequence[Move] | None = None
+    in_g7: Sequence[tuple[int, bool]] = ()
 
     @property
     def on_face(self) -> list[SectionContour]:
         """The sections on the face."""
         return [section for section in self.sections if not section.surface]
+
+    def in_diameters(self, index: int) -> bool:
+        """Tell whether the X words outside of cuts are diameters at a move."""
+        return next((is_on for at, is_on in reversed(self.in_g7) if at <= index), False)
 
 
 def commanded_by(
@@ -67,7 +73,15 @@ def commanded_by(
         holes,
         clamp_is_traced,
         _moves_there(tracer, program, moves, parameters),
+        _diameter_modes(blocks),
     )
+
+
+def _diameter_modes(blocks: Sequence[Block]) -> list[tuple[int, bool]]:
+    """Return G7 or not from moves on; that of a block counts for its own X word, too."""
+    states = [(0, block.state) for block in blocks[:1]]
+    states += [(block.at, block.state_after or block.state) for block in blocks]
+    return [(at, bool(state["_lathe_diameter_mode"])) for at, state in states]
 
 
 def _calls(

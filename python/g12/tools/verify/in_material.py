@@ -97,8 +97,8 @@ def _in_view(
     if touch:
         at, to = touch.points[[0, -1]].tolist()
         values = {
-            "at": _words_of(subject, view, at),
-            "to": _words_of(subject, view, to),
+            "at": _words_of(subject, view, index, at),
+            "to": _words_of(subject, view, index, to),
             "area": touch.area,
             "path": touch.points,
             "surface": view.surface,
@@ -159,20 +159,17 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
 
 
 def _words_of(
-    subject: Subject, view: PartView, point: Sequence[float]
+    subject: Subject, view: PartView, index: int, point: Sequence[float]
 ) -> tuple[tuple[str, float], ...]:
-    """Return a point of the part as words: X Y Z of a mill, X C Z of a lathe."""
+    """Return a point of a move as words: X Y Z of a mill, X C Z of a lathe."""
     if not view.part.turning:
         return tuple(zip("XYZ", point))
-    commanded = subject.commanded
-    diameters = [cut.diameters for cuts in (commanded.sections, commanded.holes) for cut in cuts]
-    double = 2 if any(diameters) else 1
     if view.surface:
         around, along, level = point
         x, c, z = level - view.part.centre, math.degrees(around / view.surface), along
     else:
         x, z, c = math.hypot(*point[:2]), point[2], math.degrees(math.atan2(point[1], point[0]))
-    return ("X", double * x), ("C", c), ("Z", z)
+    return ("X", x * (2 if subject.commanded.in_diameters(index) else 1)), ("C", c), ("Z", z)
 
 
 # ---------------------------------------------------------------- what is assumed

@@ -35,10 +35,13 @@ ENTRIES = {
 
 
 class BlockInMm:
-    """A block's words in mm, and the position and the modal state before it."""
+    """A block's words in mm, and the position and the modal state before it; X is a radius."""
 
     def __init__(self, block: Block, first: Move) -> None:
         self.line, self.words, self._state = block.text.number, block.words, block.state
+        in_g7 = bool(self._state["_lathe_diameter_mode"]) or 7.0 in block.codes
+        if "X" in block.words and in_g7 and 8.0 not in block.codes and not block.text.call:
+            self.words = {**block.words, "X": block.words["X"] / 2}
         self._first, self._codes = first, block.codes
         self.tool, self.axes = first.tool, plane_axes(first)
         self.start = np.array(first.start[:3])
@@ -64,9 +67,8 @@ class BlockInMm:
             "_selected_tool": self.words.get("T", self._state["_selected_tool"]),
             **kept_state(self._state, self._codes),
         }
-        if not self._state["_lathe_diameter_mode"]:
-            end = turned(np.array(last.end[:3]) - self.zero(), -self._first.rotation) / self.unit
-            state |= dict(zip(POSITION_NAMES, map(float, end)))
+        end = turned(np.array(last.end[:3]) - self.zero(), -self._first.rotation) / self.unit
+        state |= dict(zip(POSITION_NAMES, map(float, end)))
         return state if feed is None else {**state, "_feed": feed / self.unit}
 
     def length(self, letter: str) -> float:

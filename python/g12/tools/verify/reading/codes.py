@@ -14,6 +14,7 @@ HOLES = ("face_holes", "side_holes", "face_hole_at")  # likewise
 SHAPE_HANDLER = "polar_shape"  # of the code that checks their entries
 EVENT, POLAR, CYLINDER = "circle-mill", "polar", "cylinder"
 SECTIONS = (POLAR, CYLINDER)
+DIAMETER_MODES = {7.0, 8.0}
 COMPENSATION = (41.0, 42.0, 41.1, 42.1)
 TURNS = {"g12": -1, "g13": 1}  # by what the handler's name begins with
 DIALECTS = ("haas", "yasnac", "mitsubishi")
@@ -134,6 +135,7 @@ class Codes:
             or self.shape_of(text)
             or self.holes_of(text)
             or text.hides_code
+            or not DIAMETER_MODES.isdisjoint(text.codes)
             or (compensates(text.codes) and not inside)
         }
 
