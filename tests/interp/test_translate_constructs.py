@@ -46,6 +46,8 @@ CONSTRUCTS = [
      "G83 X2 Z.5 R.9 Q.2\nG81 X3 Z.5 R.9\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2\nG80 G90",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
+    ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
+     "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
     ("haas-mill", "#1=2.\nWHILE[#1LT4]DO1\nG81 X#1 Z.5 R.9\n#1=#1+1.\nEND1\nG80",
      "G81 X2 Z.5 R.9\nX3\nG80\nG0"),
     ("haas-mill", "G81 Z.5 R.9 L0\nM98 P5\nG83 Z.6 R.9 Q.2 L0\nM98 P5\nM30\nO5\nX2.\nX3.\nG80\nM99",

@@ -98,7 +98,9 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
         "G0 X1. (line 3)", "", "(PLAIN)", "G0 X2.", "M98 P5 (line 6)", "M30", "O5", "M99",
     ]),
     # the spindle, tools
-    (LATHE, "G96 S90 M3\nG50 S900", ["G96 S90 M3", "G96 S90 D900 (G50 S900)"]),
+    (LATHE, "G96 S90 M3\nG50 S900\nG97 S50\nG96",
+     ["G96 S90 M3", "G96 S90 D900 (G50 S900)", "G97 S50", "G96 D900 S90"]),
+    (LATHE, "G97\nG96 S90 M3\nM5\nG97", ["G97", "G96 S90 M3", "M5", "G97"]),
     (LATHE, "T0202 M5\nM3 S99\nG1 X1. F.1\nM99", ["T2 M6 G43 H2 M5"]),
     *((control_of("doosan-lathe"), f"{before}\nT0202", [*before.split("\n"), written])
       for before, written in [
@@ -137,6 +139,7 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
         ("G41 G1 X50. F9.\nG40 G1 Z9.\nZ8.\nX70.",
          ["G41 G1 X50. F9.", "G1 Z9. (G40 with the next move)", "Z8.", "G40 X70."]),
         ("G1 X50. C1. Z2. F9.", ["G1 X50. C1. F9. (Z2.)"]),
+        ("G1 X50. F9.\nG40 Z9.", ["G1 X50. F9.", "Z9. (G40)"]),
     ]),
     (HAAS_LATHE, "G20 G0 X2. Z.1 C0\nG112\nG1 X1. Y0 F9.|G41 Y.5\nG40 Y1.\nG113",
      ["G1 X1. C0 F9.", "G41 C.5", "G40 C1.", "G13.1", "G7 (line 7)"]),
@@ -265,6 +268,8 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=[1", "] is missing before the end"),
     (LATHE, "T30303", "T30303 has 5 digits"),
     (LATHE, "G0 X1. U1.", "U1. and X in one block"),
+    (LATHE, "G96 S90 M3\nG97", "G97 without S while the spindle turns: LinuxCNC keeps to G96"),
+    (LATHE, "G97 S90 M3\nG96", "G96 without S while the spindle turns: LinuxCNC keeps to G97"),
     (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
     (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
     (LATHE, "G107", "G107 needs C"),
@@ -475,6 +480,7 @@ def test_p_names_a_spindle_beside_m3_only():
         ("", ["(M35)", "(M89)", "(M90)", "(M34)"]),
         (
             "[G12]\nC_CLAMP = M10 M11\n[RS274NGC]\n"
+            "REMAP = M0254 modalgroup=10 prolog=spindle_c_off ngc=spindle_c_off\n"
             "REMAP = M254 modalgroup=10 prolog=spindle_c_on ngc=spindle_c_on\n"
             "REMAP = M255 modalgroup=10 prolog=spindle_c_off ngc=spindle_c_off\n",
             ["M254", "M10", "M11", "M255"],

@@ -27,7 +27,7 @@ REFUSE_LIVE_TOOL = (
 
 def on_machine(control: Control, ini: Ini) -> Control:
     """Return a control with the machine's own codes, spindle and unset positions of G28 and G30."""
-    settings, remaps = ini.settings, remap_lines(ini.all)
+    settings, remaps = ini.settings, _remaps_in_force(ini)
     clamp = [f"M{code}" for code in settings.c_clamp]
     own = dict(zip(("clamp C", "unclamp C"), clamp))
     own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
@@ -49,6 +49,11 @@ def on_machine(control: Control, ini: Ini) -> Control:
         polar_codes=polar if all(polar) else control.polar_codes,
         cylinder_code=(cylinder, settings.cylinder_word) if cylinder else control.cylinder_code,
     )
+
+
+def _remaps_in_force(ini: Ini) -> list[Remap]:
+    """Return the REMAP lines; of two for one code, G12.1 and G012.1, LinuxCNC takes the last."""
+    return list({remap.number: remap for remap in remap_lines(ini.all)}.values())
 
 
 def _code_of(remaps: Sequence[Remap], name: str, letter: str = "") -> str:

@@ -27,6 +27,21 @@ def speed_limit(draft: Draft) -> None:
     if "G96" in draft.codes() and not code:
         limit = draft.sure("limit", "G96 needs the speed limit")
         draft.words += [word_of(f"D{limit}")] if limit else []
+    if {"G96", "G97"}.intersection(draft.codes()) and "S" not in draft.letters():
+        _mode_without_speed(draft)
+
+
+def _mode_without_speed(draft: Draft) -> None:
+    """Give G96 its last S, as the controls do: LinuxCNC changes nothing before the next S."""
+    mode, before = draft.state.spindle_mode, draft.start.spindle_mode
+    surface = draft.sure("surface", "G96 without S") if "G96" in draft.codes() else UNKNOWN
+    if surface:
+        draft.words.append(word_of(f"S{surface}"))
+    elif (before or "G97") != mode and draft.state.spindle and "M5" not in draft.m_codes():
+        raise NotTranslated(
+            f"{mode} without S while the spindle turns: LinuxCNC keeps to {before or 'G97'}, and S "
+            "is not known: write it"
+        )
 
 
 def _limit_or_origin(draft: Draft, code: str) -> None:
