@@ -283,6 +283,8 @@ REFUSED = [
     ("G71 U2. R.5\nG71 P10 Q30 U.4 W.1 F.3\nN10 G0 X20.\nN20 G1 X50.",
      "N30 is not in this program"),
     ("G71 U2. R.5\nG71 P9 Q20\nN10 G0 X20.\nN20 G1 X50.", "N9 is not in this program"),
+    ("G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\n/G1 Z-9.\nN20 X50.", "line 6: / in a contour"),
+    ("G1 X40. ,C1. F.1\n/Z-9.\nX50.", "line 4: / in a contour"),
     ("G71 U2. R.5\nG71 P10 Q20 U-.4\nN10 G0 X20.\nG1 Z-9.\nN20 X50.",
      "the allowance U or W has the"),
     ("G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\nG1 Z-9.\nX30. Z-5.\nN20 X50. Z-10.",

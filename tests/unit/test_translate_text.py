@@ -81,6 +81,8 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.",
      ["G0 X1. (A0.: no A here)(B0: no B here)", "(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]),
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
+    (HAAS, "G187 P1 E.01\nG103 P1\nG103", ["(G187 P1 E.01)", "(G103 P1)", "(G103)"]),
+    (FANUC, "G5.1 Q1\nG8 P1\nG5.1 Q0", ["(G5.1 Q1)", "(G8 P1)", "(G5.1 Q0)"]),
     (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "M19\nG0 X1. M19 R90.\nM19 P45",
      ["M19 Q30", "M19 R90. Q30", "G0 X1. (line 4)", "M19 R45 Q30"]),

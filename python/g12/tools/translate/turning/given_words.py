@@ -140,6 +140,8 @@ def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBl
         block = blocks[index]
         if block.problem or block.kind != "words":
             raise NotTranslated(f"line {block.line}: a contour has moves only, as numbers")
+        if block.skipped and index != draft.index:
+            raise NotTranslated(f"line {block.line}: / in a contour: its cuts depend on the switch")
         own, state, motion = _contour_block(draft, block, state, motion)
         found.append(own)
     return found, state
