@@ -64,9 +64,9 @@ so that M68 E3 Q1 requests the face and M68 E3 Q0 X, Z and C. \\fBcentre\\fR is 
 joint at which the tool is on the spindle's axis; it is read at the switch to the face, as is
 \\fBtool-offset\\fR.
 The guard switches only when the machine has been at rest for six cycles. It switches back to type 0 by
-itself when the machine is switched off, stopped in an emergency or jogged; then the request has to be
-withdrawn before a new one counts. While the face is on and no program or MDI moves the machine, jogs
-are inhibited.
+itself when the machine is switched off, stopped in an emergency or jogged, and when
+\\fBend-request\\fR is set; then the request has to be withdrawn before a new one counts. While the
+face is on and no program or MDI moves the machine, jogs are inhibited.
 
 M68 E3 Q2 requests the face by hand: for lines of MDI, which were not planned ahead. M52 P1 limits
 their speed to what C can follow, the slower the nearer to the centre, and a move of a program's line
@@ -109,6 +109,7 @@ pin in float most_override "of the feed on the face by program, 0 for any";
 pin in float acceleration "of the face's X and Y: [AXIS_X]MAX_ACCELERATION";
 pin in float c_speed "[AXIS_C]MAX_VELOCITY";
 pin in float c_acceleration "[AXIS_C]MAX_ACCELERATION";
+pin io bit end_request "true ends the request, as an abort has to; the guard resets it";
 pin out float type "for motion.switchkins-type";
 pin out bit face "type 1 is active";
 pin out bit jog_inhibit "type 1 is active without a program or MDI: for motion.jog-inhibit";
@@ -355,7 +356,8 @@ FUNCTION(guard)
     static int at_rest; /* cycles */
     int requested = request == FACE || request == BY_HAND, by_hand;
 
-    state.spent = requested && (state.spent || !enabled || !program);
+    state.spent = requested && (state.spent || end_request || !enabled || !program);
+    end_request = 0;
     at_rest = stands ? at_rest + (at_rest < SETTLED) : 0;
     if (!enabled || (program && at_rest == SETTLED)) type = is_face_requested(__comp_inst) ? FACE : XZC;
     face = state.kind == FACE && !state.begins;

@@ -267,7 +267,7 @@ def face_accelerations(machine):
 
 
 @pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
-@pytest.mark.parametrize("interrupt", ["abort", "estop", "jog_mode"])
+@pytest.mark.parametrize("interrupt", ["abort", "abort_mdi", "estop", "jog_mode"])
 def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
     chance, program = random.Random(interrupt), (own, *SECTION)
     for _ in range(2):
@@ -278,14 +278,18 @@ def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, in
             lathe.estop()
             lathe.enable()
         else:
-            lathe.abort()
+            lathe.abort(interrupt != "abort_mdi")
+        if interrupt == "abort_mdi":
+            lathe.mdi("G0 Z3")  # LinuxCNC drops what it still has to do, M52 too
         lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
+        if interrupt in ("abort_mdi", "jog_mode"):
+            time.sleep(0.5)  # LinuxCNC does the rest of the abort, or of a refusal
+            lathe.errors()
         if interrupt == "jog_mode":
-            time.sleep(0.5)  # LinuxCNC drops what it still has to do at a change to MDI
             lathe.manual()
             lathe.mdi("G4 P0")
         lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
-        if interrupt != "estop":
+        if interrupt not in ("estop", "abort_mdi"):
             adaptive = own == "M52 P1"
             lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is adaptive, timeout=SOON)  # noqa: B023
         lathe.mdi("M52 P0")

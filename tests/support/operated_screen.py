@@ -54,9 +54,10 @@ class OperatedPanel(Panel):
     def resume(self):
         self._do(self._command.auto, linuxcnc.AUTO_RESUME)
 
-    def abort(self):
+    def abort(self, wait=True):
         self._do(self._command.abort)
-        self.wait_idle(GRACE)
+        if wait:
+            self.wait_idle(GRACE)
 
     def block_delete(self, on):
         """Let blocks that begin with / be skipped."""

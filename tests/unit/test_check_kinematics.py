@@ -94,7 +94,7 @@ def found(tmp_path, monkeypatch):
     """Return a function: the findings about an INI and its HAL files."""
     module = tmp_path / "polar_xzc.so"
 
-    def find(text, motion=MOTION, installed=b"%s.most-override"):
+    def find(text, motion=MOTION, installed=b"%s.end-request"):
         module.write_bytes(installed or b"")
         monkeypatch.setattr(kinematics_rules, "module_file", lambda: module if installed else None)
         files = {"motion_hal": motion, "polar_hal": GUARD, "later_hal": "loadrt trivkins\n"}

@@ -51,7 +51,7 @@ NUMBERS = {
 }  # fmt: skip
 BITS = {
     "enabled": 1, "program": 1, "stands": 1, "face": 0, "program_line": 0, "jog_inhibit": 0,
-    "hold": 0,
+    "hold": 0, "end_request": 0,
 }  # fmt: skip
 STATE = f"struct __comp_state {{ double {', '.join(NUMBERS)}; int {', '.join(BITS)}; }} pins;\n"
 STATE += "".join(f"#define {name} (__comp_inst->{name})\n" for name in [*NUMBERS, *BITS])
@@ -229,11 +229,11 @@ def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
     assert types == [0] * 5 + [1] * 5
 
 
-@pytest.mark.parametrize("pin", ["enabled", "program"])
-def test_guard_lets_a_request_count_once(kinematics, pin):
+@pytest.mark.parametrize("ended", [{"enabled": 0}, {"program": 0}, {"end_request": 1}])
+def test_guard_lets_a_request_count_once(kinematics, ended):
     kinematics.guard(request=1.0)
-    kinematics.guard(**{pin: 0})
-    assert kinematics.guard(**{pin: 1}) == 0
+    kinematics.guard(**ended)
+    assert kinematics.guard(enabled=1, program=1) == 0
     kinematics.guard(request=0.0)
     assert kinematics.guard(request=1.0) == 1
 

@@ -24,6 +24,7 @@ from g12.machine_ini import ACCELERATION_PINS
 from g12.section.modes import decimal
 
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
+REQUEST_PIN, END_PIN = "polar-xzc.request", "polar-xzc.end-request"  # this is the newest
 ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 INPUT_RESULT, TIMED_OUT = 5399, -1.0  # parameter
@@ -34,12 +35,11 @@ OLDER = "the module polar_xzc is older than this package: build it again, make k
 
 
 class FaceRequest(IntEnum):
-    """The values of ``polar-xzc.request``; NO_MOVES blocks motion by program and MDI as well."""
+    """The values of ``polar-xzc.request``; BY_HAND that has ended blocks programs and MDI."""
 
     OFF = 0
     BY_PROGRAM = 1
     BY_HAND = 2
-    NO_MOVES = 3
 
 
 def face_in_force(interp: Interp) -> bool:
@@ -85,10 +85,21 @@ def restore_accelerations(interp: Interp) -> None:
         hal.set_p(pin, repr(acceleration))
 
 
+def end_request() -> None:
+    """End the request for the face at once; the machine leaves it when it is at rest."""
+    if not is_older():
+        hal.set_p(END_PIN, "1")
+
+
+def is_requested() -> bool:
+    """Return whether a request for the face is not withdrawn, though it may have ended."""
+    return not is_older() and hal.get_value(REQUEST_PIN) != FaceRequest.OFF
+
+
 def is_older() -> bool:
-    """Tell whether the module polar_xzc that is loaded cannot limit the override."""
+    """Tell whether the module polar_xzc that is loaded lacks a pin of this package."""
     try:
-        hal.get_value(OVERRIDE_PIN)
+        hal.get_value(END_PIN)
     except RuntimeError:
         return True
     return False
@@ -106,8 +117,10 @@ def to_face(
     ``machine_unit`` is one in program units, ``share`` that of the INI's accelerations,
     ``override`` the highest feed override.
     """
+    if interp.task and is_older():
+        raise BlockRefusal("G12.1", OLDER)
     accelerate(interp, share)
-    if interp.task and not is_older():
+    if interp.task:
         hal.set_p(OVERRIDE_PIN, repr(override))
         hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
@@ -146,14 +159,12 @@ def y_offset(interp: Interp) -> float:
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
 
-def other_module(interp: Interp, beside: float) -> str:
-    """Return the fault of the module polar_xzc, "" without one.
+def other_offset(interp: Interp, beside: float) -> str:
+    """Return the fault of the offset that polar_xzc has, "" without one.
 
-    It may be an older one, or have another distance of the tool from the X line than ``beside``,
-    that of the settings in program units. The machine is on the face, at the start of its motion.
+    It may have another distance of the tool from the X line than ``beside``, that of the settings
+    in program units. The machine is on the face, at the start of its motion.
     """
-    if is_older():
-        return OLDER
     found = interp.current_y + y_offset(interp)
     if abs(found - beside) <= SAME_OFFSET:
         return ""

@@ -12,8 +12,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-import emccanon
-
 from g12.errors import BlockRefusal
 from g12.host import kinematics_switch, messages
 from g12.host.call_frame import CallFrame
@@ -49,7 +47,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
         interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
     )
     yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, blocks)
-    wrong = kinematics_switch.other_module(interp, beside)
+    wrong = kinematics_switch.other_offset(interp, beside)
     if wrong:
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
@@ -63,9 +61,9 @@ def switch_off(interp: Interp) -> Iterator[int]:
     code = messages.code_of_block(interp)
     if state_of(interp).by_hand and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
-    by_hand = _unlock(interp)
+    _unlock(interp)
     restore_modes_before_face(interp)
-    if by_hand or kinematics_switch.face_in_force(interp):
+    if kinematics_switch.is_requested() or kinematics_switch.face_in_force(interp):
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
         frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
@@ -78,14 +76,12 @@ def abort(interp: Interp) -> None:
 
     The position that LinuxCNC took at the abort is the face's. `Interp::read_inputs`
     (rs274ngc_pre.cc) takes the machine's new position when it reads the next line, as after a tool
-    change. The canonical function makes the request: M68 is refused while compensation is on.
+    change. The request ends in HAL: LinuxCNC drops what an abort queues when the mode changes
+    before the axes stand.
     """
     by_hand = _unlock(interp)
     kinematics_switch.restore_accelerations(interp)
-    request = (
-        kinematics_switch.FaceRequest.NO_MOVES if by_hand else kinematics_switch.FaceRequest.OFF
-    )
-    emccanon.SET_AUX_OUTPUT_VALUE(kinematics_switch.FACE_OUTPUT, float(request))
+    kinematics_switch.end_request()
     if by_hand:
         state_of(interp).by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:

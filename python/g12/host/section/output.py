@@ -286,7 +286,7 @@ class SectionOutput:
         off = (abs(there - planned) for there, planned in zip(self._machine_position(), position))
         if max(off) > SWITCH_TOLERANCE:
             return ELSEWHERE
-        return kinematics_switch.other_module(self.interp, self.beside)
+        return kinematics_switch.other_offset(self.interp, self.beside)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Execute a line, an arc or a move of Z on the face."""

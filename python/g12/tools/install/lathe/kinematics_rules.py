@@ -44,7 +44,7 @@ GUARD_PINS = (
     "motion.adaptive-feed",
     "motion.feed-upm",
 )
-NEWEST_PIN = b".most-override"  # of the module
+NEWEST_PIN = b".end-request"  # of the module
 LEAST_PINS = {"num_aio": 4, "num_dio": 4}  # of motmod, whose default is four
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
 LIMIT_SLACK = 1.001
