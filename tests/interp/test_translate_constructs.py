@@ -126,6 +126,8 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G98 G1 F100.\nX50.001 C60.\nX50.004 C90.\nX50.005 C120.\nW-1.",
      "G94 G1 F100\nG93 C60 F[100/60]\nX50.004 C90 F[100/30]\nC120 F[100/30]\n"
      "G94 F100 X50.005\nZ4"),
+    ("fanuc-lathe", "G98 G1 F100.\nX50.001 C60.\nX50.001 C60.\nX50.001 C90.",
+     "G94 G1 F100\nG93 C60 F[100/60]\nC90 F[100/30]\nG94 F100 X50.001"),
     ("fanuc-lathe", "G98 G1 F100.\nX50.001 C60.\nG12.1\nX40. C2.\nG13.1\nG99 F.1",
      "G94 G1 F100\nG93 C60 F[100/60]\nG94 F100 X50.001\nG12.1\nG1 X40 C2\nG13.1\nG95 F.1 G1"),
     ("okuma-lathe", "G94 G0 C5.\nG1 F100. Z5. C20.", "G94 G0 C5\nG1 F100 C20"),

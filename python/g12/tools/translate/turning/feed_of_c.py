@@ -28,7 +28,12 @@ def feed_of_c(draft: Draft) -> None:
     turned, along = abs(moved["C"]), hypot(*(moved.get(axis, 0.0) for axis in SLIDES))
     if (turned and along and state.feed_mode != "G93") or state.held:
         _check_rule(draft, rule)
-        path = turned if rule == "degrees" else hypot(turned, along)
+        path = turned or along if rule == "degrees" else hypot(turned, along)
+        if not path:  # a slide stays held back
+            still = [word for word in draft.words if axis_of(word.letter) in axes]
+            draft.drop(still)
+            draft.comments += [word.text for word in still]
+            return
         missing = "C beside a slide at a feed: F must be a number here: write it"
         _write_inverse_time(draft, axes, path / number_of_feed(draft, missing))
 
