@@ -10,6 +10,7 @@ import pytest
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
 from support.sim_machines import trace_text
+from support.small_configs import content_of
 
 INI = """\
 [EMC]
@@ -321,13 +322,9 @@ def test_every_program_starts_clean(mill):
 
 
 def test_nothing_is_written_beside_the_ini(ini):
-    before = contents(ini.parent)
+    before = content_of(ini.parent)
     trace_text("T1 M6\nG10 L2 P1 X5\nG10 L1 P1 Z3\nM2", ini)
-    assert contents(ini.parent) == before
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    assert content_of(ini.parent) == before
 
 
 def test_a_program_without_end_times_out_and_the_next_one_runs(mill):

@@ -7,11 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from g12.geometry.curve import sweep_between
 from g12.tools.commands import main
 from g12.tools.preview.tracer import Tracer
 from support.cam_parts import PARTS, points_of
-from support.contour_geometry import Round, Straight, outward, spaced
+from support.contour_geometry import FROM_COLUMNS, distances
 from support.foreign_programs import FOREIGN, translation
 from support.sim_machines import copy_of_machines
 
@@ -147,35 +146,18 @@ def wanted_path(part):
         return points_of(part)
     entry = points_of(part._replace(path=part.path[: part.lead]))
     contour = compensated(part)
-    level = part.path[part.lead][3]
-    path = np.column_stack([contour.real, contour.imag, np.full(len(contour), level)])
+    level = np.full(len(contour), part.path[part.lead][3])
+    path = np.column_stack([contour.real, contour.imag, level])
     leave = points_of(part._replace(path=(("line", *path[-1]), *part.path[-2:])))
     return np.concatenate([entry, path, leave])
 
 
 def compensated(part):
-    """Return the centre of a cutter that follows the contour on the left."""
-    shapes, here = [], complex(*part.path[part.lead][1:3])
-    for kind, *to in part.path[part.lead + 1 : -2]:
-        end = complex(*to[:2])
-        if kind == "arc":
-            centre = here + complex(*to[3:5])
-            shapes.append(Round(here, centre, sweep_between(here, end, centre, to[5])))
-        else:
-            shapes.append(Straight(here, end))
-        here = end
-    groups = outward(shapes, CUTTERS["mm"][part.tool] / 2)
-    return np.concatenate([spaced(segment, 0.1) for group in groups for segment in group])
-
-
-def distances(points, path):
-    """Return how far points lie from the polyline through the points of a path."""
-    start, along = path[:-1], np.diff(path, axis=0)
-    there = np.linalg.norm(along, axis=1) > 1e-9
-    start, along = start[there], along[there]
-    found = []
-    for some in np.array_split(points, max(1, len(points) // 200)):
-        arms = some[:, None] - start
-        share = np.clip((arms * along).sum(2) / (along**2).sum(1), 0, 1)
-        found.append(np.linalg.norm(arms - share[..., None] * along, axis=2).min(1))
-    return np.concatenate(found)
+    """Return the centre of a cutter that follows the contour on the left, round its corners."""
+    contour = points_of(part._replace(path=part.path[part.lead : -2]))[:, :2] @ FROM_COLUMNS
+    contour = contour[np.append(True, abs(np.diff(contour)) > 1e-9)]
+    along = np.diff(contour)
+    beside = 1j * CUTTERS["mm"][part.tool] / 2 * along / abs(along)
+    turned = (beside[1:] / beside[:-1])[:, None] ** np.linspace(0, 1, 30)
+    corners = contour[1:-1, None] + beside[:-1, None] * turned
+    return np.array([contour[0] + beside[0], *corners.ravel(), contour[-1] + beside[-1]])

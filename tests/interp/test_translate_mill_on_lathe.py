@@ -11,12 +11,12 @@ from interp.test_translate_cam import (
     SOME,
     TOLERANCE,
     TOP,
-    distances,
     on_the_part,
     rapids_turn_above_the_part,
     wanted_path,
 )
 from support.cam_parts import PARTS, mill_program
+from support.contour_geometry import distances
 from support.foreign_programs import translation
 from support.sim_machines import SIM
 

@@ -16,6 +16,7 @@ from g12.tools.headless.machine import StartupError
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package
+from support.small_configs import content_of
 
 EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
 NOBODY = 65534
@@ -132,22 +133,18 @@ def test_the_machines_directory_is_never_written(tmp_path):
     folder = copy_of_the_package(tmp_path)
     ini = folder / "configs" / "sim" / "mill_mm.ini"
     (ini.parent / "mill_mm.var").write_text("5221\t7.0\n")
-    before = contents(folder)
+    before = content_of(folder)
     with Machine(ini) as machine:
         machine.mdi("G10 L1 P1 Z5")
         machine.mdi("G10 L2 P1 X3")
         machine.mdi("M2")
-    assert contents(folder) == before
+    assert content_of(folder) == before
 
 
 def copy_of_the_package(folder):
     for name in ("configs", "ngc", "python"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
     return folder
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def processes_of(folder):

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from g12.tools.commands import main
-from interp.test_translate_cam import distances
 from support.cam_parts import PARTS, mill_program
+from support.contour_geometry import distances
 from support.foreign_programs import translation
 from support.operated_machine import Machine
 from support.shape_geometry import polygon

@@ -15,10 +15,7 @@ from soak import often
 
 EXAMPLES = {"interp": 10_000, "unit": 1_000, "soak": 10_000}  # of a file in ten minutes, by folder
 TRIED = {  # by file
-    "test_haas": "blocks of Haas",
-    "test_yasnac": "blocks of Yasnac",
-    "test_mitsubishi": "blocks of Mitsubishi",
-    "test_circle_mill": "circle mill events and calls",
+    "test_cycles": "blocks of the cycles",
     "test_polar_plan": "polar contours",
     "test_compensation_offset": "polar contours with compensation",
     "test_compensation_simplify": "contours with short moves",

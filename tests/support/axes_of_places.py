@@ -6,14 +6,14 @@ A path is a function from lengths to complex places; the tool stands ``beside`` 
 
 import numpy as np
 
-from support.contour_geometry import Straight
+from g12.geometry.curve import Line
 
 NEAR = 3e-4  # of where the slide stands: steps in which a rate is measured
 
 
 def along(shape):
     """Return a shape, line or arc, as a path that goes on beyond its ends."""
-    if isinstance(shape, Straight):
+    if isinstance(shape, Line):
         unit = (shape.end - shape.start) / shape.length
         return lambda at: shape.start + unit * np.asarray(at)
     arm, turn = shape.start - shape.centre, np.sign(shape.sweep) / shape.radius

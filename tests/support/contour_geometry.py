@@ -1,33 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lines and arcs in the X-C plane, and how near to them points lie: nothing here knows the package.
+"""Lines and arcs in the X-C plane, and how near to them points lie: these knows nobody's formula.
 
-A point is a complex number x + jc. Samples of a motion are an array (n, 2) of x and c.
+A point is a complex number x + jc. Samples of a motion are an array (n, 2) of x and c. A shape is
+the package's curve, to draw with; what it judges by, points and distances, is its own.
 """
 
 import cmath
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-SAME_HEADING = math.radians(0.01)
+from g12.geometry.curve import Arc, Line
+
 FROM_COLUMNS = np.array([1, 1j])
 
 
-def phase(vector):
-    """Return the direction of a vector; `cmath.phase` fails where it underflows (Python 3.13)."""
-    return math.atan2(vector.imag, vector.real)
-
-
-class Straight(NamedTuple):
+class Straight(Line):
     """A line of the drawing."""
-
-    start: complex
-    end: complex
-
-    @property
-    def length(self):
-        return abs(self.end - self.start)
 
     def points(self, count):
         return self.start + (self.end - self.start) * np.linspace(0.0, 1.0, count)
@@ -38,43 +27,14 @@ class Straight(NamedTuple):
     def moved(self, by):
         return Straight(self.start + by, self.end + by)
 
-    def headings(self):
-        """Return the direction at both ends, radians."""
-        angle = phase(self.end - self.start)
-        return angle, angle
-
-    def aside(self, by):
-        """Return the parallel line on the left."""
-        normal = by * 1j * (self.end - self.start) / self.length
-        return Straight(self.start + normal, self.end + normal)
-
-    def between(self, first, last):
-        return Straight(*(self.start + (self.end - self.start) * part for part in (first, last)))
-
     def distance(self, points):
         along = self.end - self.start
         part = np.clip(((points - self.start) * np.conj(along)).real / abs(along) ** 2, 0.0, 1.0)
         return abs(points - self.start - part * along)
 
 
-class Round(NamedTuple):
+class Round(Arc):
     """An arc of the drawing; ``sweep`` in radians, counterclockwise above zero."""
-
-    start: complex
-    centre: complex
-    sweep: float
-
-    @property
-    def radius(self):
-        return abs(self.start - self.centre)
-
-    @property
-    def length(self):
-        return self.radius * abs(self.sweep)
-
-    @property
-    def end(self):
-        return self.points(2)[-1]
 
     def points(self, count):
         angles = self.sweep * np.linspace(0.0, 1.0, count)
@@ -86,32 +46,23 @@ class Round(NamedTuple):
     def moved(self, by):
         return Round(self.start + by, self.centre + by, self.sweep)
 
-    def headings(self):
-        """Return the direction at both ends, radians."""
-        first = phase(self.start - self.centre) + math.copysign(math.pi / 2, self.sweep)
-        return first, first + self.sweep
-
-    def aside(self, by):
-        """Return the concentric arc on the left."""
-        arm = self.start - self.centre
-        to = self.radius - math.copysign(by, self.sweep)
-        return Round(self.centre + arm * to / self.radius, self.centre, self.sweep)
-
-    def between(self, first, last):
-        start = self.centre + (self.start - self.centre) * np.exp(1j * self.sweep * first)
-        return Round(start, self.centre, self.sweep * (last - first))
-
     def distance(self, points):
         arm = (points - self.centre) / (self.start - self.centre)
         angle = np.angle(arm) * math.copysign(1.0, self.sweep) % (2 * math.pi)
-        to_ends = np.minimum(abs(points - self.start), abs(points - self.end))
+        to_ends = np.minimum(abs(points - self.start), abs(points - self.points(2)[-1]))
         to_circle = abs(abs(points - self.centre) - self.radius)
         return np.where(angle <= abs(self.sweep) + 1e-9, to_circle, to_ends)
 
 
+def shape_of(curve):
+    """Return a curve of the package as a shape."""
+    return (Straight if isinstance(curve, Line) else Round)(*curve)
+
+
 def lines(*points):
-    """Return the lines from point to point, each x and c."""
-    return [Straight(complex(*start), complex(*end)) for start, end in zip(points, points[1:])]
+    """Return the lines from point to point, each complex or x and c."""
+    ends = [point if isinstance(point, complex) else complex(*point) for point in points]
+    return [Straight(*pair) for pair in zip(ends, ends[1:])]
 
 
 def arc(centre, radius, start, sweep):
@@ -130,38 +81,24 @@ def distance(points, shapes):
     return np.min([shape.distance(points) for shape in shapes], axis=0)
 
 
+def distances(points, path):
+    """Return how far points lie from the polyline through those of a path: rows of coordinates."""
+    start, along = path[:-1], np.diff(path, axis=0)
+    there = np.linalg.norm(along, axis=1) > 1e-12
+    start, along = start[there], along[there]
+    found = []
+    for some in np.array_split(points, max(1, len(points) // 200)):
+        arms = some[:, None] - start
+        share = np.clip((arms * along).sum(2) / (along**2).sum(1), 0.0, 1.0)
+        found.append(np.linalg.norm(arms - share[..., None] * along, axis=2).min(1))
+    return np.concatenate(found)
+
+
 def distance_from_path(points, path):
     """Return the distance of points from the polyline through the points of a path."""
-    start, along = path[:-1], np.diff(path)
-    there = abs(along) > 1e-12
-    start, along = start[there], along[there]
-    arms = points[:, None] - start
-    part = np.clip((arms * np.conj(along)).real / abs(along) ** 2, 0.0, 1.0)
-    return abs(arms - part * along).min(axis=1)
+    return distances(*(np.column_stack([each.real, each.imag]) for each in (points, path)))
 
 
 def apart(one, other, step=20):
     """Return how far two sampled paths leave each other; their points are rows of coordinates."""
-    return max(_farthest_off(one[::step], other), _farthest_off(other[::step], one))
-
-
-def _farthest_off(points, path):
-    start, along = path[:-1], np.diff(path, axis=0)
-    squared = np.maximum((along**2).sum(axis=1), 1e-18)
-    found = 0.0
-    for point in points:
-        share = np.clip(((point - start) * along).sum(axis=1) / squared, 0.0, 1.0)
-        off = point - start - share[:, None] * along
-        found = max(found, np.linalg.norm(off, axis=1).min())
-    return found
-
-
-def outward(shapes, by):
-    """Return each shape set ``by`` to the left, with the arc about the corner after it."""
-    moved = [[shape.aside(by)] for shape in shapes]
-    for group, shape, following in zip(moved, shapes, shapes[1:]):
-        before, after = shape.headings()[1], following.headings()[0]
-        turn = (after - before + math.pi) % (2 * math.pi) - math.pi
-        if abs(turn) > SAME_HEADING and by:
-            group.append(Round(shape.end + by * 1j * cmath.rect(1, before), shape.end, turn))
-    return moved
+    return max(distances(one[::step], other).max(), distances(other[::step], one).max())

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.compensation.contour import Contour
+from g12.geometry.curve import Line
 from g12.moves.steps import BlockMoves
-from support.contour_geometry import Straight
 
 SAGITTA = 2e-4  # of the chords that stand for a segment
 
@@ -31,7 +31,7 @@ def programmed(shapes, *, feed=250.0, by_radius=False):
 def add(contour, shape, *, line, feed, by_radius=False):
     """Add a shape that begins where the contour stands."""
     end = shape.end
-    if isinstance(shape, Straight):
+    if isinstance(shape, Line):
         contour.line(end.real, end.imag, line=line, feed=feed)
         return
     arm = shape.centre - shape.start

@@ -7,10 +7,9 @@ from itertools import groupby
 
 import numpy as np
 
-from g12.geometry.curve import Arc
 from g12.tools.preview.tracer import Tracer
 from g12.tools.verify.proof import prove
-from support.contour_geometry import Round, Straight
+from support.contour_geometry import shape_of
 from support.sim_machines import PROGRAMS, SIM
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
@@ -38,8 +37,7 @@ def toolpath_of(name, ini):
     for section in prove(PROGRAMS / "polar" / f"{name}.ngc", ini).sections:
         for each in section.path:
             if each.curve.length:
-                shape = Round if isinstance(each.curve, Arc) else Straight
-                path[each.line].append(shape(*each.curve))
+                path[each.line].append(shape_of(each.curve))
     return path
 
 

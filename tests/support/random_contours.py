@@ -10,7 +10,8 @@ from shapely.geometry import LineString, Polygon
 
 from g12.compensation import offset
 from g12.compensation.contour import Contour, PlaneMove
-from support.contour_geometry import Round, Straight
+from g12.geometry.curve import angle_of
+from support.contour_geometry import Round, Straight, lines, shape_of
 from support.planned_cuts import add
 
 TOLERANCE = 0.005
@@ -34,8 +35,8 @@ def away(drawn):
 def contour_of(drawn, depth=-1.0):
     """Return the contour with ramps square to its ends; it begins at no special place."""
     first, last = drawn.shapes[0], drawn.shapes[-1]
-    start = first.start + away(drawn) * cmath.rect(1.0, first.headings()[0])
-    end = last.end + away(drawn) * cmath.rect(1.0, last.headings()[1])
+    start = first.start + away(drawn) * first.direction(0.0)
+    end = last.end + away(drawn) * last.direction(1.0)
     contour = Contour(abs(start), depth)
     contour.line(start.real, start.imag, line=1, feed=300.0)
     contour.compensation(drawn.side, drawn.radius, line=2)
@@ -52,8 +53,7 @@ def points_of(shape):
     shape = getattr(shape, "curve", shape)
     bend, radius = getattr(shape, "sweep", 0.0), getattr(shape, "radius", 1.0)
     count = 2 + math.ceil(abs(bend) * math.sqrt(radius / FINE))
-    drawn = Round(*shape) if bend else Straight(*shape)
-    return drawn.points(count)
+    return shape_of(shape).points(count)
 
 
 def as_shapely(shapes):
@@ -87,14 +87,13 @@ def depth(path, drawn):
 
 def closed(corners):
     """Return a closed polygon that begins in its first corner."""
-    return [Straight(*ends) for ends in zip(corners, [*corners[1:], corners[0]])]
+    return lines(*corners, corners[0])
 
 
 def polygon(corners):
     """Return a closed polygon that begins in the middle of its first side."""
     middle = 0.5 * (corners[0] + corners[1])
-    ends = [middle, *corners[1:], corners[0], middle]
-    return [Straight(*pair) for pair in zip(ends, ends[1:])]
+    return lines(middle, *corners[1:], corners[0], middle)
 
 
 def star(draw, count, reach):
@@ -110,15 +109,15 @@ def rounded(draw, shapes):
     made, ahead = [], shapes[0]
     for following in shapes[1:]:
         shape, ahead = ahead, following
-        before, after = shape.headings()[1], following.headings()[0]
-        turn = (after - before + math.pi) % (2 * math.pi) - math.pi
+        before = shape.direction(1.0)
+        turn = angle_of(following.direction(0.0) / before)
         if draw.random() < 0.5 or abs(turn) < 0.05 or abs(turn) > 2.8:
             made.append(shape)
             continue
         cut = draw.uniform(0.1, 0.45) * min(shape.length, following.length)
         radius = math.copysign(cut / math.tan(abs(turn) / 2), turn)
-        start = shape.end - cmath.rect(cut, before)
-        corner = Round(start, start + 1j * cmath.rect(radius, before), turn)
+        start = shape.end - cut * before
+        corner = Round(start, start + 1j * radius * before, turn)
         made += [Straight(shape.start, start), corner]
         ahead = Straight(corner.end, following.end)
     return [*made, ahead]

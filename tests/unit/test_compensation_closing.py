@@ -14,7 +14,7 @@ from g12.compensation.compensated import (
     in_plane,
 )
 from g12.compensation.contour import Contour
-from g12.geometry.curve import Arc, Line
+from g12.geometry.curve import Line
 from support.contour_geometry import Round, Straight, lines
 from support.planned_moves import arc, line
 from support.random_contours import closed
@@ -23,21 +23,16 @@ NEAR = 0.02
 SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]
 
 
-def curves_of(shapes):
-    plain = [[complex(value) for value in each[:2]] + list(each[2:]) for each in shapes]
-    return [Line(*each) if len(each) == 2 else Arc(*each) for each in plain]
-
-
 def closing(shapes, radius=3.0):
     """Return where shapes that are cut one after the other close."""
-    return closing_of(curves_of(shapes), radius, NEAR)
+    return closing_of(shapes, radius, NEAR)
 
 
 def ends_of(shapes, radius=3.0):
     """Return whether shapes close, and from which point to which they are a contour."""
-    found, curves = closing(shapes, radius), curves_of(shapes)
+    found = closing(shapes, radius)
     points = (
-        curves[at].point(along / curves[at].length)
+        shapes[at].point(along / shapes[at].length)
         for at, along in ((found.first, found.start), (found.last, found.end))
     )
     return found.closed, *(complex(round(at.real, 3), round(at.imag, 3)) for at in points)
@@ -52,8 +47,7 @@ def rolled(on, off, overlap):
     far, near = arc_on.start, arc_off.end
     front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
     after = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
-    return [*front, arc_on, *(Straight(*pair) for pair in zip(corners, corners[1:])), arc_off,
-            *after]  # fmt: skip
+    return [*front, arc_on, *lines(*corners), arc_off, *after]
 
 
 @pytest.mark.parametrize("overlap", [0.0, 2.0])
@@ -96,7 +90,7 @@ def test_of_a_contour_that_does_not_close_all_is_contour():
     zigzag = lines((0, 0), (20, 0), (20, 20), (45, 20))
     found = closing(zigzag)
     assert found == (0, 0.0, 2, 25.0, False, False)
-    assert [found.shares(k, curves_of(zigzag)[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
+    assert [found.shares(k, zigzag[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
 
 
 def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
@@ -112,7 +106,7 @@ def test_what_lies_beyond_the_closing_is_no_contour():
     sides = [Straight(first.start + 5j, first.end), *others, Straight(last.start, last.end + 15)]
     found = closing(sides)
     assert found[:4] == (0, pytest.approx(5.0), 3, pytest.approx(20.0))
-    parts = [found.shares(k, curve) for k, curve in enumerate(curves_of(sides))]
+    parts = [found.shares(k, curve) for k, curve in enumerate(sides)]
     assert parts == [
         (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
     ]  # fmt: skip
@@ -136,7 +130,7 @@ def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
     ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
     first, *others, last = closed(ring)
     overrun = 0.2
-    sides = [first.between(-overrun, 1.0), *others, last.between(0.0, 1.0 + overrun)]
+    sides = [first.portion(-overrun, 1.0), *others, last.portion(0.0, 1.0 + overrun)]
     for _ in range(on):
         sides = [Straight(1.1 * sides[0].start, sides[0].start), *sides]
     for _ in range(off):

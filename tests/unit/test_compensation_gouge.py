@@ -93,10 +93,6 @@ SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]  # clockwise: the tool is ou
 BOSS = [10 + 0j, *SQUARE[1:], SQUARE[0], 10 + 0j]
 
 
-def path(*corners):
-    return [Straight(*pair) for pair in zip(corners, corners[1:])]
-
-
 def test_a_pocket_that_begins_in_its_corner_is_refused():
     text, _ = cut(closed(SQUARE), RIGHT, 3.0)
     assert text == (
@@ -106,7 +102,7 @@ def test_a_pocket_that_begins_in_its_corner_is_refused():
 
 
 def test_leads_from_the_other_side_of_a_closed_contour_suggest_the_other_code():
-    led = path(30 + 2j, *BOSS, 30 - 2j)
+    led = lines(30 + 2j, *BOSS, 30 - 2j)
     assert cut(led, LEFT, 3.0) == ("", [])
     text, _ = cut(led, RIGHT, 3.0)
     assert text.endswith("both lines 4 and 9: beside one of them it cuts into the other. G41?")
@@ -193,7 +189,7 @@ def test_what_a_loop_cuts_again_is_told_once():
 def both_ways(shapes):
     """Yield lines, and the other way round from the same side."""
     yield shapes, LEFT
-    yield [Straight(shape.end, shape.start) for shape in reversed(shapes)], RIGHT
+    yield [shape.reversed() for shape in reversed(shapes)], RIGHT
 
 
 def test_a_lead_that_crosses_the_other_may_not_cut_the_part():
@@ -203,7 +199,7 @@ def test_a_lead_that_crosses_the_other_may_not_cut_the_part():
     for shapes, side in both_ways(tower):
         assert "cuts into the other" in cut(shapes, side, 3.0)[0]
     low = [corner if corner.real < 11 else corner - 3 for corner in (s.start for s in tower)]
-    for shapes, side in both_ways(path(*low, 15 + 10j)):
+    for shapes, side in both_ways(lines(*low, 15 + 10j)):
         text, (note,) = cut(shapes, side, 3.0)
         assert not text and "lines 3 and 10 cross" in note
 
@@ -227,7 +223,7 @@ def test_a_contour_is_rolled_on_and_off_with_arcs(side, inward, overlap):
     on = Round(start + to_tool + 5j, start + to_tool, 0.5 * math.pi * inward)
     end = start - 1j * overlap
     off = Round(end, end + to_tool, 0.5 * math.pi * inward)
-    assert cut([on, *path(*BOSS[:-1], end), off], side, 3.0) == ("", [])
+    assert cut([on, *lines(*BOSS[:-1], end), off], side, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("radius", [0.3, 6.0])
@@ -250,7 +246,7 @@ def test_a_finishing_pass_runs_behind_the_one_before(allowance):
     """What that leaves is in tolerances: at the last side it goes over into the finishing pass."""
     left = 1.0 + 0.1 * allowance * TOLERANCE
     rough = [left * corner for corner in BOSS[:-1]]
-    assert cut(path(*rough, *BOSS), LEFT, 3.0) == ("", [])
+    assert cut(lines(*rough, *BOSS), LEFT, 3.0) == ("", [])
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
@@ -267,7 +263,7 @@ def test_a_spiral_runs_behind_itself(side):
 def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
     for angle in (5, 10, 30, 60, 90, 120):
         over = cmath.rect(40.0, math.radians(angle))
-        loop = path(-40 + 0j, 0j, 60 + 0j, 60 - 30j, -over, over, over + 20j, over - 60 + 20j)
+        loop = lines(-40 + 0j, 0j, 60 + 0j, 60 - 30j, -over, over, over + 20j, over - 60 + 20j)
         for side in (LEFT, RIGHT):
             assert cut(loop, side, 1.0)[0], (angle, side)
     sliver = lines((13.28, 9.154), (13.809, 10.3136), (14.0905, 9.9972), (8.608, 15.3087))
@@ -426,7 +422,7 @@ def test_a_contour_is_cut_at_several_heights():
 
 def waves(count, radius=20.0, wave=2.0):
     angles = [2 * math.pi * k / count for k in range(count + 1)]
-    return path(*(cmath.rect(radius + wave * math.sin(5 * angle), angle) for angle in angles))
+    return lines(*(cmath.rect(radius + wave * math.sin(5 * angle), angle) for angle in angles))
 
 
 def laps(count):

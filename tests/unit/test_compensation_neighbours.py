@@ -17,7 +17,7 @@ from shapely.ops import nearest_points
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from support.contour_geometry import Round, Straight
+from support.contour_geometry import Round, Straight, lines
 from support.growth import growth
 from support.planned_cuts import add
 from support.random_contours import (
@@ -49,8 +49,8 @@ def section(*parts, ramp=None):
     for part, height in parts:
         heights = height if isinstance(height, list) else [height] * len(part.shapes)
         first, last = part.shapes[0], part.shapes[-1]
-        start = first.start + (ramp or away(part)) * cmath.rect(1.0, first.headings()[0])
-        end = last.end + (ramp or away(part)) * cmath.rect(1.0, last.headings()[1])
+        start = first.start + (ramp or away(part)) * first.direction(0.0)
+        end = last.end + (ramp or away(part)) * last.direction(1.0)
         contour.line(start.real, start.imag, line=line, feed=300.0)
         contour.line(z=heights[0], line=line, feed=300.0)
         contour.compensation(part.side, part.radius, line=line + 1)
@@ -93,7 +93,7 @@ def pocket(shapes, radius=6.0):
 
 def way_back(part):
     """Return lines that are cut the other way round, from the same side."""
-    shapes = [Straight(shape.end, shape.start) for shape in reversed(part.shapes)]
+    shapes = [shape.reversed() for shape in reversed(part.shapes)]
     return part._replace(shapes=shapes, body=shapes, side=LEFT + RIGHT - part.side)
 
 
@@ -182,8 +182,7 @@ def test_a_deep_cut_is_refused_where_both_are_cut_at_one_height(depths, others):
 FACED = boss(closed([10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]), 3.0)
 FACE = Straight(14 - 20j, 14 + 20j)  # two radii from there would be 16
 IN_FRONT, BEHIND = Straight(40 - 20j, 14 - 20j), Straight(14 + 20j, 40 + 20j)
-BESIDE = [Straight(14 + 30j, 14 + 50j), Straight(14 + 50j, 40 + 50j), Straight(40 + 50j, 40 + 30j),
-          Straight(40 + 30j, 14 + 30j)]  # fmt: skip
+BESIDE = lines(14 + 30j, 14 + 50j, 40 + 50j, 40 + 30j, 14 + 30j)
 ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
 
 
@@ -196,12 +195,12 @@ ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
         ([IN_FRONT, FACE, BEHIND], False),
         (ROUND, False),
         (ROUND[2:] + ROUND[:2], False),
-        ([Straight(14 - 20j, 14 + 30j), *BESIDE], True),
-        ([Straight(14 - 20j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
-        ([Straight(14 - 5j, 14 + 25j), Straight(14 + 25j, 14 + 30j), *BESIDE], True),
-        ([BESIDE[0].between(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].between(0.0, 1.4)], True),
-        ([ROUND[3].between(-0.3, 1.0), *ROUND[:2], ROUND[2].between(0.0, 1.2)], False),
-        ([ROUND[0].between(-0.3, 1.0), *ROUND[1:3], ROUND[3].between(0.0, 1.0)], False),
+        ([*lines(14 - 20j, 14 + 30j), *BESIDE], True),
+        ([*lines(14 - 20j, 14 + 25j, 14 + 30j), *BESIDE], True),
+        ([*lines(14 - 5j, 14 + 25j, 14 + 30j), *BESIDE], True),
+        ([BESIDE[0].portion(-2.5, 1.0), *BESIDE[1:3], BESIDE[3].portion(0.0, 1.4)], True),
+        ([ROUND[3].portion(-0.3, 1.0), *ROUND[:2], ROUND[2].portion(0.0, 1.2)], False),
+        ([ROUND[0].portion(-0.3, 1.0), *ROUND[1:3], ROUND[3].portion(0.0, 1.0)], False),
     ],
 )
 def test_what_cuts_may_be_a_lead(shapes, lead):
@@ -216,7 +215,7 @@ def test_what_cuts_may_be_a_lead(shapes, lead):
 def test_a_way_through_the_air_enters_nothing(over, refused):
     """It goes along a face beside the square, then over the square or through it."""
     corners = [40 - 40j, 14 - 40j, 14 + 0j, -40 + 0j, -40 - 40j]
-    way = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    way = boss(lines(*corners), 3.0)
     other = way, [-5.0, -5.0, over, -5.0]
     for parts in ([(FACED, -5.0), other], [other, (FACED, -5.0)]):
         assert is_refused(*parts) is refused
@@ -233,7 +232,7 @@ def test_a_contour_that_enters_anywhere_may_cut_anywhere(right, heights, depth_t
     """
     bar = boss(closed([10 + 30j, 10 - 30j, -10 - 30j, -10 + 30j]), 3.0)
     corners = [-40 + 30j, -14 + 30j, -14 - 60j, 40 - 60j, 40 + 60j, right + 60j, right - 25j]
-    around = boss([Straight(*pair) for pair in zip(corners, corners[1:])], 3.0)
+    around = boss(lines(*corners), 3.0)
     for parts in ([(bar, heights), (around, depth_there)], [(around, depth_there), (bar, heights)]):
         assert refusal(*parts) == ""
     short = boss(around.shapes[:4], 3.0)
@@ -243,7 +242,7 @@ def test_a_contour_that_enters_anywhere_may_cut_anywhere(right, heights, depth_t
 def test_what_a_third_contour_takes_away_may_be_cut():
     """A slot in three passes across the square, where another contour is too near to it."""
     ends = [40 - 3j, 14 - 3j, 14 + 3j, 40 + 3j]
-    face = boss([Straight(*pair) for pair in zip(ends, ends[1:])], 3.0)
+    face = boss(lines(*ends), 3.0)
     passes = [boss([Straight(complex(-40, c), complex(40, c))], 3.0) for c in (-9, -3, 3)]
     parts = [(FACED, -5.0), (face, -5.0)]
     assert is_refused(*parts)
@@ -383,7 +382,7 @@ def test_a_finishing_pass_may_cut_what_roughing_left(monkeypatch):
 def waves(count, radius):
     angles = [2 * math.pi * k / count for k in range(count + 1)]
     points = [cmath.rect(radius + 2.0 * math.sin(5 * a), -a) for a in angles]
-    return boss([Straight(*pair) for pair in zip(points, points[1:])], 3.0)
+    return boss(lines(*points), 3.0)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.geometry.curve import Arc, Line
 from g12.polar.beside import split_beside
 from g12.polar.segments import Law, split_move
 from support.axes_of_places import along, axes_of, bend, places_of, rates
@@ -29,11 +28,6 @@ laws = st.builds(
     st.sampled_from([INF, 0.3, 0.05]),
 )
 offsets = st.sampled_from([-8.0, -0.3, 2.0, 9.0])
-
-
-def curve_of(shape):
-    """Return a shape as the planner's curve."""
-    return Line(*shape) if isinstance(shape, Straight) else Arc(*shape)
 
 
 def clear_of(shape, beside=0.0):
@@ -64,8 +58,8 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
     """
     assume(clear_of(shape, beside))
     law = law._replace(ripple=0.01, x_hold=3.0, c_hold=3.0)
-    curve, path = curve_of(shape), along(shape)
-    split = split_beside(curve, law, beside) if beside else split_move(curve, law)
+    path = along(shape)
+    split = split_beside(shape, law, beside) if beside else split_move(shape, law)
     slides, angles, lengths = map(np.array, split)
     assert (lengths[0], lengths[-1]) == pytest.approx((0.0, shape.length))
     assert (np.diff(lengths) > 0).all()
@@ -93,12 +87,9 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
 def test_the_way_back_is_cut_into_the_same_segments(shape, law, beside):
     """They are spaced from the end nearer to the pole, where they are shortest."""
     assume(clear_of(shape, beside))
-    back = Straight(shape.end, shape.start)
-    if isinstance(shape, Round):
-        back = Round(shape.end, shape.centre, -shape.sweep)
     there, again = (
-        split_beside(curve_of(one), law, beside) if beside else split_move(curve_of(one), law)
-        for one in (shape, back)
+        split_beside(one, law, beside) if beside else split_move(one, law)
+        for one in (shape, shape.reversed())
     )
     assert len(there.lengths) == len(again.lengths)
     assert there.slides == pytest.approx(again.slides[::-1], abs=law.deviation)
@@ -133,13 +124,13 @@ def test_a_short_line_is_one_segment_while_that_keeps_the_limits(law, first, foo
     for length, whole in ((0.99 * low, True), (1.01 * low, False)):
         ends = (start, start + 1j * length)
         for line in (Straight(*ends), Straight(*ends[::-1])):
-            assert (len(split_move(curve_of(line), law).lengths) == 2) is whole
+            assert (len(split_move(line, law).lengths) == 2) is whole
 
 
 @pytest.mark.parametrize(("away", "whole"), [(0.0024, True), (0.0026, False)])
 def test_an_arc_is_one_segment_if_its_radii_differ_by_less_than_the_deviation(away, whole):
     circle = Round(complex(10 + away), complex(away), 2 * math.pi)
-    split = split_move(curve_of(circle), Law(0.005, 1e9, INF, INF))
+    split = split_move(circle, Law(0.005, 1e9, INF, INF))
     assert (len(split.lengths) == 2) is whole
 
 
@@ -152,13 +143,13 @@ HALF_WAY = Round(20.006 + 0j, 10.006 + 0j, math.pi)  # to 0.006 beside the pole
         (Straight(0.006 - 5j, 0.006 + 5j), 0.003),
         (Round(20.006 + 0j, 10.006 + 0j, -2 * math.pi), 0.003),
         (HALF_WAY, 0.003),
-        (HALF_WAY.between(0.0, 0.9997), 0.5 * abs(HALF_WAY.between(0.0, 0.9997).end)),
-        (HALF_WAY.between(1.0, 0.0), 0.003),
-        (HALF_WAY.between(0.9, 0.1), 0.005),
-        (HALF_WAY.between(0.1, 0.9), 0.005),
+        (HALF_WAY.portion(0.0, 0.9997), 0.5 * abs(HALF_WAY.portion(0.0, 0.9997).end)),
+        (HALF_WAY.portion(1.0, 0.0), 0.003),
+        (HALF_WAY.portion(0.9, 0.1), 0.005),
+        (HALF_WAY.portion(0.1, 0.9), 0.005),
     ],
 )
 def test_no_end_is_farther_off_than_half_the_way_to_the_pole(shape, deviation):
-    split = split_move(curve_of(shape), Law(0.005, 1e9, INF, INF))
+    split = split_move(shape, Law(0.005, 1e9, INF, INF))
     off = abs(places_of(*map(np.array, split[:2])) - along(shape)(np.array(split.lengths)))
     assert 0.8 * deviation < off.max() <= deviation * 1.0001
