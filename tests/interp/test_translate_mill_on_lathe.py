@@ -16,8 +16,9 @@ from interp.test_translate_cam import (
     wanted_path,
 )
 from support.cam_parts import PARTS, mill_program
-from support.contour_geometry import distances
-from support.foreign_programs import translation
+from support.contour_geometry import FROM_COLUMNS, distances
+from support.foreign_programs import FOREIGN, translation
+from support.shape_geometry import polygon
 from support.sim_machines import SIM
 
 SETTINGS = {"POLAR_Z": "allow", "CYLINDER_X": "allow", "LIVE_SPINDLE": "0"}
@@ -102,3 +103,22 @@ def test_holes_are_where_the_mill_has_them(lathe, control, options, made_by):
         assert near[:, 2].min() == pytest.approx(depth)
     deep = downs[downs[:, 2] < 0]
     assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
+
+
+CUTTER, CLOSE = 2.5, 0.01  # mm: the radius; POLAR_TOLERANCE, and arcs with three decimals
+DRILLED = [11, -5.5 + 9.526j, -5.5 - 9.526j]
+
+
+def test_a_job_of_freecads_is_cut_on_the_face(lathe):
+    """A hexagon, a pocket and three holes: where the tool's centre may be, and has been."""
+    made = on_the_part(lathe((FOREIGN / "freecad" / "bar.nc").read_text(), "mill-on-face"))
+    points, z, plane = made[:, :2], made[:, 2], made[:, :2] @ FROM_COLUMNS
+    hole = np.min([abs(plane - place) for place in DRILLED], axis=0) < CLOSE
+    pocket = abs(plane) < 6 - CUTTER + CLOSE
+    profile = np.array(polygon(6, 28, angle=30).buffer(CUTTER, 200).exterior.coords)
+    outside = distances(points, profile) < CLOSE
+    assert (hole | pocket | outside)[z < 0].all()
+    assert [round(z[where].min(), 2) for where in (hole, pocket, outside)] == [-6, -3, -4]
+    assert all(z[abs(plane - place) < CLOSE].min() < -5.99 for place in DRILLED)
+    assert distances(profile, points[outside & (z < -3.99)]).max() < 2 * CLOSE
+    assert abs(plane)[pocket & (z < -2.99)].max() > 6 - CUTTER - CLOSE

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Lines and arcs in the X-C plane, and how near to them points lie: these knows nobody's formula.
+"""Lines and arcs in the X-C plane, and how near to them points lie.
 
 A point is a complex number x + jc. Samples of a motion are an array (n, 2) of x and c. A shape is
-the package's curve, to draw with; what it judges by, points and distances, is its own.
+the package's curve, to draw with; its points and its distance, which judge, are its own.
 """
 
 import cmath
