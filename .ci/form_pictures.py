@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The pictures beside the forms: what each entry measures, from above and from the side.
 
-    PYTHONPATH=python:tests python3 -m support.form_pictures
+    python3 .ci/form_pictures.py
 
 draws them anew. ngcgui shows a picture of the form's name and halves one of 320 x 240 dots or
 more. Lengths here are shares of the plan view's half width, angles degrees.
@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 
-NGC = Path(__file__).resolve().parents[2] / "ngc"
+NGC = Path(__file__).resolve().parents[1] / "ngc"
 UNITS = ("mm", "inch")
 DOTS, DOTS_PER_INCH = (319, 239), 100
 INK, FAINT, STOCK, CUT = "#1f2933", "#8d99a6", "#e9dcc3", "#ffffff"
