@@ -5,22 +5,22 @@ Its geometry is proved in test_valid_programs.py.
 """
 
 import math
+from functools import partial
 from itertools import groupby
 
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import feed_moves
+from support import polar_programs
+from support.polar_programs import FIRST, feed_moves, refused
 from support.sim_machines import PROGRAMS, SIM, kept_tracer
 
 R = 20.0
-FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 X, Z, C = 0, 2, 5
-
-
-def section(*body, before=(), after=(), first=FIRST, start="G0 X22 Z0 C0", on=f"G07.1 C{R:g}"):
-    """Return a program whose section holds ``body``, from line 6 on (``before`` adds lines)."""
-    return [first, start, "T3 M6", "F250", *before, on, *body, "G07.1 C0", *after, "M2"]
+section = partial(
+    polar_programs.section, start="G0 X22 Z0 C0", tool="T3 M6", feed="F250", on=f"G07.1 C{R:g}",
+    off="G07.1 C0",
+)  # fmt: skip
 
 
 def opened(**overrides):
@@ -131,15 +131,6 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
 ]  # fmt: skip
 
 
-def refused(lathe, program):
-    """Return text and line of the refusal; nothing of the section may have moved."""
-    traced = lathe.trace_text(program)
-    assert traced.error is not None
-    assert [move.kind for move in traced.moves] == ["rapid"], "the section moved"
-    assert len(traced.error.text) <= 255
-    return traced.error.text, traced.error.line
-
-
 @pytest.mark.parametrize(("block", "why"), INSIDE)
 def test_refused_inside(lathe, block, why):
     text, line = refused(lathe, section("G1 Z0", "C1", "C0", block, "G1 Z1"))
@@ -167,12 +158,6 @@ def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
     [
         ({"on": "G7.1"}, "needs C, the cylinder's radius; C0 ends a section"),
         ({"on": "G7.1 C20 Z5"}, "must be alone in its block"),
-        ({"first": FIRST.replace("G94", "G93")}, "needs G94 or G95, not G93"),
-        (
-            {"first": "G52 X-1 " + FIRST},
-            "X0 must be the spindle's axis: G52 or G92 shifts X by -1;"
-            " cancel it with G92.1 (an X offset of G54 may stay)",
-        ),
     ],
 )  # fmt: skip
 def test_refused_to_begin(lathe, given, why):

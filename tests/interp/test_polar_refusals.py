@@ -11,19 +11,10 @@ import pytest
 from g12.errors import BlockRefusal
 from g12.host import kinematics_switch
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import FIRST, feed_moves, section, texts
+from support.polar_programs import FIRST, feed_moves, refused, section, texts
 from support.sim_machines import SIM, kept_tracer
 
 lathe = kept_tracer("lathe_mm")
-
-
-def refused(lathe, program):
-    """Return text and line of the refusal; nothing of the section may have moved."""
-    traced = lathe.trace_text(program)
-    assert traced.error is not None
-    assert [move.kind for move in traced.moves] == ["rapid"], "the section moved"
-    assert len(traced.error.text) <= 255
-    return traced.error.text, traced.error.line
 
 
 # ---------------------------------------------------------------- codes and words inside

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G7.1 in a headless LinuxCNC: the samples' real motion, MDI; test_polar.py has the operator."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
+from support import polar_programs
 from support.contour_geometry import apart
 from support.operated_machine import Machine, kept_machine
 from support.polar_programs import (
     C_ACCELERATION,
     FEED,
+    FIRST,
     ROUND,
     accelerations,
     exceeds_limits_itself,
@@ -39,13 +43,13 @@ def test_verify_finds_nothing_wrong_in_the_samples_and_c_keeps_its_limits(lathe,
 # ---------------------------------------------------------------- what an operator does
 
 
-FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 PART = ["G1 Z-8", "C40", "G3 Z-2 C60 R8", "G1 Z-10 C-30", "C0"]
 
 
-def section(*body, feed="F2500"):
-    """Return a program whose section holds ``body``, from line 6 on."""
-    return [FIRST, "G0 X22 Z0 C0", "T3 M6", feed, "G07.1 C20", *body, "G07.1 C0", "M2"]
+section = partial(
+    polar_programs.section, start="G0 X22 Z0 C0", tool="T3 M6", feed="F2500", on="G07.1 C20",
+    off="G07.1 C0",
+)  # fmt: skip
 
 
 @pytest.fixture

@@ -21,9 +21,21 @@ MILLIMETRES = ("hexagon", "square", "slot", "circles", "cam")  # programs of tes
 INCHES = ("manual_a", "manual_b", "manual_sample")
 
 
-def section(*body, before=(), after=(), first=FIRST, start=START, feed="F100"):
+def section(
+    *body, before=(), after=(), first=FIRST, start=START, tool="T1 M6", feed="F100",
+    on="G12.1", off="G13.1",
+):  # fmt: skip
     """Return a program whose section holds ``body``, from line 6 on (``before`` adds lines)."""
-    return [first, start, "T1 M6", feed, *before, "G12.1", *body, "G13.1", *after, "M2"]
+    return [first, start, tool, feed, *before, on, *body, off, *after, "M2"]
+
+
+def refused(lathe, program):
+    """Return text and line of the refusal; nothing of the section may have moved."""
+    traced = lathe.trace_text(program)
+    assert traced.error is not None
+    assert [move.kind for move in traced.moves] == ["rapid"], "the section moved"
+    assert len(traced.error.text) <= 255
+    return traced.error.text, traced.error.line
 
 
 def tracer(**overrides):
