@@ -283,7 +283,7 @@ CASES = [
     ("any lathe", "T1 M6|S900 M3|G0 X10 Z-3 C0|G12.1|G1 X20 F600|Z2|G13.1",
      "rapid-into 4", "30"),
     ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "rapid-into 7", "40"),
-    ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X20|Z-10|X80", "rapid-beside 8"),
+    ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X20|Z-10|X80", "rapid-through 9"),
     ("lathe", f"G0 Z10|Z-15|{HOLES}|G0 X80", "", "9"),
     ("lathe", f"G0 Z10|Z-15|X10|X60|{HOLES.replace('30', '40')}|G0 X80", "rapid-into 7", "40"),
     ("lathe", f"{HEXAGON}|G0 X70 Z-20|X36|G7.1 C25|G1 X36 F200|Z-40 C60|X70|G7.1 C0",
@@ -413,7 +413,8 @@ CASES = [
     # holes with C
     ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}",
      "no-diameter 6, rapid-no-diameter 6"),
-    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{AROUND}", "no-diameter 6"),
+    ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{AROUND}",
+     "no-diameter 6, rapid-no-diameter 6"),
     ("lathe", f"G0 Z10|{AROUND}", ""),
     ("lathe", f"G0 Z10|{AROUND.replace('[-10]', '[10]')}", "above-zero 6"),
     ("lathe", f"G0 Z10|G95|{ON_FACE}", "feed-per-revolution 7"),

@@ -56,7 +56,7 @@ def _once_a_line(found: Iterable[Finding]) -> Iterator[Finding]:
 
 def judge_rapids(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the rapids that go through material, and the lines of those not judged, by cause."""
-    found = [*_rapids(workpiece), *_rapids_beside_holes(workpiece)]
+    found = list(_rapids(workpiece))
     through = list(_once_a_line(each for each in found if each.is_finding))
     yield from through
     judged = {each.line for each in through}
@@ -118,25 +118,6 @@ def _in_view(
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))
-
-
-def _rapids_beside_holes(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield the rapids of a tool below the surface of its holes in the side, where no stock is.
-
-    Those in the holes are part of the call.
-    """
-    subject = workpiece.subject
-    calls = [call for call in subject.commanded.holes if call.is_side]
-    drilled = {index for call in calls for index in call.moves}
-    surface = max((call.zero[0] + call.surface for call in calls), default=-math.inf)
-    views = [view for view in workpiece.views if view.surface]
-    known = np.append(False, subject.ends_known)
-    for index, move in enumerate(() if views else subject.moves):
-        is_low = min(move.start[X], move.end[X]) < surface - SAME_LEVEL
-        is_low = is_low and min(move.start[Z], move.end[Z]) < subject.z0 - SAME_LEVEL
-        is_own = move.kind == "rapid" and subject.sideways[index] == {True}
-        if is_low and is_own and index not in drilled and known[index : index + 2].all():
-            yield Finding("rapid-beside", subject.line(index))
 
 
 def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:

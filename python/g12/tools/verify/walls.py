@@ -33,6 +33,7 @@ from g12.tools.preview.moves import Move
 from g12.tools.verify.compare.plane import Plane, plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.toolpath import NO_LENGTH
+from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.reading.circles import Target
 from g12.tools.verify.sections.outline import Outline, outlines_of, vectors
 from g12.tools.verify.subject import Subject
@@ -43,7 +44,7 @@ PROBE = 1e-3  # mm beside a contour
 DECIMALS = 3  # of a hole's position
 FAR = 1e6  # round a cylinder
 
-Solids = Iterator[tuple[BaseGeometry, float]]  # areas, each with the level of its top
+Areas = Iterator[tuple[BaseGeometry, float]]  # each with the level of its top
 Approached = Sequence[tuple[Target, "Approach"]]
 
 
@@ -176,37 +177,50 @@ def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
         yield _approach(range(section.at, section.at), subject.moves).move, -math.inf
 
 
+class CutOnSurface(NamedTuple):
+    """A section, or a call of holes in the side: its ``own`` moves, and what it is cut in."""
+
+    own: range
+    key: SurfaceKey
+    areas: Sequence[tuple[BaseGeometry, float]]  # each with the level of its top
+
+
 def solids_of_sections(subject: Subject) -> tuple[list[Solid], dict[SurfaceKey, list[Solid]]]:
-    """Return what sections on the face are cut in, and those on each surface of a cylinder."""
-    face: list[Solid] = []
-    cylinders: dict[SurfaceKey, list[Solid]] = {}
-    for section, key, since, until in (*_spans(subject, Z), *_spans(subject, X)):
-        solids, own = _face_solids, face
-        if key.radius:
-            solids, own = _cylinder_solids, cylinders.setdefault(key, [])
-        found = solids(section, subject.moves, subject.cutter(section.at))
-        own += [Solid(area, top, since, until) for area, top in found]
-    return face, cylinders
+    """Return what sections on the face are cut in, and what each surface of a cylinder is of.
 
-
-def _spans(subject: Subject, axis: int) -> Iterator[tuple[SectionContour, SurfaceKey, int, float]]:
-    """Yield the sections with a tool along an axis, and for which moves their material counts.
-
-    On the face it does from the retract after the section before: a cylinder may be a step of a
-    shaft that no other section shows. It is another part, or another end of it, where a section has
-    another key: up to the retract before that.
+    A surface has the sections on it and the holes in it.
     """
-    moves = subject.moves
-    sections = [each for each in subject.commanded.sections if each.third == axis]
-    keys = [_surface_key(moves, section) for section in sections]
+    commanded = subject.commanded
+    sections = [_section_on_surface(subject, each) for each in commanded.sections]
+    face = [cut for cut in sections if not cut.key.radius]
+    around = [cut for cut in sections if cut.key.radius]
+    around += [_holes_in_surface(subject, call) for call in commanded.holes if call.is_side]
+    around.sort(key=lambda cut: cut.own.start)
+    cylinders: dict[SurfaceKey, list[Solid]] = {}
+    for cut, solids in _solids(around, subject.moves, X):
+        cylinders.setdefault(cut.key, []).extend(solids)
+    return [each for _, solids in _solids(face, subject.moves, Z) for each in solids], cylinders
+
+
+def _solids(
+    cuts: Sequence[CutOnSurface], moves: Sequence[Move], axis: int
+) -> Iterator[tuple[CutOnSurface, list[Solid]]]:
+    """Yield cuts with a tool along an axis, each with its material and for which moves it counts.
+
+    On the face it does from the retract after the cut before: a cylinder may be a step of a shaft
+    that no other cut shows. It is another part, or another end of it, where a cut has another key:
+    up to the retract before that.
+    """
     retracts = [
-        _retract(moves, range(one.end - 1, other.at), axis, key.face)
-        for one, other, key in zip(sections, sections[1:], keys)
+        _retract(moves, range(one.own.stop - 1, other.own.start), axis, other.key.face)
+        for one, other in zip(cuts, cuts[1:])
     ]
-    ends = [retract for retract, one, other in zip(retracts, keys, keys[1:]) if one != other]
-    for section, key, before in zip(sections, keys, [ALWAYS, *retracts]):
-        since = section.at if axis == X and before != ALWAYS else before
-        yield section, key, since, next((end for end in ends if end >= section.at), math.inf)
+    changes = zip(retracts, cuts, cuts[1:])
+    ends = [retract for retract, one, other in changes if one.key != other.key]
+    for cut, before in zip(cuts, [ALWAYS, *retracts]):
+        since = cut.own.start if axis == X and before != ALWAYS else before
+        until = next((end for end in ends if end >= cut.own.start), math.inf)
+        yield cut, [Solid(area, top, since, until) for area, top in cut.areas]
 
 
 def _retract(moves: Sequence[Move], between: range, axis: int, face: float) -> int:
@@ -215,18 +229,30 @@ def _retract(moves: Sequence[Move], between: range, axis: int, face: float) -> i
     return next(up, between.stop)
 
 
-def _surface_key(moves: Sequence[Move], section: SectionContour) -> SurfaceKey:
-    face = plane_of(section, moves[section.at]).face
-    return SurfaceKey(round(section.surface, 6), round(face, 6))
+def _section_on_surface(subject: Subject, section: SectionContour) -> CutOnSurface:
+    face = plane_of(section, subject.moves[section.at]).face
+    key = SurfaceKey(round(section.surface, 6), round(face, 6))
+    areas = _areas_on_cylinder if key.radius else _areas_on_face
+    return CutOnSurface(range(section.at, section.end), key, list(areas(section, subject, face)))
 
 
-def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+def _holes_in_surface(subject: Subject, call: SubCall) -> CutOnSurface:
+    """Return the ring that holes in the side are drilled in, not in front of Z0 unless they are."""
+    x, zero, _ = call.zero
+    z, aside = zero + call.length("z"), call.cutter + WALL
+    key = SurfaceKey(round(call.surface, 6), round(x + call.surface, 6))
+    ring = box(-FAR, z - aside, FAR, min(z + aside, max(z, zero)))
+    return CutOnSurface(call.moves, key, [(ring, key.face)])
+
+
+def _areas_on_face(section: SectionContour, subject: Subject, face: float) -> Areas:
     """Yield what a section on a face is cut in, each area with its top."""
+    moves, cutter = subject.moves, subject.cutter(section.at)
     plane = plane_of(section, moves[section.at])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     lowest = min((move.end[Z] for move in cut), default=math.inf)
     falls = (move.start[Z] for move in cut if move.end[Z] < move.start[Z] - SAME_LEVEL)
-    top = min(plane.base, next(falls, plane.base))
+    top = min(face, next(falls, face))
     if lowest > top - SAME_LEVEL:
         return
     for outline in outlines_of(section):
@@ -239,10 +265,11 @@ def _face_solids(section: SectionContour, moves: Sequence[Move], cutter: float) 
         yield disc((0.0, 0.0), reach) if reach > 0.0 else Polygon(), top
 
 
-def _cylinder_solids(section: SectionContour, moves: Sequence[Move], cutter: float) -> Solids:
+def _areas_on_cylinder(section: SectionContour, subject: Subject, face: float) -> Areas:
     """Yield what a section on a cylinder is cut in, with its top."""
+    moves, cutter = subject.moves, subject.cutter(section.at)
     first = moves[section.at]
-    top = min(_surface_key(moves, section).face, first.start[X])
+    top = min(face, first.start[X])
     cut = [moves[i] for i in range(section.at, section.end) if moves[i].kind != "rapid"]
     levels = [move.end[Z] for move in cut if move.end[X] < top - SAME_LEVEL]
     if levels:
