@@ -171,7 +171,7 @@ def goes_on_only_behind_g13_1(lathe):
     typed(lathe, "G13.1", "G0 Z4")
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 5])  # an e-stop, two aborts, an error
+@pytest.mark.parametrize("seed", [1, 5, 10, 15])  # abort, error; in motion: e-stop, abort
 def test_random_interrupts(lathe, seed):
     interrupted_by_hand(lathe, random.Random(seed))
 

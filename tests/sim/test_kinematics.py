@@ -33,6 +33,7 @@ SECTION = (
     *START, "G12.1", "G1 X25 C20 F6000", "X-25", "C-20", "G3 X25 C-20 R25", "X25 C0 R15", "G1 X20",
     "X-20", "C25", "X25", "C0", "G13.1", "G0 Z5", "M2",
 )  # fmt: skip
+CIRCLE_NEAR = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G3 I-10 F3000", "G13.1", "M2"]
 IN_INCHES = (
     "G20 G7 G18 G90 G94 G64 P0.0002", "F100", "G0 X2 Z0 C0", "G12.1", "G1 X2 C1", "G3 X0 C1.5 R2",
     "G1 X-2 C0", "G13.1", "M2",
@@ -269,23 +270,22 @@ def face_accelerations(machine):
 @pytest.mark.parametrize("own", ["M52 P0", "M52 P1"])
 @pytest.mark.parametrize("interrupt", ["abort", "abort_mdi", "estop", "jog_mode"])
 def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
-    chance, program = random.Random(interrupt), (own, *SECTION)
-    for _ in range(2):
+    chance = random.Random(interrupt)
+    for section in (SECTION, CIRCLE_NEAR):
+        program = (own, *section)
         lathe.sample()
         start_on_the_face(lathe, program)
-        time.sleep(chance.uniform(0, 2))
+        time.sleep(chance.uniform(0, 1))
         if interrupt == "estop":
             lathe.estop()
             lathe.enable()
         else:
             lathe.abort(interrupt != "abort_mdi")
         if interrupt == "abort_mdi":
-            lathe.mdi("G0 Z3")  # LinuxCNC drops what it still has to do, M52 too
+            lathe.mdi_mode()
         lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
-        if interrupt in ("abort_mdi", "jog_mode"):
-            time.sleep(0.5)  # LinuxCNC does the rest of the abort, or of a refusal
-            lathe.errors()
         if interrupt == "jog_mode":
+            time.sleep(0.5)  # LinuxCNC drops what it still has to do at a change to MDI
             lathe.manual()
             lathe.mdi("G4 P0")
         lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
@@ -308,9 +308,6 @@ def keeps_its_limits(samples):
     assert np.abs(np.diff(samples.axes["C"])).max() * 1000 <= 360 * 1.001
 
 
-CIRCLE_NEAR = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G3 I-10 F3000", "G13.1", "M2"]
-
-
 def test_a_section_has_its_own_acceleration(lathe):
     start_on_the_face(lathe, CIRCLE_NEAR)
     there = face_accelerations(lathe)
@@ -320,9 +317,11 @@ def test_a_section_has_its_own_acceleration(lathe):
 
 
 def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):
-    """A block that cannot be executed between the moves, and a move that is refused."""
-    for fails in ("M66 P77 L0", "G1 X400"):
-        run = lathe.run_text([*CIRCLE_NEAR[:-2], fails, "G1 X30", *CIRCLE_NEAR[-2:]])
+    """A block that cannot be executed between the moves, and moves that are refused."""
+    by_m68 = [*START, *ON, "G1 X20 Y10 F3000", "G1 X400", *OFF]
+    section = CIRCLE_NEAR[:-2]
+    for program in ([*section, "M66 P77 L0"], [*section, "G1 X400"], by_m68):
+        run = lathe.run_text([*program, "G1 X30", *CIRCLE_NEAR[-2:]])
         assert run.error
         lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707], timeout=SOON)
         assert not on_the_face(lathe)

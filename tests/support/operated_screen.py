@@ -28,6 +28,9 @@ class OperatedPanel(Panel):
     def manual(self):
         self._mode(linuxcnc.MODE_MANUAL)
 
+    def mdi_mode(self):
+        self._mode(linuxcnc.MODE_MDI)
+
     def jog(self, axis, speed):
         """Jog an axis, in units per second, until its speed is set to 0."""
         if speed:
@@ -36,7 +39,7 @@ class OperatedPanel(Panel):
             self._do(self._command.jog, linuxcnc.JOG_STOP, AXIS_JOG, axis)
 
     def mdi(self, text):
-        self._mode(linuxcnc.MODE_MDI)
+        self.mdi_mode()
         self._do(self._command.mdi, text)
 
     def start(self, line=0):
