@@ -283,16 +283,16 @@ def test_an_override_beyond_the_most_is_taken_back(kinematics, override, feed):
 
 
 @settings(max_examples=300, deadline=None)
-@given(radius=st.floats(0.001, 300), speed=st.floats(0, 250))
-def test_c_and_the_slide_can_follow_by_hand(library, radius, speed):
-    left = by_hand(Kinematics(library), radius, speed=speed)
+@given(radius=st.floats(0.001, 300), speed=st.floats(0, 250), c=st.sampled_from([20, 360]))
+def test_c_and_the_slide_can_follow_by_hand(library, radius, speed, c):
+    left = by_hand(Kinematics(library), radius, speed=speed, c_speed=c)
     turning, planner, c_most = left / radius, 1000.0, math.radians(3600)
     assert left <= speed
-    assert turning <= math.radians(360)
+    assert turning <= math.radians(c)
     if (planner + left * turning) / radius > c_most:  # then no more than a lag stays after a stop
         assert turning**2 / (2 * c_most) <= math.radians(0.1001)
     assert left * turning <= 0.293 * 1000  # beside 0.707 of the slide's acceleration on an arc
-    before = by_hand(Kinematics(library), radius + 0.01, speed=speed)
+    before = by_hand(Kinematics(library), radius + 0.01, speed=speed, c_speed=c)
     assert before**2 - left**2 <= 2 * 500 * 0.01 + 1e-6  # what can be braked there
 
 
