@@ -7,6 +7,7 @@ import textwrap
 
 import pytest
 
+from g12.tools.install.config.ini_edit import IniText
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.system import PYTHON
 from support.sim_machines import trace_text
@@ -333,16 +334,19 @@ def test_a_program_without_end_times_out_and_the_next_one_runs(mill):
     assert ends(mill.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
 
 
-def test_an_ini_that_linuxcnc_does_not_read_is_reported_and_never_passed_over(ini):
+@pytest.mark.parametrize("line", ["a line without its sign", "#INCLUDE nowhere.inc"])
+def test_an_ini_that_linuxcnc_does_not_read_is_reported_and_never_passed_over(ini, line):
     """2.10 reads nothing of such a file, and its interpreter goes on without the remaps."""
     odd = ini.with_name("odd.ini")
-    odd.write_text(ini.read_text() + "a line without its sign\n")
+    odd.write_text(f"{ini.read_text()}{line}\n")
+    machine = IniText(odd).ini()  # which keeps an #INCLUDE of no file
     reading = "import linuxcnc, sys; linuxcnc.ini(sys.argv[1])"
     if subprocess.run([PYTHON, "-c", reading, odd], capture_output=True).returncode:
-        with pytest.raises(TraceFailure, match=r"does not read it: .*'a line without its sign'"):
-            Tracer(odd)
+        with pytest.raises(TraceFailure, match=f"does not read it: .*{line}"):
+            Tracer(machine)
     else:
-        assert ends(trace_text("G88.6 I2", odd)) == [near((2.0, 0.0, 0.0))]
+        with Tracer(machine) as tracer:
+            assert ends(tracer.trace_text("G88.6 I2\nM2")) == [near((2.0, 0.0, 0.0))]
 
 
 def test_an_include_of_an_include_is_the_comment_that_it_is_to_2_9(ini):

@@ -22,6 +22,7 @@ from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniError, IniText
 from g12.tools.install.plan import Refused
 from g12.tools.machine import files
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.loading import UNREAD
 from g12.tools.system import COMMAND
 from support.small_configs import (
@@ -193,13 +194,16 @@ def test_a_marker_without_its_other_one_is_refused(tmp_path, ini, capsys, marker
 
 
 def test_lines_go_into_the_include_if_its_section_ends_there(tmp_path):
-    base = "[EMC]\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n[TRAJ]\n"
+    base = (
+        "[EMC]\n#INCLUDE deeper.inc\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n[TRAJ]\n"
+    )
     ini = write_config(tmp_path, "#INCLUDE base.inc\nCOORDINATES = X Y Z\n", base_inc=base)
     before = ini.read_bytes()
     with restored(ini):
         put_in(ini, "haas")
         assert ini.read_bytes() == before
         found = IniText(ini).ini()
+        assert found.lines == read_ini(ini).lines
         assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
         assert found.get("TRAJ", "COORDINATES") == "X Y Z"
         assert found.get("EMC", "VERSION") == "1.1"

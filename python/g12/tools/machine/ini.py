@@ -154,18 +154,21 @@ def read_machine_ini(path: Path) -> Ini:
 
 
 def _expanded(lines: list[str], directory: Path):
-    """As the script does, a file that cannot be read is left out.
-
-    An included file's own #INCLUDE becomes a comment, as it is for 2.9, so that 2.10 reads the
-    same: it would look for that file beside a copy.
-    """
+    """As the script does, a file that cannot be read is left out."""
     for line in lines:
         included = included_file(line, directory)
         if not included:
             yield line
         elif os.access(included, os.R_OK):
-            for inner in included.read_text(**ENCODING).splitlines():
-                yield f"# {inner}" if INCLUDE.match(inner) else inner
+            yield from map(as_included, included.read_text(**ENCODING).splitlines())
+
+
+def as_included(line: str) -> str:
+    """Return a line of an included file: its own #INCLUDE is a comment, as it is for 2.9.
+
+    2.10 would look for that file beside a copy of the INI.
+    """
+    return f"# {line}" if INCLUDE.match(line) else line
 
 
 def _without(lines: Sequence[str], key: str) -> Iterator[str]:

@@ -633,9 +633,12 @@ def ini_refused(machine: dict) -> str | None:
         linuxcnc.ini(machine["ini"])
     except linuxcnc.error:
         before, _, reason = printed(machine["output"]).rpartition(": error: ")
-        with open(machine["ini"], encoding="utf-8", errors="replace") as file:
-            line = file.readlines()[int(before.rpartition(":")[2]) - 1]
-        return f"LinuxCNC does not read it: {reason.strip()}: {line.strip()}"
+        place, _, number = before.rpartition(":")
+        line = f"#INCLUDE {os.path.basename(before)}"  # the fault of a file as such
+        if place:
+            with open(machine["ini"], encoding="utf-8", errors="replace") as file:
+                line = file.readlines()[int(number) - 1].strip()
+        return f"LinuxCNC does not read it: {reason.strip()}: {line}"
     return None
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.ini_sections import entries_of, included_file, key_and_value, section_extent
-from g12.tools.machine.ini import Ini, IniError
+from g12.tools.machine.ini import Ini, IniError, as_included
 
 BEGIN_MARK = "# >>> g12 install"
 END_MARK = "# <<< g12 install"
@@ -115,10 +115,11 @@ class IniText:
                 yield from self._lines_of(included, line.row)
 
     def ini(self) -> Ini:
-        """Return the expanded INI, edits included, for looking values up."""
-        texts, folder = (line.text for line in self.lines()), self.path.parent
-        kept = (text for text in texts if included_file(text, folder) not in self.files)
-        return Ini(self.path, tuple(kept))
+        """Return the expanded INI, edits included, as `read_ini` returns it."""
+        folder = self.path.parent
+        kept = [line for line in self.lines() if included_file(line.text, folder) not in self.files]
+        texts = (line.text if line.file == self.path else as_included(line.text) for line in kept)
+        return Ini(self.path, tuple(texts))
 
     def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
