@@ -11,8 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from g12.tools.headless.errors import MachineError, Timeout
-from g12.tools.headless.machine import StartupError
+from g12.tools.headless.errors import MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package

@@ -8,8 +8,7 @@ import threading
 
 import pytest
 
-from g12.tools.headless.errors import Timeout
-from g12.tools.headless.machine import StartupError
+from g12.tools.headless.errors import StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated, has_namespaces
 from support.operated_machine import UnhomedMachine
 from support.sim_machines import SIM

@@ -11,7 +11,7 @@ import pytest
 
 from g12.tools.commands import arguments, main
 from g12.tools.errors import UsageError
-from g12.tools.headless.machine import StartupError
+from g12.tools.headless.errors import StartupError
 from g12.tools.machine import tables
 from g12.tools.preview.ended import explained_text
 from g12.tools.system import COMMAND

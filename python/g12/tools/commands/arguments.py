@@ -10,21 +10,13 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from g12.tools.errors import ProgramError, UsageError, print_error
-from g12.tools.headless.errors import MachineError
-from g12.tools.headless.machine import StartupError
-from g12.tools.headless.run import run_program
+from g12.tools.headless.errors import MachineError, StartupError
 from g12.tools.machine.files import existing
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.material.stock import StockText
-from g12.tools.path.samples import Samples
-from g12.tools.path.track import program_seconds
-from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import TraceFailure
-from g12.tools.progress import working
 from g12.tools.system import COMMAND
-from g12.tools.units import UNITS, clock
 
 GOOD, FINDING, USAGE = 0, 1, 2
 WRONG_USE = (UsageError, IniError, OSError)
@@ -93,54 +85,16 @@ def program_parser(name: str, description: str, epilog: str) -> Parser:
     return parser
 
 
-def cut_parser(name: str, description: str, epilog: str, run: str) -> Parser:
-    """Return the parser of a command for a program's cut; ``run`` is the help of --run."""
-    parser = program_parser(name, description, epilog)
-    parser.add_argument("--units", choices=sorted(UNITS), help="default: the program's")
-    parser.add_argument(
-        "--stock",
-        metavar="SIZE",
-        help="a bar's diameter on a lathe (40), a block and a bore on a mill "
-        "(100x80x20, 100x80x20@-10,-10, bore 30); in the program's unit, or 40mm, 1.5in",
-    )
-    parser.add_argument("--run", action="store_true", help=run)
-    add_override(parser, "of --run")
-    return parser
-
-
-def stock_of(options: argparse.Namespace) -> StockText | None:
-    return None if options.stock is None else StockText(options.stock, options.units)
-
-
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
     text = f"feed override {whose} (default 100): real time is what a run takes"
     percent: dict[str, Any] = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
     parser.add_argument("--override", **percent, help=text)
 
 
-def samples_of_run(
-    program: Path, options: argparse.Namespace, trace: Trace | None, ini: Ini
-) -> Samples | None:
-    """Return the actual motion of a traced program, if --run is given."""
-    if not options.run:
-        return None
-    override, files = options.override, (options.ini, options.tools, options.var)
-    with working(run_text(program, override, trace, ini), clock=True):
-        return run_program(program, *files, override=override).samples
-
-
 def report_line_numbers(name: str, opened: OpenedProgram) -> None:
     """Report if the lines of a command's output are not those of the user's file."""
     if opened.note:
         print_error(f"g12 {name}", opened.note)
-
-
-def run_text(program: Path, override: float, trace: Trace | None, ini: Ini) -> str:
-    pace = "in real time" if override == 100.0 else f"at {override:g} % feed"
-    if not trace or trace.error:
-        return f"running {program.name} {pace}"
-    seconds = program_seconds(trace, ini, override)
-    return f"running {program.name} {pace}, {clock(seconds)} without acceleration"
 
 
 def one_line(name: str, refused: int = FINDING) -> Callable:

@@ -16,12 +16,10 @@ from g12.tools.commands.arguments import (
     GOOD,
     Parser,
     checked_ini,
-    cut_parser,
     one_line,
     report_line_numbers,
-    samples_of_run,
-    stock_of,
 )
+from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini

@@ -20,8 +20,8 @@ from g12.tools.commands.arguments import (
     one_line,
     program_parser,
     report_line_numbers,
-    run_text,
 )
+from g12.tools.commands.cut import run_text
 from g12.tools.errors import ProgramError
 from g12.tools.headless.machine import Run
 from g12.tools.headless.run import run_anyhow

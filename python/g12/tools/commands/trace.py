@@ -57,7 +57,7 @@ def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
-        found = trace(opened.path, options.ini, tools=options.tools, parameters=options.var)
+        found = trace(opened.path, ini, tools=options.tools, parameters=options.var)
     report_line_numbers("trace", opened)
     traced = explained(trace_in_source(found, opened), options.ini)
     for move in traced.moves:

@@ -16,13 +16,11 @@ from g12.tools.commands.arguments import (
     USAGE,
     Parser,
     checked_ini,
-    cut_parser,
     number_above,
     one_line,
     report_line_numbers,
-    samples_of_run,
-    stock_of,
 )
+from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Errors that the screen inside LinuxCNC sends to the runner outside."""
+"""Errors of a headless run; the screen inside LinuxCNC sends all but the first one."""
+
+
+class StartupError(RuntimeError):
+    """LinuxCNC did not start; the text ends with LinuxCNC's own log."""
 
 
 class MachineError(RuntimeError):

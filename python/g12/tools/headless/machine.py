@@ -22,7 +22,7 @@ from typing import Self
 import numpy as np
 
 from g12.machine_ini import face_joints
-from g12.tools.headless.errors import MachineError, Timeout
+from g12.tools.headless.errors import MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
@@ -67,10 +67,6 @@ sys.path[:0] = {folders!r}
 from {module} import serve_runner
 serve_runner({address!r}, {pins!r})
 """
-
-
-class StartupError(RuntimeError):
-    """LinuxCNC did not start; the text ends with LinuxCNC's own log."""
 
 
 @dataclass(frozen=True)

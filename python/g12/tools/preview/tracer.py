@@ -177,7 +177,7 @@ class Tracer:
 
 def trace(
     program: ProgramPath,
-    ini: ProgramPath,
+    ini: ProgramPath | Ini,
     *,
     overrides: Overrides | None = None,
     tools: Tools = None,
