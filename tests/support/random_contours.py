@@ -10,6 +10,7 @@ from shapely.geometry import LineString, Polygon
 
 from g12.compensation import offset
 from g12.compensation.contour import Contour, PlaneMove
+from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.geometry.curve import angle_of
 from support.contour_geometry import Round, Straight, lines, shape_of
 from support.planned_cuts import add
@@ -70,6 +71,16 @@ def outline(part):
 def stands(part):
     """Return whether the material is inside of a closed part, by the tool's side."""
     return outline(part).exterior.is_ccw == (part.side == 42)
+
+
+def refusal(contour):
+    """Return the message with which a contour is refused, or an empty text."""
+    try:
+        offset.tool_path(contour, contour.elements, TOLERANCE)
+    except Refusal as refused:
+        assert len(refused.message) < LONGEST_MESSAGE
+        return refused.message
+    return ""
 
 
 def blind_path(monkeypatch, contour):

@@ -11,8 +11,7 @@ import random
 import pytest
 
 from g12.compensation.contour import Contour
-from g12.compensation.offset import tool_path
-from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.errors import Refusal
 from support.contour_geometry import Round, Straight, arc, lines
 from support.growth import growth
 from support.random_contours import (
@@ -25,19 +24,10 @@ from support.random_contours import (
     drawn,
     open_path,
     polygon,
+    refusal,
 )
 
 LEFT, RIGHT = 41, 42
-
-
-def refusal(contour):
-    """Return the message with which a contour is refused, or an empty text."""
-    try:
-        tool_path(contour, contour.elements, TOLERANCE)
-    except Refusal as refused:
-        assert len(refused.message) < LONGEST_MESSAGE
-        return refused.message
-    return ""
 
 
 def gouges(contour):

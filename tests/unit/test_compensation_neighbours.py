@@ -16,7 +16,8 @@ from shapely.ops import nearest_points
 
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
-from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.errors import Refusal
+from support import random_contours
 from support.contour_geometry import Round, Straight, lines
 from support.growth import growth
 from support.planned_cuts import add
@@ -67,14 +68,9 @@ def section(*parts, ramp=None):
 
 
 def refusal(*parts, ramp=None):
-    """Return the message with which a section is refused, or an empty text."""
+    """Return the message with which a section is refused, or what is told of it."""
     contour = section(*parts, ramp=ramp)
-    try:
-        tool_path(contour, contour.elements, TOLERANCE)
-    except Refusal as refused:
-        assert len(refused.message) < LONGEST_MESSAGE
-        return refused.message
-    return "".join(contour.notes)
+    return random_contours.refusal(contour) or "".join(contour.notes)
 
 
 def is_refused(*parts, ramp=None):
