@@ -4,12 +4,12 @@
 import cmath
 from math import pi, radians
 
-import numpy as np
 from hypothesis import strategies as st
 
-from g12.geometry.curve import Line
+from g12.geometry.curve import Arc
 from g12.polar.follow import FaceLimits
 from support import planned_moves
+from support.contour_geometry import shape_of
 
 LIMITS = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 0.0)
 
@@ -41,10 +41,7 @@ arcs = st.builds(
 
 def motion(move, limits=LIMITS):
     """Return 2,000 places of a move, as complex numbers, and its speed per second."""
-    parts, speed = np.linspace(0.0, 1.0, 2000), move.feed / 60.0
-    start, end = move.start, move.end
-    if isinstance(move.curve, Line):
-        return start + parts * (end - start), speed
-    centre = move.curve.centre
-    speed = min(speed, (limits.round_acceleration * abs(start - centre)) ** 0.5)
-    return centre + (start - centre) * np.exp(1j * parts * move.curve.sweep), speed
+    speed = move.feed / 60.0
+    if isinstance(move.curve, Arc):
+        speed = min(speed, (limits.round_acceleration * move.curve.radius) ** 0.5)
+    return shape_of(move.curve).points(2000), speed

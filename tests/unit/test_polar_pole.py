@@ -13,6 +13,7 @@ from g12.compensation.contour import Contour, Plunge
 from g12.geometry.curve import Arc, Line
 from g12.polar.pole import through_pole
 from support import planned_moves
+from support.contour_geometry import shape_of
 
 REACH = 0.0025
 
@@ -67,13 +68,7 @@ def at_pole(plunge):
 
 def points(move, count):
     """Return places of a move, complex, and their heights."""
-    parts = np.linspace(0.0, 1.0, count)
-    heights = move.z0 + parts * (move.z1 - move.z0)
-    start, end = move.start, move.end
-    if isinstance(move.curve, Arc):
-        centre = move.curve.centre
-        return centre + (start - centre) * np.exp(1j * parts * move.curve.sweep), heights
-    return start + parts * (end - start), heights
+    return shape_of(move.curve).points(count), np.linspace(move.z0, move.z1, count)
 
 
 beside = st.sampled_from([0.0, 0.5, -0.5, 0.9, -0.9, 1.1, -1.1, 4.0]).map(lambda b: b * REACH)
