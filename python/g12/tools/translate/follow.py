@@ -145,8 +145,14 @@ class FollowedProgram:
             self._go_on(index, draft.state)
 
     def _go_on(self, index: int, state: ModalState) -> None:
+        block = self.structure.blocks[index]
+        condition = block.expression if block.kind in ("goto", *OPENING) else None
         for last, following in ways_from(self.structure, index):
-            self._arrive(last, following, state)
+            given: frozenset[int] = frozenset()
+            if condition:
+                is_true = (following == index + 1) == (block.kind in OPENING)
+                given = condition.set_if_true if is_true else condition.set_if_false
+            self._arrive(last, following, state.giving(given))
 
     def _arrive(self, index: int, following: int, state: ModalState) -> None:
         if following == index + 1 and self.structure.is_over(following):
@@ -164,9 +170,11 @@ class FollowedProgram:
             return
         self.kinds.setdefault(call.number, call.kind)
         self.callers[call.number].add(index)
-        self._pending.append((entry, draft.state))
+        given = frozenset(number for number, _ in call.arguments)
+        own = draft.state._replace(given=given, touched=given)
+        self._pending.append((entry, own if call.kind == "macro" else draft.state))
         if call.number in self._exits:
-            self._go_on(index, self._exits[call.number])
+            self._go_on(index, self._returned(index, call.number))
 
     def _wrong_call(self, index: int, call: SubprogramCall, entry: int | None) -> str | None:
         name = self.structure.name_of(call.number)
@@ -194,7 +202,14 @@ class FollowedProgram:
         if state != known:
             self._exits[number] = state
             for index in self.callers[number]:
-                self._go_on(index, state)
+                self._go_on(index, self._returned(index, number))
+
+    def _returned(self, index: int, number: int) -> ModalState:
+        """Return the state after a call; a macro leaves its caller's local variables alone."""
+        state, own = self._exits[number], self.drafts[index].state
+        if self.kinds[number] == "macro":
+            return state._replace(given=own.given, touched=own.touched)
+        return state.giving(own.given)
 
 
 def _start_state(control: Control) -> ModalState:

@@ -15,6 +15,8 @@ def _assign(draft: Draft, structure: Structure) -> None:
     block, text = draft.block, draft.block.expression.text
     value = text if UNSIGNED.fullmatch(text) else f"[{text}]"
     draft.words = [*block.words, line_as_word(f"#{block.variable}={value}")]
+    if not block.skipped:
+        draft.state = draft.state.giving(frozenset((block.variable,)))
 
 
 def _opening(draft: Draft, structure: Structure) -> None:

@@ -12,115 +12,44 @@ decides or moves, it is refused.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 
+from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.expressions import CLOCK, LOCAL_VARIABLES, SHARED
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.rules.subprograms import ARGUMENTS
-from g12.tools.translate.structure import MAIN, ways_from
 
 ARGUMENT_LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
 
 def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
     """Yield line and sentence for each block that reads a variable which may be empty."""
-    macros = {number for number, kind in followed.kinds.items() if kind == "macro"}
-    given: dict[int, frozenset[int]] = {}
-    for number in macros:
-        given.update(_given_in(followed, number))
-    for index, block in enumerate(followed.structure.blocks):
-        number = followed.structure.programs[index]
-        if index in given:
-            for variable in sorted(block.read.intersection(LOCAL_VARIABLES) - given[index]):
-                yield block.line, _unset_sentence(number, variable)
-            for variable in sorted(block.compared - ARGUMENT_LETTERS.keys()):
-                yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
-        elif number not in macros and followed.drafts[index] and block.compared:
-            yield block.line, "#0, the empty variable, is translated in a program of G65 only"
-    yield from _reads_never_set(followed, macros)
+    for number, draft in zip(followed.structure.programs, followed.drafts):
+        if draft:
+            is_macro = followed.kinds.get(number) == "macro"
+            yield from _unset_in_macro(draft, number) if is_macro else _never_set(draft)
     yield from _shared_locals(followed)
 
 
-def _reads_never_set(
-    followed: FollowedProgram, macros: Collection[int]
-) -> Iterator[tuple[int, str]]:
-    """Yield the blocks outside macros where a word is a local variable that nothing sets before."""
-    if not any(word.read for block in followed.structure.blocks for word in block.words):
-        return
-    called = [
-        block
-        for index, block in enumerate(followed.structure.blocks)
-        if followed.structure.programs[index] not in (MAIN, *macros)
-    ]
-    set_by_calls = frozenset().union(*map(_set_by, called))
-
-    def onward(index: int, known: frozenset[int]) -> Iterator[tuple[int, frozenset[int]]]:
-        draft = followed.drafts[index]
-        entry = followed.structure.entries.get(draft.call.number) if draft and draft.call else None
-        if entry is not None and draft.call.kind == "sub":
-            yield entry, known
-            known |= set_by_calls
-        yield from _onward_from(followed, index, known)
-
-    known = _flow({followed.structure.main: frozenset()}, onward, frozenset.union)
-    for index, values in known.items():
-        block = followed.structure.blocks[index]
-        for word in block.words:
-            for number in word.read.intersection(LOCAL_VARIABLES) - values:
-                if word.value.lstrip("-") == f"#{number}":
-                    sentence = f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
-                    yield block.line, sentence
+def _unset_in_macro(draft: Draft, number: int) -> Iterator[tuple[int, str]]:
+    block = draft.block
+    for variable in sorted(block.read.intersection(LOCAL_VARIABLES) - draft.start.given):
+        yield block.line, _unset_sentence(number, variable)
+    for variable in sorted(block.compared - ARGUMENT_LETTERS.keys()):
+        yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
 
 
-def _given_in(followed: FollowedProgram, number: int) -> dict[int, frozenset[int]]:
-    calls = [followed.drafts[index].call for index in followed.callers[number]]
-    macro_calls = [dict(call.arguments) for call in calls if call.kind == "macro"]
-    given = frozenset(macro_calls[0]).intersection(*macro_calls)
-    start = {followed.structure.entries[number]: given}
-    return _flow(start, partial(_onward_from, followed), frozenset.intersection)
-
-
-def _flow(
-    given: dict[int, frozenset[int]],
-    onward: Callable[[int, frozenset[int]], Iterator[tuple[int, frozenset[int]]]],
-    merge: Callable[[frozenset[int], frozenset[int]], frozenset[int]],
-) -> dict[int, frozenset[int]]:
-    """Return the variables before each block that is reached; ``merge`` joins two ways to it."""
-    pending = [*given]
-    while pending:
-        index = pending.pop()
-        for following, values in onward(index, given[index]):
-            merged = merge(given.get(following, values), values)
-            if given.get(following) != merged:
-                given[following] = merged
-                pending.append(following)
-    return given
-
-
-def _onward_from(
-    followed: FollowedProgram, index: int, given: frozenset[int]
-) -> Iterator[tuple[int, frozenset[int]]]:
-    """Yield the blocks after one, and the variables that have a value there."""
-    draft, block = followed.drafts[index], followed.structure.blocks[index]
-    over = draft is None or draft.returns or draft.ends
-    ways = set() if over else {following for _, following in ways_from(followed.structure, index)}
-    condition = block.expression if block.kind in ("goto", *OPENING) else None
-    for following in ways | ({index + 1} if block.skipped else set()):
-        known = given | _set_by(block)
-        if condition:
-            onward = (following == index + 1) == (block.kind in OPENING)
-            known |= condition.set_if_true if onward else condition.set_if_false
-        if not followed.structure.is_over(following):
-            yield following, known
-
-
-def _set_by(block: ForeignBlock) -> frozenset[int]:
-    """Return the variables to which a block surely gives a value."""
-    sets = block.kind == "assign" and not block.skipped
-    return frozenset((block.variable,)) if sets else frozenset()
+def _never_set(draft: Draft) -> Iterator[tuple[int, str]]:
+    """Yield the words outside macros that are a local variable which nothing sets before."""
+    block = draft.block
+    if block.compared:
+        yield block.line, "#0, the empty variable, is translated in a program of G65 only"
+    for word in block.words:
+        for number in word.read.intersection(LOCAL_VARIABLES) - draft.start.touched:
+            if word.value.lstrip("-") == f"#{number}":
+                sentence = f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
+                yield block.line, sentence
 
 
 def _unset_sentence(number: int, variable: int) -> str:

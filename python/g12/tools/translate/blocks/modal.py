@@ -6,7 +6,7 @@ after a skipped one). Where the ways differ in a mode, that mode is UNSURE, and 
 it refuses the block.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 UNSURE = "?"  # different on different ways
 UNKNOWN = ""  # no value yet
@@ -77,6 +77,8 @@ class ModalState(NamedTuple):
     rigid: str = UNKNOWN  # the speed of a rigid tap
     tap_top: float | str = UNKNOWN  # the Z level to which it returns
     sizes: tuple = ()  # diameters that G10 L12 has set, by tool
+    given: frozenset[int] = frozenset()  # local variables that have a value on every way
+    touched: frozenset[int] = frozenset()  # those that have one on some way
     corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
     at_x: float | str | None = None  # the program's point (`positions`)
     at_y: float | str | None = None
@@ -90,6 +92,10 @@ class ModalState(NamedTuple):
         mode = getattr(self, f"own_{group}")
         return getattr(self, group) if mode == AS_PROGRAMMED else mode
 
+    def giving(self, variables: frozenset[int]) -> Self:
+        """Return the state in which local variables have a value."""
+        return self._replace(given=self.given | variables, touched=self.touched | variables)
+
 
 def merged(one: ModalState, other: ModalState) -> ModalState:
     """Return what is sure when a line is reached in either of two states."""
@@ -101,4 +107,5 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
         key: kept.get(key) if kept.get(key) == others.get(key) else UNSURE
         for key in kept.keys() | others.keys()
     }
-    return state._replace(kept=tuple(sorted(same.items())))
+    given, touched = one.given & other.given, one.touched | other.touched
+    return state._replace(kept=tuple(sorted(same.items())), given=given, touched=touched)
