@@ -45,6 +45,18 @@ class Portion(NamedTuple):
     high: float
 
 
+class Course(NamedTuple):
+    """How a cutter of a radius went along a line: down to which level, in which move."""
+
+    radius: float
+    level: float
+    move: float
+
+    def clears(self, other: "Course") -> bool:
+        """Return whether another, along the same line, has nothing left to remove."""
+        return other.radius <= self.radius and self.level <= other.level and self.move < other.move
+
+
 class Touch(NamedTuple):
     """Material that a move goes through: its area, and the tool's points (n, 3) there."""
 
@@ -85,15 +97,41 @@ class _Sweep:
         line = self._draw()
         start = line[0]
         shifted = line - start
-        key = (round(self._radius, 6), np.round(shifted, 6).tobytes())
+        key = (round(self._radius, 6), _key(shifted))
         if key not in self._known:
             self._known[key] = swept([shifted], self._radius)
         return translate(self._known[key], *start)
 
 
+Area = Solid | Opening | _Sweep
+
+
+class _Near(NamedTuple):
+    """Areas that may meet a region, and those of them that may cover it."""
+
+    areas: Sequence[Area]
+    wider: Sequence[Area]
+
+    def within(self, region: BaseGeometry) -> BaseGeometry:
+        """Return what of the region lies in them; one that covers it saves their union."""
+        return region if self._one_covers(region) else region.intersection(self._union())
+
+    def without(self, region: BaseGeometry) -> BaseGeometry:
+        """Return what of the region lies in none; one that covers it saves their union."""
+        if self._one_covers(region):
+            return NOTHING
+        return region.difference(self._union()) if self.areas else region
+
+    def _one_covers(self, region: BaseGeometry) -> bool:
+        return any(area.shape.covers(region) for area in self.wider)
+
+    def _union(self) -> BaseGeometry:
+        return unary_union([area.shape for area in self.areas])
+
+
 class _Areas:
     def __init__(self) -> None:
-        self._areas: list[Solid | Opening | _Sweep] = []
+        self._areas: list[Area] = []
         self._rows: list[tuple[float, ...]] = []
 
     def add(
@@ -113,10 +151,10 @@ class _Areas:
     def _table(self) -> np.ndarray:
         return np.ascontiguousarray(np.array(self._rows).reshape(-1, 7).T)
 
-    def near(self, region: BaseGeometry, levels: Levels, move: float | None) -> list[BaseGeometry]:
+    def near(self, region: BaseGeometry, levels: Levels, move: float | None) -> _Near:
         """Return the areas that may meet a region, between levels, at a move or at any."""
         if region.is_empty:
-            return []
+            return _Near([], [])
         low_x, low_y, high_x, high_y = region.bounds
         x0, y0, x1, y1, level, since, until = self._table
         found = np.flatnonzero((x0 <= high_x) & (x1 >= low_x))
@@ -124,7 +162,9 @@ class _Areas:
         found = found[(levels[0] <= level[found]) & (level[found] <= levels[1])]
         if move is not None:
             found = found[(since[found] < move) & (move <= until[found])]
-        return [self._areas[index].shape for index in found]
+        wider = (x0[found] <= low_x) & (x1[found] >= high_x)
+        wider &= (y0[found] <= low_y) & (y1[found] >= high_y)
+        return _Near(*([self._areas[index] for index in own] for own in (found, found[wider])))
 
 
 class Material:
@@ -134,6 +174,7 @@ class Material:
         self._solids, self._cuts, self._perhaps_cut = _Areas(), _Areas(), _Areas()
         self._period = period
         self._known: dict = {}
+        self._courses: dict[bytes, list[Course]] = {}  # by the lines along which they go
         self.top = -math.inf
         for solid in solids:
             self._solids.add(solid, solid.shape.bounds, *solid[1:])
@@ -146,15 +187,25 @@ class Material:
         cuts.add(opening, opening.shape.bounds, opening.level, opening.since)
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
-        """Remove the area swept by a cutter of a radius along points (n, 3)."""
+        """Remove the area swept by a cutter of a radius along points (n, 3), after those before."""
         if points[:, 2].min() >= self.top:
             return
         if _goes_along_z(points):
             points = points[points[:, 2].argmin()][None]
         for portion in _portions(points):
+            course = Course(radius, portion.low, move)
+            if self._is_swept(portion.line, course):
+                continue
             for line in self._unrolled(portion.line, radius):
+                self._courses.setdefault(_key(line), []).append(course)
                 bounds = (*line.min(axis=0), *line.max(axis=0))
                 self.cut_level(move, bounds, portion.low, partial(np.asarray, line), radius)
+
+    def _is_swept(self, line: np.ndarray, course: Course) -> bool:
+        """Return whether a course clears what another would along a line (n, 2)."""
+        lines = self._unrolled(line, course.radius)
+        known = (self._courses.get(_key(each), ()) for each in lines)
+        return all(any(each.clears(course) for each in along) for along in known)
 
     def cut_level(
         self, move: int, bounds: Bounds, level: float, draw: Drawn, radius: float
@@ -181,12 +232,10 @@ class Material:
     def _standing(
         self, region: BaseGeometry, level: float, before: float, perhaps: bool
     ) -> BaseGeometry:
-        solids = self._solids.near(region, (level, math.inf), before)
-        if not solids:
-            return NOTHING
-        cuts = self._cuts.near(region, (-math.inf, level), before)
-        cuts += () if perhaps else self._perhaps_cut.near(region, (-math.inf, level), before)
-        return _without(_within(region, solids), cuts)
+        region = self._solids.near(region, (level, math.inf), before).within(region)
+        for cuts in (self._cuts,) if perhaps else (self._cuts, self._perhaps_cut):
+            region = cuts.near(region, (-math.inf, level), before).without(region)
+        return region
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
         """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
@@ -214,16 +263,16 @@ class Material:
     def is_cut(self, region: BaseGeometry, level: float, before: float) -> bool:
         """Return whether a portion of a region may be cut down to a level before a move."""
         levels = (-math.inf, level + SAME_LEVEL)
-        return any(self._cuts.near(each, levels, before) for each, _ in self._turned(region))
+        return any(self._cuts.near(each, levels, before).areas for each, _ in self._turned(region))
 
     def was_solid(self, region: BaseGeometry, level: float, before: float) -> bool:
         """Return whether a portion of a region was material above a level."""
         levels = (level + SAME_LEVEL, math.inf)
         portions = [portion for portion, _ in self._turned(region)]
         return any(
-            area.intersects(portion)
+            area.shape.intersects(portion)
             for portion in portions
-            for area in self._solids.near(portion, levels, before)
+            for area in self._solids.near(portion, levels, before).areas
         )
 
     def covers(self, points: np.ndarray, radius: float, below: float = -math.inf) -> bool:
@@ -231,11 +280,12 @@ class Material:
 
         The top may be higher than that of the material: ``below`` where there may be more.
         """
+        ever = Course(radius, math.inf, math.inf)
         lines = [each.line for each in _below(max(below, self.top), points)]
-        swept_area = swept(lines, radius)
+        swept_area = swept((each for each in lines if not self._is_swept(each, ever)), radius)
         rest = [portion for portion, _ in self._turned(swept_area)]
         for areas in (self._solids, self._cuts):
-            rest = [_without(each, areas.near(each, ANY, None)) for each in rest]
+            rest = [areas.near(each, ANY, None).without(each) for each in rest]
         return sum(each.area for each in rest) <= LEAST_AREA
 
     def touched(
@@ -247,6 +297,8 @@ class Material:
         """
         found, where = [], []
         for portion in _below(self.top, points) if radius > ALLOWED else ():
+            if self._is_swept(portion.line, Course(radius, portion.high + SAME_LEVEL, before)):
+                continue
             region = swept([portion.line], radius - ALLOWED)
             area = self.standing(region, portion.high, before, perhaps)
             if area.area > LEAST_AREA:
@@ -255,18 +307,8 @@ class Material:
         return Touch(unary_union(found).area, np.array(where)) if where else None
 
 
-def _within(region: BaseGeometry, areas: Sequence[BaseGeometry]) -> BaseGeometry:
-    """Return what of a region lies in areas; one that covers it saves their union."""
-    if any(area.covers(region) for area in areas):
-        return region
-    return region.intersection(unary_union(areas))
-
-
-def _without(region: BaseGeometry, areas: Sequence[BaseGeometry]) -> BaseGeometry:
-    """Return what of a region lies in no area; one that covers it saves their union."""
-    if any(area.covers(region) for area in areas):
-        return NOTHING
-    return region.difference(unary_union(areas)) if areas else region
+def _key(line: np.ndarray) -> bytes:
+    return np.round(line, 6).tobytes()
 
 
 def _below(top: float, points: np.ndarray) -> Iterator[Portion]:

@@ -76,15 +76,24 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     """
     subject, face = workpiece.subject, workpiece.views[0]
     known = [False, *subject.ends_known]
+    low = [(view, _low_moves(workpiece, view)) for view in workpiece.views]
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]
-        for view in (each for each in workpiece.views if each.meets(subject, index)):
-            yield from _in_view(workpiece, view, index, begins, ends)
+        for view in (view for view, is_low in low if is_low[index]):
+            if view.meets(subject, index):
+                yield from _in_view(workpiece, view, index, begins, ends)
         if begins and ends and len(subject.sideways[index]) > 1:
             yield Finding("rapid-turned", subject.line(index))
         end = subject.end(index)
         if ends and not begins and end[Z] < face.material.top - SAME_LEVEL:
             yield Finding("rapid-from-unknown", subject.line(index), place=end)
+
+
+def _low_moves(workpiece: Workpiece, view: PartView) -> np.ndarray:
+    """Tell of each move whether it comes below the tops of a view and of what may be beside it."""
+    below = -math.inf if view.surface else workpiece.z0
+    lowest = workpiece.subject.lowest(view.part)
+    return lowest <= max(below, view.material.top) - SAME_LEVEL
 
 
 def _in_view(

@@ -94,9 +94,24 @@ class Subject:
         sampled = self.real.positions[self.real.during(index)] if self.real else ()
         return part.points(sampled) if len(sampled) else part.polyline(self.moves[index])
 
+    def lowest(self, part: Part) -> np.ndarray:
+        """Return the lowest level of each straight move on a part, as programmed or as it ran."""
+        positions = np.array([(move.start, move.end) for move in self.moves]).reshape(-1, 9)
+        levels = part.points(positions)[:, 2].reshape(-1, 2).min(axis=1)
+        if self.real:
+            sampled = part.points(self.real.positions)[:, 2]
+            np.minimum.at(levels, self.real.move, sampled)
+            np.minimum.at(levels, self.real.move[1:], sampled[:-1])  # see Followed.during
+        return levels
+
     def end(self, index: int) -> tuple[float, float, float]:
-        x, y, z = map(float, self.part.points(np.array(self.moves[index].end))[0])
+        x, y, z = self.ends[index].tolist()
         return x, y, z
+
+    @cached_property
+    def ends(self) -> np.ndarray:
+        """The points (n, 3) of the part at which the moves end."""
+        return self.part.points(np.array([move.end for move in self.moves]).reshape(-1, 9))
 
     def line(self, index: int) -> int:
         """Return the program's line of a move, of one in another file the line that calls it.

@@ -141,11 +141,10 @@ def _cut_from_face(subject: Subject, radius: float) -> Iterator[Opening]:
 
     All of it where the cutter is not known.
     """
-    ends = subject.part.points(np.array([move.end for move in subject.moves]))
     lowest = subject.z0
     for index, move in enumerate(subject.moves):
         cutter, level = subject.cutter(index), min(move.start[Z], move.end[Z])
-        reached = math.hypot(*ends[index, :2]) - cutter < radius - SAME_LEVEL
+        reached = math.hypot(*subject.ends[index, :2]) - cutter < radius - SAME_LEVEL
         cuts = move.kind != "rapid" and subject.sideways[index] != {True} and reached
         if cuts and move.end[Z] < subject.z0 - SAME_LEVEL and level < lowest - SAME_LEVEL:
             lowest = level if cutter else -FAR

@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The material knows where a cutter went before: along the same line, and beside it."""
+
+import numpy as np
+import pytest
+from shapely.geometry import box
+
+from g12.tools.material.material import Material, Solid
+
+PERIOD = 40.0
+AGAIN = {"plane": 0.0, "a turn farther": PERIOD}  # by how much a rapid is shifted
+
+
+def line(level, shift=0.0):
+    return np.array([[5.0 + shift, 0.0, level], [25.0 + shift, 0.0, level]])
+
+
+@pytest.mark.parametrize("surface", AGAIN)
+@pytest.mark.parametrize(
+    ("radius", "level", "move", "is_free"),
+    [
+        (3.0, -2.0, 6, True),
+        (3.0, -1.0, 6, True),
+        (2.0, -2.0, 6, True),
+        (3.2, -2.0, 6, False),
+        (3.0, -2.1, 6, False),
+        (3.0, -2.0, 5, False),
+        (4.0, -2.0, 8, True),
+        (3.0, -4.0, 9, True),
+        (4.0, -4.0, 9, False),
+    ],
+)
+def test_a_rapid_along_the_line_of_a_cut(radius, level, move, is_free, surface):
+    cuts = [(5, -2.0, 3.0), (6, -2.0, 2.0), (7, -2.0, 4.0), (8, -4.0, 3.0)]
+    solid = Solid(box(-100.0, -100.0, 100.0, 100.0), 0.0)
+    material = Material([solid], period=PERIOD if AGAIN[surface] else 0.0)
+    for index, depth, cutter in cuts:
+        material.cut(index, line(depth), cutter)
+    rapid = line(level, AGAIN[surface])
+    assert (material.touched(rapid, radius, move) is None) == is_free
+    beside = material.touched(np.add(rapid, [0.0, 10.0, 0.0]), radius, 9)
+    assert beside.area == pytest.approx(20.0 * 2 * radius + np.pi * radius**2, rel=0.1)
