@@ -110,9 +110,8 @@ def _numbered(
 ) -> dict[tuple[int, int], list[int]]:
     found: dict[tuple[int, int], list[int]] = defaultdict(list)
     for index, block in enumerate(blocks):
-        first = next((word for word in block.words if word.letter != "O"), None)
-        if first and first.letter == "N" and first.value.isdigit():
-            found[programs[index], int(first.value)].append(index)
+        if block.number is not None:
+            found[programs[index], block.number].append(index)
     return found
 
 

@@ -231,19 +231,15 @@ def _called_and_ended(
 
 def _add_local_programs(structure: Structure, heads: dict[int, int], control: Control) -> None:
     """Note the blocks that M97 or M98 Q calls, each in the program that the call is in."""
-    local, calls = _codes_meaning(control, LOCAL_SUBPROGRAM), _codes_meaning(control, "subprogram")
     starts = _carried_on({at: at for at in heads}, len(structure.blocks), -1)
     numbered: dict[tuple[int, int], int] = {}
     called: set[tuple[int, int]] = set()
     for index, (head, block) in enumerate(zip(starts, structure.blocks)):
         if block.number is not None:
-            numbered.setdefault((head, block.number), index)
-        if block.has_code(local):
-            called |= {(head, number) for number in block.numbers("P")}
-        elif block.has_code(calls):
-            called |= {(head, number) for number in block.numbers("Q")}
+            numbered.setdefault((head, LOCAL_BLOCKS + block.number), index)
+        called |= {(head, number) for number in _called_in(block, control, ())}
     for local_call in sorted(called & numbered.keys()):
-        structure.add_entry(LOCAL_BLOCKS + local_call[1], numbered[local_call])
+        structure.add_entry(local_call[1], numbered[local_call])
 
 
 def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:

@@ -123,8 +123,8 @@ class ForeignBlock(NamedTuple):
 
     @property
     def number(self) -> int | None:
-        """The number of a block that begins with N and a whole number."""
-        first = self.words[0] if self.words else None
+        """The number of a block that begins with N and a whole number, or has O before it."""
+        first = next((word for word in self.words if word.letter != "O"), None)
         return int(first.value) if first and first.letter == "N" and first.value.isdigit() else None
 
     @property
