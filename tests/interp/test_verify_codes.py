@@ -157,6 +157,8 @@ CASES = [
     ("any mill", f"T4 M6 G43|G0 Z1|M103 P1|{LOW}", ""),  # a user's code may turn a spindle
     ("mill", f"S900 M4|{LOW}", "spindle-m4 7"),
     ("any lathe", f"T1 M6|G0 X60 Z2 C0|{FLAT}", "tool-spindle 4"),
+    ("lathe", f"G0 Z5|M5|{POLYGON}", "tool-spindle 7"),
+    ("any mill", f"S900 M3|G43 H4|G0 X0 Y0 Z1|{LOW}", "none-loaded 5"),
     # tool length: T1 is 25.4 long, T3 25, T4 30
     ("mill", f"{LOW}|G0 Z50|T4 M6|G43|S900 M3|G0 X60 Z1|{LOW}", ""),
     ("any mill", f"T4 M6|S900 M3|G43 H0|G0 Z1|{LOW}", ""),  # the loaded tool's, in LinuxCNC
@@ -551,10 +553,13 @@ SAID = [  # a program, and a part of its report
     ("mill", "G91|G13 I9 Z3 D4", "its depth Z4 lies above Z1"),
     ("lathe", FLAT.replace("Z-5", "Z5"), "its contour at Z5 lies above Z2"),
     ("lathe", f"T3 M6|G0 X60 C0|{FLAT}",
-     "the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; look for"),
-    ("mill", f"G0 Z-4|{LOW}", "bored hole down to X0 Y0 Z−4, because a rapid goes into it; give"),
-    ("yasnac", R38, "bored hole down to X0 Y0 Z−5, because its word R or J names it; give"),
-    ("mill", f"G0 X60 Z10|Z-4|{RING}|G0 Z10|X0|Z-4|{RING}", "goes into it (also in line 11); give"),
+     "the driven tool does not turn: no M3 or M4 with an S is in force here, M5 and M6 end it; "),
+    ("mill", f"G0 Z-4|{LOW}",
+     "a hole of radius 5 mm at X0 Y0 Z−4 counts as bored before: a rapid"),
+    ("yasnac", R38,
+     "a hole of radius 38 mm at X0 Y0 Z−5 counts as bored before: its word R or J names it"),
+    ("mill", f"G0 X60 Z10|Z-4|{RING}|G0 Z10|X0|Z-4|{RING}",
+     "goes into it (also in line 11); --stock"),
     ("radii", "G12.1|G1 X30 F800|X[#<_x>-5]|G13.1",
      "line 5: nothing of the section is judged: its contour cannot be read from the words, line 7 "
      "asks for a position"),
@@ -582,7 +587,13 @@ SAID = [  # a program, and a part of its report
      "the loaded tool T4 (⌀ 10) is not D6 (⌀ 20): the wall comes out at radius 15, not 20"),
     *(("mill", P, f"it plunges with {share} % of the cutter into the stock, at X0 Y0", stock)
       for stock, share in (("100x80x20", 100), ("100x80x20@0,0", 25), ("bore 8", 36))),
-    ("lathe", NARROW, "of the cutter into the stock, at X19.5 Y6 of the face", "40"),
+    ("lathe", NARROW, "of the cutter into the stock, at X39 C6\n", "40"),
+    ("lathe", f"G0 Z5|{POLYGON.replace('600', '600000')}", "line 6: a feed of 600000 mm/min"),
+    ("mill", f"{LOW}|G0 Z1|X9|{LOW}|G0 Z1|X30|{LOW}",
+     "line 9: its cut at X9 Y0 and that of line 6 at X0 Y0"),
+    ("mill", f"{LOW}|G0 Z1|X80|{LOW}", "\n\nverdict: good, 1 not judged"),
+    ("any mill", f"T4 M6 G43 H0|S900 M3|G0 X0 Y0 Z1|{LOW}",
+     "no tool length is in force (no G43, H0"),
     ("mill", P, "the lowest cut is 1 mm below the block", "100x80x2 bore 12"),
     ("mill", f"X80|Z-3|X30|G0 Z1|X0|{P}", "line 8: a rapid goes through material, from X54.752 Y0 ",
      "100x80x20"),

@@ -135,15 +135,13 @@ def check_radii(
 def upward(words: Words, depth: float | None) -> str | None:
     """Return the operator message of a pocket that begins above the tool, or None.
 
-    It looks like a lost minus sign. The control would go up and cut there, too.
+    A depth without a minus sign has lost it, most likely. The control would go up and cut, too.
     """
     context = words.context
     if depth is None or context.absolute(depth, context.z) <= context.z + context.rounding:
         return None
-    return (
-        f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}:"
-        " has it lost its minus sign?"
-    )
+    hint = ": has it lost its minus sign?" if depth > 0.0 else ""
+    return f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}{hint}"
 
 
 def uncut_material(

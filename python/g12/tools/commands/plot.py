@@ -33,7 +33,7 @@ from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
 from g12.tools.verify.commanded import Commanded
 from g12.tools.verify.proof import Proof, moves_and_words, prove_subject
-from g12.tools.verify.report import line_text
+from g12.tools.verify.report import where_text
 from g12.tools.verify.subject import subject_of
 
 EXAMPLES = """\
@@ -101,5 +101,5 @@ def judged_texts(proof: Proof, scene: Scene) -> Iterator[str]:
     for name, attribute in KIND_WORDS.items():
         for each in (each for each in proof.judged if getattr(each, attribute)):
             kind = "in red" if id(each) in marked else name
-            where = line_text(proof, each.line, each.file)
-            yield f"{kind}, {where}: {proof.text(each, scene.unit)}"
+            where = ", ".join(filter(None, [kind, where_text(proof, each)]))
+            yield f"{where}: {proof.text(each, scene.unit)}"

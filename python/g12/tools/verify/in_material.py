@@ -20,6 +20,7 @@ from shapely.ops import unary_union
 
 from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
 from g12.tools.path.part import X, Z, is_sideways
+from g12.tools.units import plain
 from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.mistakes.neighbours import judge_circles
@@ -150,16 +151,25 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
 
 def _words_of(
     subject: Subject, view: PartView, index: int, point: Sequence[float]
-) -> tuple[tuple[str, float], ...]:
-    """Return a point of a move as words: X Y Z of a mill, X C Z of a lathe."""
+) -> tuple[tuple[str, float | str], ...]:
+    """Return a point of a move as words: X Y Z of a mill, X C Z of a lathe.
+
+    In a section on the face they are the section's own.
+    """
     if not view.part.turning:
         return tuple(zip("XYZ", point))
+    for section in subject.commanded.on_face:
+        if section.at <= index < section.end:
+            plane = plane_of(section, subject.moves[section.at])
+            at = complex(plane.points(np.array([point]))[0])
+            return plane.words((at, point[2] - plane.base), section.diameters)
     if view.surface:
         around, along, level = point
         x, c, z = level - view.part.centre, math.degrees(around / view.surface), along
     else:
         x, z, c = math.hypot(*point[:2]), point[2], math.degrees(math.atan2(point[1], point[0]))
-    return ("X", x * (2 if subject.commanded.in_diameters(index) else 1)), ("C", c), ("Z", z)
+    factor = 2 if subject.commanded.in_diameters(index) else 1
+    return ("X", factor * x), ("C", plain(c, 3)), ("Z", z)
 
 
 # ---------------------------------------------------------------- what is assumed
@@ -220,10 +230,10 @@ def _is_cut_before(section: SectionContour, workpiece: Workpiece) -> bool:
 
 def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield one note of the holes that are assumed."""
-    for line, place, *_ in workpiece.holes[:1]:
+    for line, place, radius, _ in workpiece.holes[:1]:
         more = {hole.line for hole in workpiece.holes} - {line}
         why = " or ".join(dict.fromkeys(hole.why for hole in workpiece.holes))
-        values = {"at": tuple(zip("XYZ", place)), "why": why, "more": more}
+        values = {"radius": radius, "at": tuple(zip("XYZ", place)), "why": why, "more": more}
         yield Finding("bored-assumed", line, values, place)
 
 
@@ -266,8 +276,8 @@ def _plunge(workpiece: Workpiece, index: int) -> Finding | None:
     share = workpiece.material.standing(cutter, place[Z], index).area / cutter.area
     if share <= LEAST_SHARE:
         return None
-    of = " of the face" if workpiece.stock.diameter else ""
-    values = {"share": 100 * share, "at": tuple(zip("XY", place)), "of": of}
+    at, beside, _ = _words_of(subject, workpiece.views[0], index, place)
+    values = {"share": 100 * share, "at": (at, beside)}
     return Finding("plunge-into-stock", subject.line(index), values, place)
 
 

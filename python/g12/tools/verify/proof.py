@@ -6,7 +6,7 @@ LinuxCNC makes of it. The planners have no part in it.
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -225,7 +225,7 @@ def _unmeasured_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
 def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
     """Yield what the rules about words find; ``known`` are the moves of cuts."""
     trace, ini, moves = subject.trace, subject.ini, subject.moves
-    cuts = [*found.pockets, *found.sections, *found.holes]
+    cuts = [*found.pockets, *_as_called(found.sections, found.shapes), *found.holes]
     texts = read_lines(subject.program)
     yield from judge_tool_length(cuts, trace)
     yield from judge_rapid_lengths(subject, known) if not part_of(ini).turning else ()
@@ -241,9 +241,19 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
         yield from judge_home(texts, ini)
 
 
+def _as_called(
+    sections: Sequence[MeasuredCut], shapes: Sequence[MeasuredCut]
+) -> Iterator[MeasuredCut]:
+    """Yield sections, that in a shape's own sub with the user's line that calls the shape."""
+    for section in sections:
+        callers = (shape for shape in shapes if section.own.start in shape.own)
+        caller = next(callers, section)
+        yield replace(section, line=caller.line, file=caller.file)
+
+
 def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
     """Yield the lines of feed moves that belong to no cut."""
     others = (move.block for i, move in enumerate(moves) if i not in known and move.kind != "rapid")
     lines = list(dict.fromkeys(others))
     if lines:
-        yield Finding("plain-moves", lines[0], {"count": len(lines), "last": lines[-1]})
+        yield Finding("plain-moves", lines[0], {"lines": lines})

@@ -107,20 +107,20 @@ PRINTED = ("pockets", "shapes", "holes", "sections")
 
 def as_text(proof: Proof, unit: Unit, *, full: bool = False, strict: bool = False) -> str:
     """Return the proof as text; ``full`` with every measure, ``strict``: notes are findings."""
-    judged = proof.judged
-    findings = [each for each in judged if each.is_finding or (strict and each.is_note)]
-    notes = [each for each in judged if each.is_note and not strict]
-    others = [each for each in judged if each.is_not_judged]
+    judged = {
+        "findings": [each for each in proof.judged if each.is_finding or (strict and each.is_note)],
+        "notes": [each for each in proof.judged if each.is_note and not strict],
+        "not judged": [each for each in proof.judged if each.is_not_judged],
+    }
+    listed = {title: _listed(found, proof, unit) for title, found in judged.items()}
     cuts = _paragraphs_of(proof, unit) if full else ["\n".join(in_columns(_cut_lines(proof, unit)))]
     messages = (m._replace(line=proof.user_line(m.line)) for m in proof.subject.trace.messages)
     parts = [
         _zero_text(proof, unit),
         *cuts,
-        _listed("findings", findings, proof, unit),
-        _listed("notes", notes, proof, unit),
-        _listed("not judged", others, proof, unit),
+        *("\n".join([title, *rows]) for title, rows in listed.items() if rows),
         "\n".join(message_lines(messages)),
-        verdict(len(findings), len(notes), len(others)),
+        verdict(*map(len, listed.values())),
     ]
     return "\n\n".join(filter(None, parts))
 
@@ -158,6 +158,7 @@ def _judged_values(found: Finding, proof: Proof) -> dict:
     return {
         "code": found.code,
         "line": proof.user_line(found.line, found.file),
+        "lines": _lines_of(found, proof),
         "file": found.file or None,
         "text": proof.text(found, MM),
         "place": None if found.place is None else [float(value) for value in found.place],
@@ -265,14 +266,23 @@ def line_text(proof: Proof, line: int, file: str, last: int = 0) -> str:
     return f"line{'s' * bool(last)} {proof.user_line(line, file)}{end}{of_file}"
 
 
-def _listed(title: str, found: Sequence[Finding], proof: Proof, unit: Unit) -> str:
-    """Return findings under a title, "" without any; what is the same of several lines once."""
+def where_text(proof: Proof, found: Finding) -> str:
+    """Return the user's lines of a finding in words, "" of the whole program."""
+    lines = _lines_of(found, proof)
+    of_file = f" of {found.file}" if found.file else ""
+    return in_words("{lines:lines}", {"lines": lines}, MM) + of_file if lines else ""
+
+
+def _lines_of(found: Finding, proof: Proof) -> list[int]:
+    return [proof.user_line(line, found.file) for line in found.lines]
+
+
+def _listed(found: Sequence[Finding], proof: Proof, unit: Unit) -> list[str]:
+    """Return findings as rows; what is the same of several lines once."""
     lines: dict[str, list[str]] = {}
     for each in found:
-        where = line_text(proof, each.line, each.file) if each.line else ""
-        lines.setdefault(proof.text(each, unit), []).append(where)
-    rows = [f"{GAP}{_first_of_lines(where)}{text}" for text, where in lines.items()]
-    return "\n".join([title, *rows]) if rows else ""
+        lines.setdefault(proof.text(each, unit), []).append(where_text(proof, each))
+    return [f"{GAP}{_first_of_lines(where)}{text}" for text, where in lines.items()]
 
 
 def _first_of_lines(where: Sequence[str]) -> str:
@@ -285,7 +295,7 @@ def _first_of_lines(where: Sequence[str]) -> str:
 
 
 def verdict(findings: int, notes: int, not_judged: int) -> str:
-    """Return the last line, which counts what was found, and what was not judged."""
+    """Return the last line, which counts the rows of what was found, and was not judged."""
     counts = [
         counted_as(findings, "finding") if findings else "good",
         counted_as(notes, "note") if notes else "",
@@ -329,7 +339,9 @@ def _sections_of(shape: MeasuredCut, proof: Proof) -> list[MeasuredCut]:
 
 def _what_words(kind: str, cut: MeasuredCut) -> Mapping[str, str]:
     if kind == "sections":
-        return {"third": "XYZ"[cut.commanded.third]}
+        section = cut.commanded
+        factor = 2 if section.surface and section.diameters else 1
+        return {"third": "XYZ"[section.third], "lowest": factor * cut.values["lowest"]}
     if kind == "holes":
         side = "round" if cut.commanded.is_side else "on"
         return {"holes": counted_as(cut.values["count"], "hole"), "side": side}

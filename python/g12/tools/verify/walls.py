@@ -43,6 +43,7 @@ BEYOND = 10.0  # bars: how far an open contour's ends are drawn on
 PROBE = 1e-3  # mm beside a contour
 DECIMALS = 3  # of a hole's position
 FAR = 1e6  # round a cylinder
+NAMED = "its word R or J names it"
 
 Areas = Iterator[tuple[BaseGeometry, float]]  # each with the level of its top
 Approached = Sequence[tuple[Target, "Approach"]]
@@ -66,6 +67,7 @@ class AssumedHole(NamedTuple):
 
     line: int
     place: tuple[float, float, float]
+    radius: float
     why: str
 
 
@@ -143,7 +145,7 @@ def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
         if target.wall.bore:
             x, y, z = map(float, target.wall.origin)
             material.open(Opening(disc((x, y), target.wall.bore), z))
-            found.append(AssumedHole(target.line, (x, y, z), "its word R or J names it"))
+            found.append(AssumedHole(target.line, (x, y, z), target.wall.bore, NAMED))
     return found + list(_holes_entered(subject, material))
 
 
@@ -151,8 +153,9 @@ def _holes_entered(subject: Subject, material: Material) -> Iterator[AssumedHole
     for number, (index, top) in enumerate(_entries(subject)):
         if _is_entered(subject, material, index, -math.inf if number else top):
             x, y, z = end = subject.end(index)
-            material.open(Opening(disc((x, y), subject.cutter(index)), z))
-            yield AssumedHole(subject.line(index), end, "a rapid goes into it")
+            radius = subject.cutter(index)
+            material.open(Opening(disc((x, y), radius), z))
+            yield AssumedHole(subject.line(index), end, radius, "a rapid goes into it")
         elif not number:
             return
 

@@ -110,5 +110,7 @@ def _cut_walls(circles: Circles, meetings: Sequence[tuple[int, np.ndarray]]) -> 
         if len(others) and line not in reported:
             reported.add(line)
             place = target.wall.machine((0j, target.deepest))
-            values = {"line": circles[others[0]][1].line}
+            other = circles[others[0]][1]
+            own, its = (tuple(zip("XY", each.wall.origin)) for each in (target, other))
+            values = {"line": other.line, "at": own, "other": its}
             yield Finding("cuts-wall", line, values, place, target.file)

@@ -56,20 +56,23 @@ def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
     if several:
         return ""
     if turning and not runs:
-        return "tool-spindle"  # another code of the machine may start it
+        return "tool-spindle"
     if spindle == "M5" or speed == "S0":
         return "spindle-off"
     return "spindle-m4" if spindle == "M4" and runs else ""
 
 
 def judge_tool_length(cuts: Sequence[MeasuredCut], trace: Trace) -> Iterator[Finding]:
-    """Yield the cuts that are made with another length than the loaded tool's, or offset in X."""
+    """Yield the cuts that are made with another length than the loaded tool's, or offset in X.
+
+    Those without a tool are reported as such.
+    """
     moves, events = trace.moves, trace.events
     compensated = uses_lengths(moves)
     reported: set[tuple[int, float]] = set()
     beside_reported: set[tuple[int, float]] = set()
     with_length: set[int] = set()  # the tools that have cut with the length of the table
-    for cut in cuts:
+    for cut in (each for each in cuts if moves[each.own.start].tool > 0):
         at, first = cut.own.start, moves[cut.own.start]
         deeper, set_by = missing_length(first, trace.lengths), length_set_by(events, at)
         beside = trace.offsets.get(first.tool, 0.0) - first.tool_offset[X]
@@ -89,7 +92,6 @@ def judge_tool_length(cuts: Sequence[MeasuredCut], trace: Trace) -> Iterator[Fin
         added = set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0)
         values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
         values |= {"code": set_by, "where": "deeper" if deeper > 0.0 else "higher"}
-        values |= {"why": "G49 is in force" if compensated else "no G43"}
         code = "length-commanded" if added else code
         yield Finding(code, cut.line, values, first.end[:3], cut.file)
 

@@ -17,7 +17,7 @@ from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.expected.words import BlockInMm
 from g12.tools.verify.reading.circles import Target
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.result.finding import WHOLE_PROGRAM, Finding
 
 LETTERS = "XYZ"
 BEYOND = 1e-3  # mm
@@ -56,15 +56,17 @@ def judge_travel(
     for extent in extents:
         ends.setdefault(extent.zero, []).extend((extent.low, extent.high))
     widths = {zero: np.ptp(both, axis=0) for zero, both in ends.items()}
+    unplaced = False
     for (_, target), extent in zip(circles, extents):
         # Blocks of one zero lie beside each other; those of other work offsets may be anywhere.
         width = widths[extent.zero] if len(offsets) < 2 else extent.high - extent.low
         overruns = list(_overruns(extent, width, ini))
-        if not (extent.is_placed or "travel" in dict(overruns)):
-            yield Finding("travel-unplaced", target.line, file=target.file)
+        unplaced = unplaced or not (extent.is_placed or "travel" in dict(overruns))
         for code, values in overruns:
             place = target.wall.machine((0j, target.deepest))
             yield Finding(code, target.line, values, place, target.file)
+    if unplaced:
+        yield Finding("travel-unplaced", WHOLE_PROGRAM)
 
 
 def _overruns(extent: BlockExtent, width: np.ndarray, ini: Ini) -> Iterator[tuple[str, dict]]:

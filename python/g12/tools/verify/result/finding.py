@@ -10,7 +10,8 @@ from g12.tools.units import MM, Unit, plain
 from g12.tools.verify.result.sentences import FINDINGS, NOT_JUDGED, NOTES
 
 SENTENCES = {**FINDINGS, **NOTES, **NOT_JUDGED}
-MOST_LINES = 10  # that a sentence names
+MOST_LINES = 10  # that a report names of a finding
+WHOLE_PROGRAM = 0  # in place of a line
 
 
 @dataclass(frozen=True)
@@ -18,9 +19,10 @@ class Finding:
     """Something that is not as expected, that a user should know, or that was not judged.
 
     ``code`` names a sentence of ``sentences``, ``values`` are what stands in its braces: mm, mm²,
-    mm/min, degrees. ``line`` is that of the program as LinuxCNC reads it, ``file`` the name of a
-    sub's own file, "" in the program. ``place`` is where it is, as machine coordinates (X, Y, Z)
-    in mm, for pictures and the report.
+    mm/min, degrees. ``line`` is that of the program as LinuxCNC reads it, the first one of
+    ``values["lines"]`` where it is of several, or ``WHOLE_PROGRAM``; ``file`` the name of a sub's
+    own file, "" in the program. ``place`` is where it is, as machine coordinates (X, Y, Z) in mm,
+    for pictures and the report.
     """
 
     code: str
@@ -40,6 +42,11 @@ class Finding:
     @property
     def is_not_judged(self) -> bool:
         return self.code in NOT_JUDGED
+
+    @property
+    def lines(self) -> Sequence[int]:
+        """The lines that it is of, none where it is of the whole program."""
+        return self.values.get("lines") or [self.line] * (self.line != WHOLE_PROGRAM)
 
     def text(self, unit: Unit = MM) -> str:
         return in_words(SENTENCES[self.code], self.values, unit)
@@ -77,8 +84,8 @@ class _Writer(string.Formatter):
 
     ``mm`` and ``length`` a length, ``fine`` a small one, ``mm2`` an area, ``feed`` a feed,
     ``feeds`` a least and a greatest, once where they are the same in words, ``xyz``
-    a place (of X, Y and Z, or of other letters, each with its length or with a text), ``place``
-    one with its letters, ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
+    a place (of X, Y and Z, or of other letters, each with its length or with a text),
+    ``list`` several lengths, ``span`` a least and a greatest, ``pace`` a feed
     that was measured, ``turns`` angles, ``words`` entries by name, ``twice`` a radius as
     a diameter, ``lines`` and ``also`` line numbers; lengths with their unit but ``mm``, ``twice``,
     ``list``. A number is of decimals.
@@ -90,9 +97,6 @@ class _Writer(string.Formatter):
             "length": lambda value: f"{unit.text(value)} {unit.name}",
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
-            "place": lambda words: " ".join(
-                letter + (plain(at, 3) if letter == "C" else unit.text(at)) for letter, at in words
-            ),
             "feed": lambda value: f"{unit.text(value)} {unit.name}/min",
             "feeds": lambda ends: " to ".join(
                 dict.fromkeys(f"{unit.text(feed)} {unit.name}/min" for feed in ends)

@@ -51,8 +51,8 @@ FINDINGS = {
     "clamp-closed": "the clamp of C is not open for the {what}: {code} does not come before it",
     "clamp-left": "the clamp of C is closed after the holes: {code} does not come",
     # the material
-    "rapid-through": "a rapid goes through material, from {at:place} to {to:place}",
-    "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:place}",
+    "rapid-through": "a rapid goes through material, from {at:xyz} to {to:xyz}",
+    "rapid-into": "a rapid goes down into {area:mm2} of material, at {at:xyz}",
     "bar-remains": "{area:mm2} of the bar remain beyond the contour at Z{level:mm}",
     # sections
     "side-crossed": "the tool crosses the contour on its way in: {instead}?",
@@ -85,14 +85,16 @@ FINDINGS = {
 }
 NOTES = {
     "bored-assumed": (
-        "verify assumes a bored hole down to {at:place}, because {why}{more:also}; "
-        "give the real stock with --stock"
+        "a hole of radius {radius:length} at {at:xyz} counts as bored before: {why}{more:also}; "
+        "--stock gives the real stock"
     ),
     "core-remains": (
         "{area:mm2} remain in its middle when it is cut{more:also}: right only where that is bored "
         "before, or is to stay: --stock gives what there is"
     ),
-    "cuts-wall": "it and line {line} cut into each other's walls",
+    "cuts-wall": (
+        "its cut at {at:xyz} and that of line {line} at {other:xyz} go into each other's walls"
+    ),
     "cut-before": "all of it was cut before{more:also}: a spring pass, or the wrong place?",
     "never-run": (
         "{code} is never run{more:also}: the program ends before it, jumps over it, or block "
@@ -101,9 +103,7 @@ NOTES = {
     "above-surface": (
         "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
     ),
-    "plunge-into-stock": (
-        "it plunges with {share:0} % of the cutter into the stock, at {at:place}{of}"
-    ),
+    "plunge-into-stock": "it plunges with {share:0} % of the cutter into the stock, at {at:xyz}",
     "no-stock-met": "it meets nothing of the stock",
     "inside-surface": (
         "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
@@ -135,8 +135,8 @@ NOTES = {
         "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"
     ),
     "length-not-used": (
-        "{why}: the tool table's length of T{tool}, {off:fine}, is not used; "
-        "right only where Z was touched off with this tool"
+        "no tool length is in force (no G43, H0 or G49): that of T{tool} in the table, {off:fine}, "
+        "is not used; right only where Z was touched off with this tool"
     ),
     "rapid-length-not-used": (
         "with the length of T{tool} in the table the tip goes by rapid to Z{level:mm}: "
@@ -162,6 +162,10 @@ NOTES = {
         "and M3 again after an M5 or M6"
     ),
     "spindle-m4": "the spindle turns counterclockwise (M4): right-hand tools cut with M3",
+    "tool-spindle": (
+        "the driven tool does not turn: no M3 or M4 with an S is in force here, M5 and M6 end it; "
+        "right only where another code of the machine starts it"
+    ),
     "main-spindle-turns": "the main spindle turns at {code}: C cannot hold a part that turns",
     "place-not-set": (
         "{code}.1 was never set on this machine: {code} is one rapid, its axes together, "
@@ -182,7 +186,9 @@ NOTES = {
         "the tool's centre goes round on the circle, the wall is a tool radius farther"
     ),
     "loaded-unknown": "T{tool} has no diameter: measured with the diameter of D{named}",
-    "none-loaded": "no tool is loaded: measured with the diameter of D{named}",
+    "none-loaded": (
+        "no tool is loaded, T and M6 are missing: measured with the diameter of D{named}"
+    ),
     "worn-cutter": (
         "the loaded tool T{tool} (⌀ {loaded:mm}) is not D{named} (⌀ {diameter:mm}): "
         "measured with the cutter of D{named}"
@@ -192,44 +198,26 @@ NOT_JUDGED = {
     "clamp-unseen": (
         "the clamp of C: no trace shows {codes}; both have to be remapped to a sub (ngc=)"
     ),
-    "rapid-from-unknown": (
-        "rapids from an unknown start to a point below the part's top or Z0: {lines:lines}"
-    ),
+    "rapid-from-unknown": "rapids from an unknown start to a point below the part's top or Z0",
     "rapid-beside": (
-        "rapids below the part's top or Z0, beside what is cut: {lines:lines}; "
-        "--stock defines the material there"
+        "rapids below the part's top or Z0, beside what is cut; --stock defines the material there"
     ),
-    "rapid-after-cuts": (
-        "rapids from the side to where other cuts may have removed the bar before: {lines:lines}"
-    ),
-    "rapid-no-diameter": "rapids below the top, of a tool without a diameter: {lines:lines}",
-    "rapid-turned": "rapids of a tool between cuts on the face and in the side: {lines:lines}",
-    "rapid-by-machine": (
-        "rapids by G53, G28 or G30 that begin below the part's top: {lines:lines}"
-    ),
+    "rapid-after-cuts": "rapids from the side to where other cuts may have removed the bar before",
+    "rapid-no-diameter": "rapids below the top, of a tool without a diameter",
+    "rapid-turned": "rapids of a tool between cuts on the face and in the side",
+    "rapid-by-machine": "rapids by G53, G28 or G30 that begin below the part's top",
     "travel-unplaced": (
-        "whether it is within the travel: no work offset is set; --var gives the machine's"
-    ),
-    "tool-spindle": (
-        "whether the driven tool turns: no M3 or M4 with an S is in force here, M5 and M6 end it; "
-        "look for the code that starts it on your machine"
+        "whether the cuts are within the travel: no work offset is set; --var gives the machine's"
     ),
     "tool-spindle-unseen": (
         "whether the driven tool turns: LinuxCNC's preview shows the first spindle alone"
     ),
-    "upright": "the material around a circle in another plane than G17: {lines:lines}",
-    "block-delete": (
-        "the program with block delete off: a preview skips what begins with /: {lines:lines}"
-    ),
+    "upright": "the material around a circle in another plane than G17",
+    "block-delete": "the program with block delete off: a preview skips what begins with /",
     "tool-table-set": (
-        "cuts with the sizes before G10 L1, L10 or L11: {lines:lines}; verify takes the tool "
+        "cuts with the sizes before this G10 L1, L10 or L11; verify takes the tool "
         "table as the program leaves it"
     ),
-    "tool-unread": (
-        "the tool of M61, which LinuxCNC's preview does not read: {lines:lines}; use T and M6"
-    ),
-    "plain-moves": (
-        "feed moves outside of cycles and sections: {count} of the program's lines, "
-        "the last is line {last}"
-    ),
+    "tool-unread": "the tool of M61, which LinuxCNC's preview does not read; use T and M6",
+    "plain-moves": "feed moves outside of cycles and sections",
 }
