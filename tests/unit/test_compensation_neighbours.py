@@ -179,6 +179,7 @@ FACED = boss(closed([10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]), 3.0)
 FACE = Straight(14 - 20j, 14 + 20j)  # two radii from there would be 16
 IN_FRONT, BEHIND = Straight(40 - 20j, 14 - 20j), Straight(14 + 20j, 40 + 20j)
 BESIDE = lines(14 + 30j, 14 + 50j, 40 + 50j, 40 + 30j, 14 + 30j)
+NARROW = lines(40 - 3j, 14 - 3j, 14 + 3j, 40 + 3j)
 ROUND = [FACE, BEHIND, Straight(40 + 20j, 40 - 20j), IN_FRONT]
 
 
@@ -237,8 +238,7 @@ def test_a_contour_that_enters_anywhere_may_cut_anywhere(right, heights, depth_t
 
 def test_what_a_third_contour_takes_away_may_be_cut():
     """A slot in three passes across the square, where another contour is too near to it."""
-    ends = [40 - 3j, 14 - 3j, 14 + 3j, 40 + 3j]
-    face = boss(lines(*ends), 3.0)
+    face = boss(NARROW, 3.0)
     passes = [boss([Straight(complex(-40, c), complex(40, c))], 3.0) for c in (-9, -3, 3)]
     parts = [(FACED, -5.0), (face, -5.0)]
     assert is_refused(*parts)
@@ -246,6 +246,32 @@ def test_what_a_third_contour_takes_away_may_be_cut():
         slot_across = [(each, -5.0) for each in passes]
         assert refusal(*slot_across[k:], *parts, *slot_across[:k]) == ""
     assert is_refused(*parts, (passes[0], -5.0))
+
+
+@pytest.mark.parametrize(("at", "refused"), [(9.9, True), (9.6, True), (9.4, False)])
+def test_a_flat_is_no_leave_to_cut_deep_into_it(at, refused):
+    """The tool comes to 8 from the square's centre; the flat is no contour that closes."""
+    flat = boss(lines(40 + 20j, at + 20j, at - 20j, 40 - 20j), 3.0)
+    face = boss([IN_FRONT, FACE, BEHIND], 3.0)
+    for order in ([FACED, flat, face], [face, FACED, flat], [flat, face, FACED]):
+        assert is_refused(*((part, -5.0) for part in order)) is refused
+
+
+def test_a_thin_wall_beside_a_pocket_is_not_cut_off():
+    hollow = pocket(polygon([9.7 + 15j, 9.7 - 9j, -9 - 9j, -9 + 15j]), 3.0)
+    for order in ([FACED, hollow], [hollow, FACED]):
+        assert refusal(*((part, -5.0) for part in order)) == ""
+        assert is_refused(*((part, -5.0) for part in (*order, boss(NARROW, 3.0))))
+
+
+def test_a_fin_that_is_cut_off_may_be_cut_on_both_sides():
+    """The tool goes over the fin: half its radius before the deepest point of that is air."""
+    fin = boss(closed([0.5 + 20j, 0.5 - 20j, -0.5 - 20j, -0.5 + 20j]), 3.0)
+    beside = boss(lines(-40 + 13j, -3 + 13j, -3 + 10j, -40 + 10j), 3.0)
+    off = boss(lines(40 + 18j, -2 + 18j, 0.4 - 2j, 40 - 2j), 3.0)
+    parts = [(part, -5.0) for part in (fin, beside, off)]
+    assert is_refused(*parts[:2])
+    assert refusal(*parts) == refusal(*parts[::-1]) == ""
 
 
 def test_a_corner_cut_off_by_little_is_meant():

@@ -6,7 +6,7 @@ That is refused only where it must be a mistake:
 - the contour that is cut closes, and is not cut all round;
 - the pass that cuts it is no lead and no ramp, and lies at one of its own Z levels;
 - neither contour enters the other one's material anywhere, as a finishing pass does, a slot across
-  a boss or a step; nor does a third contour where it cuts the same point;
+  a boss or a step; nor does a third contour remove what is cut there;
 - the cut is deeper than an allowance for finishing can be: a deliberately larger offset makes the
   channel between two contours narrower by twice the allowance.
 
@@ -79,9 +79,10 @@ class _Neighbourhood:
         other, curve = cutting.contour, cutting.move.curve
         if self._intended.get(id(other)) or self._wall.levels.isdisjoint(cutting.levels):
             return False
-        if other.is_lead(cutting.move_index, curve.point(curve.share_of(point.point))):
+        centre = curve.point(curve.share_of(point.point))
+        if other.is_lead(cutting.move_index, centre):
             return False
-        return not self._is_intended(other) and not self._is_removed(point)
+        return not self._is_intended(other) and not self._is_removed(point, centre)
 
     def _is_intended(self, other: CompensatedContour) -> bool:
         """Return whether the cut is on purpose: one contour enters the other, or cuts all of it."""
@@ -94,12 +95,19 @@ class _Neighbourhood:
             )
         return self._intended[id(other)]
 
-    def _is_removed(self, point: WallPoint) -> bool:
-        """Return whether a contour that enters the material cuts the point, too."""
+    def _is_removed(self, point: WallPoint, centre: complex) -> bool:
+        """Return whether a contour that enters the material removes what the tool cuts at a point.
+
+        An allowance may remain behind what it removes. ``centre`` is the tool's.
+        """
+        wall = self._wall
+        inward = -1j * wall.side * point.direction
+        deep = point._replace(point=centre + ALLOWANCE * wall.radius * inward)
+        removed = deep if wall.clearance(deep.point)[0] < 0.0 else point  # a fin: air behind it
         return any(
-            enters([each], self._wall, CHECK_STEP)
-            for each in self._section.cutting(point, self._wall.gouge_distance)
-            if each.contour is not self._wall
+            enters([each], wall, CHECK_STEP)
+            for each in self._section.cutting(removed, wall.radius + wall.tolerance)
+            if each.contour is not wall
         )
 
 
