@@ -68,18 +68,6 @@ def test_w_h_and_u_are_increments(lathe):
     ]  # fmt: skip
 
 
-def test_x_is_a_diameter_in_g7(lathe):
-    traced = lathe.trace_text(section("G1 X36", "U-2", start="G0 G7 X44 Z0 C0"))
-    assert [end[0] for end in ends(traced)] == [18, 17]
-
-
-@pytest.mark.parametrize(("word", "radius"), [("radius", 40), ("diameter", 20)])
-def test_the_word_is_the_radius_or_the_diameter(word, radius):
-    with opened(CYLINDER_WORD=word) as tracer:
-        (move,) = feed_moves(tracer.trace_text(section("G1 C90", on="G7.1 C40")))
-    assert seconds(move) == pytest.approx(math.pi / 2 * radius / 250 * 60)
-
-
 @pytest.mark.parametrize("name", ["#5422 #5425", "#<_z> #<_c>"])
 def test_position_parameters_show_the_programmed_position(lathe, name):
     z, c = name.split()
