@@ -12,7 +12,7 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support import polar_programs
-from support.polar_programs import FIRST, feed_moves, refused
+from support.polar_programs import FIRST, feed_moves, refused, tracer
 from support.sim_machines import PROGRAMS, SIM, kept_tracer
 
 R = 20.0
@@ -21,10 +21,6 @@ section = partial(
     polar_programs.section, start="G0 X22 Z0 C0", tool="T3 M6", feed="F250", on=f"G07.1 C{R:g}",
     off="G07.1 C0",
 )  # fmt: skip
-
-
-def opened(**overrides):
-    return Tracer(SIM / "lathe_mm.ini", overrides={"G12": overrides} if overrides else None)
 
 
 lathe = kept_tracer("lathe_mm")
@@ -88,8 +84,8 @@ def test_off_outside_a_section_does_nothing(lathe):
 
 
 def test_rapids_as_feeds_where_they_are_allowed():
-    with opened(POLAR_G0="feed", POLAR_G0_FEED="4000") as tracer:
-        moves = feed_moves(tracer.trace_text(section("G0 C90", "G1 C0")))
+    with tracer(POLAR_G0="feed", POLAR_G0_FEED="4000") as lathe:
+        moves = feed_moves(lathe.trace_text(section("G0 C90", "G1 C0")))
     assert [seconds(move) for move in moves] == pytest.approx(
         [math.pi / 2 * R / feed * 60 for feed in (4000, 250)]
     )
@@ -160,6 +156,6 @@ def test_words_beside_the_code_that_ends_no_section(lathe, words):
 
 def test_a_machine_without_z_is_told():
     overrides = {"TRAJ": {"COORDINATES": "X C"}, "KINS": {"KINEMATICS": "trivkins coordinates=XC"}}
-    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as tracer:
-        error = tracer.trace_text([FIRST.replace("G18 ", ""), "G7.1 C5", "M2"]).error
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as lathe:
+        error = lathe.trace_text([FIRST.replace("G18 ", ""), "G7.1 C5", "M2"]).error
     assert error.text == "G7.1 line 2: needs a machine with an X, Z and a C axis"
