@@ -22,12 +22,16 @@ def count_of(kind):
     return SECTIONS if kind.startswith(("polar", "cylinder")) else POCKETS
 
 
+def check_as_its_words_ask(program, kind, seed, count):
+    """Write a random program of so many pockets, sections or shapes, and let verify judge it."""
+    program.write_text(valid_program(kind, random.Random(seed), count))
+    proof = prove(program, machine_of(kind))
+    assert len(proof.pockets) + len(proof.sections) >= count, seed
+    assert len(proof.cuts.shapes) >= count * kind.startswith("shapes"), seed
+    assert not any(facts.commanded.doubt for facts in proof.sections), seed  # each was read
+    assert proof.findings == [], seed
+
+
 @pytest.mark.parametrize("kind", MACHINES)
 def test_a_valid_program_is_cut_as_its_words_ask(kind, tmp_path):
-    count, program = count_of(kind), tmp_path / "valid.ngc"
-    program.write_text(valid_program(kind, random.Random(kind), count))
-    proof = prove(program, machine_of(kind))
-    assert len(proof.pockets) + len(proof.sections) >= count
-    assert len(proof.cuts.shapes) >= count * kind.startswith("shapes")
-    assert not any(facts.commanded.doubt for facts in proof.sections)  # each was read
-    assert proof.findings == []
+    check_as_its_words_ask(tmp_path / "valid.ngc", kind, kind, count_of(kind))

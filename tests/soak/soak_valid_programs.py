@@ -7,7 +7,7 @@ import re
 import pytest
 
 from g12.tools.commands import main
-from g12.tools.verify.proof import prove
+from interp.test_valid_programs import check_as_its_words_ask
 from soak import SEED, often
 from support.sim_machines import ROOT, copy_of_machines
 from support.valid_programs import MACHINES, machine_of, valid_program
@@ -15,12 +15,6 @@ from support.valid_programs import MACHINES, machine_of, valid_program
 SEGMENTS = 20  # pockets or sections in a program
 KINEMATICS = ROOT / "configs" / "kinematics"
 OFFSET = "beside kinematics"  # in the name of a kind: the component has to know of the tool's place
-
-
-def written(folder, kind, seed, count):
-    program = folder / f"valid-{seed}.ngc"
-    program.write_text(valid_program(kind, random.Random(seed), count))
-    return program
 
 
 def with_offset_pin(text):
@@ -31,21 +25,15 @@ def with_offset_pin(text):
 
 @pytest.mark.parametrize("kind", MACHINES)
 def test_programs_as_they_are_read(kind, tmp_path):
-    ini = machine_of(kind)
     for number in range(often(2)):
-        seed = f"{SEED} {number}"
-        proof = prove(written(tmp_path, kind, seed, SEGMENTS), ini)
-        assert len(proof.pockets) + len(proof.sections) >= SEGMENTS, seed
-        assert len(proof.cuts.shapes) >= SEGMENTS * kind.startswith("shapes"), seed
-        assert proof.findings == [], seed
+        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
 
 
 @pytest.mark.parametrize("kind", MACHINES)
 def test_programs_as_they_run(kind, tmp_path, capsys):
     """With feeds ten times as high, so that it does not take an hour."""
-    program = written(tmp_path, kind, f"{SEED} run", 2)
-    text = re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", program.read_text())
-    program.write_text(text)
+    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 2)
+    program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
     ini = copy_of_machines(tmp_path) / "machine.ini"
     ini.write_text(
         with_offset_pin(machine_of(kind).text) if OFFSET in kind else machine_of(kind).text
