@@ -301,6 +301,7 @@ CASES = [
     ("lathe", f"{HEXAGON}|G0 Z5|T2 M6|G0 X70 Z-3|{HOLES.replace('-15', '-3')}|G0 X80",
      "plunge-into-stock 8, rapid-into 22, tool-spindle 22", "40"),
     # cylinders
+    ("lathe", "G0 X44 Z10|G7.1 C20|G1 X34 F200|Z25 C180|X44|G7.1 C0", "above-zero 6"),
     ("lathe", f"{GROOVE}|G7.1 C0|G0 Z5", "rapid-through 10"),
     ("lathe", f"{GROOVE}|G7.1 C0|G0 C0", "rapid-through 10"),
     ("lathe", f"{GROOVE}|G7.1 C0|G0 C420", "rapid-through 10"),
@@ -397,19 +398,31 @@ CASES = [
     ("radii", f"G10 L1 P3 R0|T3 M6|S900 M3|G0 X18 Z2 C0|{SLOT.replace('|Z2', '')}|G0 C180|Z2",
      "rubs 9, rapid-no-diameter 14"),
     ("mill", "G13 I9 Z-25 D4|T6 M6|G43 H6|G0 Z50", "change-in-cut 7"),
+    ("yasnac", "Z-4|G12 I45 R28 D10 F400|T6 M6|G43 H6|G0 Z50", "change-in-cut 7",
+     "160x160x30 bore 56"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
     ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 10"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),
     # rapids before the first section, and a hole for it; in front of the face
-    ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-through 6"),
+    ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-beside 5, rapid-through 6"),
     ("lathe", "G0 X60 Z-20|X10|X60|G7.1 C20|G1 X34 F80|Z-40|X60|G7.1 C0", "rapid-into 6"),
     ("lathe", "G0 X10|Z-3|G12.1|G1 X20 F600|Z2|G13.1", "bored-assumed 6"),
     ("lathe", f"G0 X10 Z50|X70 Z5|{SIDE_HOLE}", ""),
     ("lathe", "G0 X34 Z10|G7.1 C20|G1 Z-20 F100|C90|X44|G7.1 C0", "", "40"),
     ("lathe", f"G0 Z10|{FACE_HOLE}|G0 Z10", "", "40"),
     # a boss that another cut removes, a tap faster than the machine
-    ("mill", "G12.2 X0 Y0 Z-3 I2 R15 D0 H1|G13 I9 K18 Q8 Z-3 D4|G0 Z1", "boss-cut 6"),
+    ("mill", "G12.2 X0 Y0 Z-3 I2 R15 D0 H1|G13 I9 K18 Q8 Z-3 D4|G0 Z1", "boss-cut 6, cuts-wall 7"),
     ("mill", "G13 I9 K40 Q8 Z-3 D4|G0 Z1|G12.2 X0 Y0 Z-3 I2 R15 D0 H1", "boss-cut 8"),
+    ("mill", "G12.2 X0 Y0 Z-8 I2 R15 D0 H1|G0 Z5|G13 I9 K40 Q8 Z-7 D4|G0 Z1", "boss-cut 6"),
+    ("mill", "G13 I9 K40 Q8 Z-2 D4|G0 Z5|G12.2 X0 Y0 Z-8 I2 R15 D0 H1", ""),  # its top
+    ("mill", "G12.2 X0 Y0 Z-2 I2 E8 R20 D1 H1|G12.2 X0 Y0 Z-6 I2 R15 D0 H1",
+     "core-remains 6, cuts-wall 7"),
+    ("mill", "G12.2 X0 Y0 Z-6 I2 E8 R25 D0 H1|G12.2 X0 Y0 Z-6 I2 R32 D1 H1",
+     "core-remains 7, cuts-wall 7"),
+    ("mill", "G12.2 X0 Y0 Z-6 I2 E8 R25 D0 H1|G12.2 X0 Y0 Z-6 I2 R40 D1 H1", "core-remains 7"),
+    ("mill", "G13 I6 K9 Q3 Z-8 D4|G13 I6 K14 Q3 Z-4|G0 Z5", ""),  # from below upwards
+    ("yasnac", "Z-4|G12 I45 R28 D10 F400|G12 I50 R40 D10|G0 Z5", "bored-assumed 6"),
+    ("mill", f"{CLEARED}|G0 Z5|X60|Z-5|G1 Y40|G0 Z5", "rapid-beside 9"),
     ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
      "feed-cut-down 6"),
     # holes with C

@@ -275,17 +275,19 @@ class Material:
             for area in self._solids.near(portion, levels, before).areas
         )
 
-    def covers(self, points: np.ndarray, radius: float, below: float = -math.inf) -> bool:
-        """Return whether all that a cutter sweeps below the top is solid or cut at some move.
+    def covers(
+        self, points: np.ndarray, radius: float, before: float, below: float = -math.inf
+    ) -> bool:
+        """Return whether all that a cutter sweeps below the top is solid, or was cut before.
 
         The top may be higher than that of the material: ``below`` where there may be more.
         """
-        ever = Course(radius, math.inf, math.inf)
+        course = Course(radius, math.inf, before)
         lines = [each.line for each in _below(max(below, self.top), points)]
-        swept_area = swept((each for each in lines if not self._is_swept(each, ever)), radius)
+        swept_area = swept((each for each in lines if not self._is_swept(each, course)), radius)
         rest = [portion for portion, _ in self._turned(swept_area)]
-        for areas in (self._solids, self._cuts):
-            rest = [areas.near(each, ANY, None).without(each) for each in rest]
+        for areas, move in ((self._solids, None), (self._cuts, before)):
+            rest = [areas.near(each, ANY, move).without(each) for each in rest]
         return sum(each.area for each in rest) <= LEAST_AREA
 
     def touched(

@@ -124,7 +124,7 @@ def _in_view(
         is_low = not in_front and points[:, Z].min() < max(below, material.top) - SAME_LEVEL
         if is_low and not cutter:
             yield Finding("rapid-no-diameter", subject.line(index))
-        elif is_low and not material.covers(points, cutter, below):
+        elif is_low and not material.covers(points, cutter, index, below):
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))
@@ -176,7 +176,10 @@ def _words_of(
 
 
 def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield the tool changes with the tool in a cut, unless the machine takes it up first."""
+    """Yield the tool changes with the tool in the part, unless the machine takes it up first.
+
+    What is beside a bar is no part: how far a turret reaches is not known.
+    """
     subject = workpiece.subject
     changes = [each for each in subject.trace.events if each.text.startswith("tool ") and each.at]
     if subject.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0):
@@ -186,7 +189,9 @@ def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
         point = view.part.points(np.array(subject.moves[last].end))[0]
         region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
         known = subject.ends_known[last] and view.meets(subject, last)
-        if known and view.material.was_solid(region, point[Z], event.at):
+        is_low = point[Z] < view.material.top - SAME_LEVEL
+        beside = subject.part.turning and not view.material.was_solid(region, point[Z], event.at)
+        if known and is_low and not beside:
             values = {"tool": event.text.split()[1]}
             yield Finding("change-in-cut", event.line, values, subject.end(last))
 

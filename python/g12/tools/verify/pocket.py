@@ -14,7 +14,7 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from g12.geometry.curve import Arc, Curve, Line
-from g12.tools.material.material import Material
+from g12.tools.material.material import LEAST_AREA, Material
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import Z, arc_points, disc, plane_axes
 from g12.tools.path.slowest import Pace
@@ -58,7 +58,7 @@ def measure_pocket(
     too_far = run.get("too_far", 0.0)
     judged = [
         *_judge_cutter(target),
-        *_judge_depth(target, tolerance),
+        *_judge_depth(block, target, material, tolerance),
         *judge_path(laid, target.line, wall.machine),
         *_judge_cut(target, remaining, too_far, tolerance),
         *_judge_state_after(block, target, laid),
@@ -222,11 +222,15 @@ def _is_wrong_tool(cutter: Cutter) -> bool:
     return known and abs(cutter.radius - cutter.loaded) > WEAR * cutter.loaded
 
 
-def _judge_depth(target: Target, tolerance: float) -> Iterator[Finding]:
-    if target.dialect != EVENT and target.deepest > tolerance:
-        wall, depth = target.wall, target.wall.height(target.deepest)
-        hint = minus_hint(depth, wall.face)
-        values = {"depth": depth, "start": wall.height(0.0), "hint": hint}
+def _judge_depth(
+    block: Block, target: Target, material: Material, tolerance: float
+) -> Iterator[Finding]:
+    """Yield a depth above the tool, unless there is material to cut."""
+    wall, depth = target.wall, target.wall.height(target.deepest)
+    own = disc(wall.origin, wall.radius)
+    is_above = target.dialect != EVENT and target.deepest > tolerance
+    if is_above and (wall.plane != Z or material.standing(own, depth, block.at).area <= LEAST_AREA):
+        values = {"depth": depth, "start": wall.height(0.0), "hint": minus_hint(depth, wall.face)}
         yield Finding("cuts-air", target.line, values)
 
 

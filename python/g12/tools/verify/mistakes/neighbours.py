@@ -5,6 +5,7 @@ Each is cut as its words command. A core may be intended, or bored before; pocke
 meet, and a spring pass cuts nothing. Lengths are mm in machine coordinates.
 """
 
+import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -27,7 +28,7 @@ def judge_circles(circles: Circles, material: Material) -> Iterator[Finding]:
     meetings = list(_meetings([target for _, target in circles]))
     yield from _cut_walls(circles, meetings)
     yield from _cut_before([circles[at] for at, _ in meetings], material)
-    yield from _bosses_cut([target for _, target in circles], material)
+    yield from _bosses_cut(circles, material)
 
 
 def _cores(circles: Circles, material: Material) -> Iterator[Finding]:
@@ -66,25 +67,35 @@ def _was_cut(block: Block, target: Target, material: Material) -> bool:
     return material.standing(own, wall.height(target.deepest), block.at).area <= LEAST_AREA
 
 
-def _bosses_cut(targets: Sequence[Target], material: Material) -> Iterator[Finding]:
-    """Yield the bosses of which nothing remains at the program's end."""
-    for target in targets:
+def _bosses_cut(circles: Circles, material: Material) -> Iterator[Finding]:
+    """Yield the bosses of which nothing remains at a level: at their floor, or later at their Z0.
+
+    One whose top was cut before stays as high as it was.
+    """
+    for block, target in circles:
         wall = target.wall
-        if not wall.inside and target.cutter.radius:
-            boss = disc(wall.origin, wall.radius - ALLOWED)
-            if material.standing(boss, wall.height(target.deepest)).area <= LEAST_AREA:
-                place = wall.machine((0j, target.deepest))
-                yield Finding("boss-cut", target.line, place=place, file=target.file)
+        if wall.inside or not target.cutter.radius:
+            continue
+        boss, floor = disc(wall.origin, wall.radius - ALLOWED), wall.height(target.deepest)
+        for level, since in ((floor, 0), (wall.face - ALLOWED, block.end)):
+            ends = [material.standing(boss, level, at).area for at in (since, math.inf)]
+            if ends[0] > LEAST_AREA >= ends[1]:
+                place = (*map(float, wall.origin[:2]), level)
+                yield Finding("boss-cut", target.line, {"level": level}, place, target.file)
+                break
 
 
 def _meetings(targets: Sequence[Target]) -> Iterator[tuple[int, np.ndarray]]:
     """Yield each circle that meets others before it in the plane, and those with crossing walls.
 
     All are indices. A circle about the same centre is another pass, one inside of it a deeper
-    pocket. What it ``cuts`` is a circle, too.
+    pocket; a boss inside of it is cut by the ring that does not pass it, or cuts its wall. What a
+    circle ``cuts`` are all points between ``core`` and ``cuts`` from its centre.
     """
     centre = np.array([complex(*each.wall.origin[:2]) for each in targets])
     wall = np.array([each.wall.radius for each in targets])
+    core = np.array([each.wall.cleared for each in targets])
+    inside = np.array([each.wall.inside for each in targets])
     cuts = wall + [2 * each.cutter.radius * (not each.wall.inside) for each in targets]
     floor = np.array([each.wall.height(each.deepest) for each in targets])
     top = np.array([each.wall.face for each in targets]) - ALLOWED
@@ -93,12 +104,27 @@ def _meetings(targets: Sequence[Target]) -> Iterator[tuple[int, np.ndarray]]:
         if (apart < cuts[:at] + cuts[at] - ALLOWED).any():
             deep = np.maximum(floor[:at], floor[at]) <= np.minimum(top[:at], top[at])
             cross = _crosses(apart, wall[:at], cuts[at]) | _crosses(apart, wall[at], cuts[:at])
-            yield at, np.flatnonzero((apart >= ALLOWED) & deep & cross)
+            one = [values[at] for values in (wall, core, cuts)]
+            others = [values[:at] for values in (wall, core, cuts)]
+            ring = _cuts_boss(apart, one, others) & inside[at] & ~inside[:at]
+            ring |= _cuts_boss(apart, others, one) & inside[:at] & ~inside[at]
+            yield at, np.flatnonzero(((apart >= ALLOWED) & cross | ring) & deep)
 
 
 def _crosses(apart: np.ndarray, wall: np.ndarray, cut: np.ndarray) -> np.ndarray:
     """Return whether circles of two radii cross whose centres are so far ``apart``."""
     return (abs(wall - cut) + ALLOWED < apart) & (apart < wall + cut - ALLOWED)
+
+
+def _cuts_boss(apart: np.ndarray, ring: Sequence, boss: Sequence) -> np.ndarray:
+    """Return whether a ring cuts the boss that it lies round, or that is cut into its wall.
+
+    Both are their wall, core and all that they cut; a pocket without a core is no ring.
+    """
+    (wall, core, _), (radius, _, outside) = ring, boss
+    too_narrow = (core > ALLOWED) & (apart + radius > core + ALLOWED)
+    too_wide = apart + outside > wall + ALLOWED
+    return (apart + radius < wall + ALLOWED) & (too_narrow | too_wide)
 
 
 def _cut_walls(circles: Circles, meetings: Sequence[tuple[int, np.ndarray]]) -> Iterator[Finding]:

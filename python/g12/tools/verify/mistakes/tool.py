@@ -116,7 +116,7 @@ def judge_levels(cuts: Sequence[MeasuredCut], moves: Sequence[Move]) -> Iterator
     """Yield the cuts of which nothing goes below Z0, the top of the part as a rule."""
     for cut in cuts:
         lowest = cut.lowest(moves)
-        if cut.face is not None and lowest > cut.face - LEVEL:
+        if lowest > cut.face - LEVEL:
             values = {"level": lowest - cut.face}
             yield Finding("above-zero", cut.line, values, moves[cut.own.start].end[:3], cut.file)
 

@@ -19,9 +19,9 @@ class MeasuredCut:
     It is infinite if part is missing, nan if the words could not be read.
 
     ``last`` is the last line of a section, ``file`` the name of a sub's own file. ``own`` are its
-    moves, ``face`` is the machine Z of the program's Z0, None on a cylinder. C turns or holds the
-    part (``turning``). ``feeds`` are those of its words along the part, mm/min, None where its
-    moves show them. ``path`` is the expected toolpath, ``sound`` says that it was followed.
+    moves, ``face`` is the machine Z of the program's Z0. C turns or holds the part (``turning``).
+    ``feeds`` are those of its words along the part, mm/min, None where its moves show them.
+    ``path`` is the expected toolpath, ``sound`` says that it was followed.
     ``values`` are its measures by the names of ``--json`` and the report: mm, mm², mm/min, degrees,
     seconds; None is not known.
     """
@@ -31,7 +31,7 @@ class MeasuredCut:
     file: str
     code: str
     own: range
-    face: float | None
+    face: float
     deviation: float
     values: Mapping[str, Any]
     judged: tuple[Finding, ...]

@@ -127,8 +127,8 @@ NOTES = {
     ),
     "cuts-contour": "the tool cuts {size:fine} into the contour of line {line}",
     "goes-back": "goes back along line {line}: under {code} the tool cuts both sides of that line",
-    "change-in-cut": "T{tool} is changed with the tool in a cut: retract before M6",
-    "boss-cut": "nothing of the boss remains at its floor: other cuts remove it",
+    "change-in-cut": "T{tool} is changed with the tool below the part's top: retract before M6",
+    "boss-cut": "nothing of the boss remains at Z{level:mm}: other cuts remove it",
     "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
         "the tool length in force, {length:mm}, is not that of T{tool}: "

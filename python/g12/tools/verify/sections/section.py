@@ -44,7 +44,7 @@ def measure_section(view: SectionView) -> MeasuredCut:
         section.file,
         section.code,
         view.own,
-        None if section.surface else plane.base,
+        plane.zero.imag if section.surface else plane.base,
         off,
         {
             **section_words(view),
