@@ -114,7 +114,9 @@ class _Near(NamedTuple):
 
     def within(self, region: BaseGeometry) -> BaseGeometry:
         """Return what of the region lies in them; one that covers it saves their union."""
-        return region if self._one_covers(region) else region.intersection(self._union())
+        if self._one_covers(region):
+            return region
+        return region.intersection(self._union()) if self.areas else NOTHING
 
     def without(self, region: BaseGeometry) -> BaseGeometry:
         """Return what of the region lies in none; one that covers it saves their union."""
