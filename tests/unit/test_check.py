@@ -142,6 +142,12 @@ def test_one_thing_that_is_wrong_is_one_finding(found, text, facts, kind, says):
     assert says in f"{finding.text}\n{finding.cure}"
 
 
+def test_a_tool_table_that_is_a_link_to_nothing_is_reported_as_one(found, tmp_path):
+    (tmp_path / "no.tbl").symlink_to("gone.tbl")
+    (finding,) = found(GOOD.replace(NO_TABLE, "TOOL_TABLE = no.tbl\n"))
+    assert "TOOL_TABLE = no.tbl: a link to gone.tbl, which is not there" in finding.text
+
+
 @pytest.mark.parametrize(
     "facts",
     [

@@ -370,9 +370,12 @@ def tools(config: Config) -> Iterator[ConfigFinding]:
         )
     elif not (path and path.is_file()):
         missing = "is missing: this machine knows no tool"
+        if path:
+            link = f"a link to {path.readlink()}, which is not there" if path.is_symlink() else ""
+            missing = f"= {name}: {link or 'there is no such file'}"
         yield warning(
             "no-tool-table",
-            f"[EMCIO] TOOL_TABLE {f'= {name}: there is no such file' if name else missing}",
+            f"[EMCIO] TOOL_TABLE {missing}",
             f"name a tool table that is there; it is relative to {config.folder}",
         )
     elif mill and config.diameters is not None and not any(config.diameters.values()):
