@@ -605,7 +605,7 @@ def test_the_command_shows_what_it_writes_and_what_to_do_next(tmp_path, monkeypa
     assert content_of(tmp_path) == before
     assert install.main(words) == 0
     said = capsys.readouterr().out.splitlines()
-    assert said[-2:] == ["  G12    is answered with what it needs; nothing moves",
+    assert said[-2:] == ["  G12    is refused, a word is missing: it works",
                          f"to take it out again: {COMMAND} uninstall {ini}"]  # fmt: skip
     python["package"] = tmp_path / "g12" / "python" / "g12"
     assert install.main(words) == 0

@@ -54,7 +54,7 @@ MEANING = {
     },
 }
 FIRST_STEPS = {  # what to try of a feature, besides a code
-    POLAR_SHAPES: "o<polar_polygon> call is answered with what it needs; nothing moves",
+    POLAR_SHAPES: "o<polar_polygon> call is refused, its entries are missing: it works",
     SPINDLE_AS_C: "home, M254: the spindle turns to its index and to C; M255 gives it back",
     KINEMATICS: "home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back",
     FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
@@ -131,7 +131,7 @@ def first_step(feature: str) -> str:
     if feature in (*POLAR_FEATURES, "cylinder"):
         block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0"
         return f"{block:6} does nothing, and is no error"
-    return f"{codes[0]:6} is answered with what it needs; nothing moves"
+    return f"{codes[0]:6} is refused, a word is missing: it works"
 
 
 def functions_of(feature: str) -> list[str]:
