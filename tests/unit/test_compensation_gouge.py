@@ -260,6 +260,17 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
     assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]  # hardly, after a corner
 
 
+@pytest.mark.parametrize("bend", [0.1, 0.2])
+def test_an_arc_may_not_cross_the_one_before_it_far_from_their_joint(bend):
+    """Around 30 from a centre, then from another one, almost a turn each."""
+    first = Round(30 + 0j, 0j, 6.0)
+    second = Round(first.end, first.end * (1.0 - cmath.exp(1j * bend)), 4.0)
+    end, way = second.end, 9.0 * second.direction(1.0)
+    away = lines(end, end + way, end + way - 1j * way)
+    text, notes = cut([Straight(30 - 9j, 30 + 0j), first, second, *away], LEFT, 1.0)
+    assert "cannot follow both lines 4 and 5" in text and not notes
+
+
 # Passes after each other, and heights.
 
 AIR = 5.0

@@ -158,7 +158,7 @@ class _OwnWalls:
         for index in indices:
             curve = own.walls[index].curve
             others = (indices[other] for other in own.wall_tree.near(curve.box, 0.0))
-            for other in (other for other in others if other > index + 1):
+            for other in (other for other in others if other > index):
                 for point in common_points(curve, own.walls[other].curve):
                     if self._goes_through(index, other, point):
                         self._refuse(own.moves[index].line, own.moves[other].line)
