@@ -40,3 +40,10 @@ def test_a_rapid_along_the_line_of_a_cut(radius, level, move, is_free, surface):
     assert (material.touched(rapid, radius, move) is None) == is_free
     beside = material.touched(np.add(rapid, [0.0, 10.0, 0.0]), radius, 9)
     assert beside.area == pytest.approx(20.0 * 2 * radius + np.pi * radius**2, rel=0.1)
+
+
+def test_a_falling_rapid_touches_on_its_line():
+    material = Material([Solid(box(0.0, -50.0, 100.0, 50.0), 0.0)])
+    rapid = np.array([[-10.0, 0.0, 1.0], [30.0, 0.0, -9.0]])
+    x, _, z = material.touched(rapid, 3.0, 0).points.T
+    assert z == pytest.approx(-1.5 - x / 4)

@@ -38,11 +38,15 @@ Drawn = Callable[[], np.ndarray]  # points (n, 2) along a path
 
 
 class Portion(NamedTuple):
-    """A portion of a toolpath in the plane (n, 2), with its lowest and highest level."""
+    """A portion of a toolpath (n, 3), with its lowest and highest level; ``line``: in the plane."""
 
-    line: np.ndarray
+    points: np.ndarray
     low: float
     high: float
+
+    @property
+    def line(self) -> np.ndarray:
+        return self.points[:, :2]
 
 
 class Course(NamedTuple):
@@ -337,7 +341,7 @@ def _portions(points: np.ndarray) -> Iterator[Portion]:
     """Yield a toolpath (n, 3) in portions, each within a narrow band of levels."""
     if len(points) < 2 or np.ptp(points[:, 2]) < SAME_LEVEL:
         if len(points):
-            yield Portion(points[:, :2], points[:, 2].min(), points[:, 2].max())
+            yield Portion(points, points[:, 2].min(), points[:, 2].max())
         return
     band = max(BAND, np.ptp(points[:, 2]) / MOST_BANDS)
     points = _with_levels(points, band)
@@ -345,7 +349,7 @@ def _portions(points: np.ndarray) -> Iterator[Portion]:
     ends = 1 + np.flatnonzero(np.diff(np.floor(low / band + 1e-6)))
     for first, last in zip([0, *ends], [*ends, len(points) - 1]):
         own = points[first : last + 1]
-        yield Portion(own[:, :2], own[:, 2].min(), own[:, 2].max())
+        yield Portion(own, own[:, 2].min(), own[:, 2].max())
 
 
 def _with_levels(points: np.ndarray, band: float) -> np.ndarray:
@@ -361,9 +365,5 @@ def _points_in(area: BaseGeometry, portion: Portion, radius: float) -> list[np.n
     """Return the tool's points (3,) along a portion at which it touches an area."""
     steps = np.append(0.0, np.cumsum(np.hypot(*np.diff(portion.line, axis=0).T)))
     indices = np.linspace(0.0, steps[-1], 2 + int(steps[-1] / RAPID_STEP))
-    line = np.stack([np.interp(indices, steps, axis) for axis in portion.line.T], axis=1)
-    return [
-        np.array([*point, portion.high])
-        for point in line
-        if area.distance(Point(point)) < radius - ALLOWED
-    ]
+    points = np.stack([np.interp(indices, steps, axis) for axis in portion.points.T], axis=1)
+    return [point for point in points if area.distance(Point(point[:2])) < radius - ALLOWED]
