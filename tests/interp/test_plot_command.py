@@ -29,10 +29,10 @@ lathe = kept_tracer("lathe_mm")
 def plotted(tmp_path, capsys):
     """Return a function: the lines that `plot` prints after the first, and the picture's text."""
 
-    def plot(text, ini):
+    def plot(text, ini, *words):
         program, picture = tmp_path / "part.ngc", tmp_path / "part.svg"
         program.write_text(text)
-        assert main(["plot", str(program), "--ini", str(ini), "-o", str(picture)]) == 0
+        assert main(["plot", str(program), "--ini", str(ini), "-o", str(picture), *words]) == 0
         return capsys.readouterr().out.splitlines()[1:], picture.read_text()
 
     return plot
@@ -46,13 +46,17 @@ def test_a_picture_of_the_face_shows_no_swept_area_of_cuts_in_the_side(plotted, 
     assert re.findall("swept at Z([^<]*)", picture) == ["2", "−5"]
 
 
+def test_the_bar_is_shown_on_the_unrolled_surface(plotted):
+    assert "bar 40" in plotted(GROOVE, LATHE, "--stock", "40")[1]
+
+
 def test_only_what_the_picture_marks_is_said_to_be_in_red(plotted):
     """A rapid into the side has no position in the picture of the face."""
     into = GROOVE.replace("G0 Z5", "G0 X50\nC180\nX32\nX50\nG1 X52\nG0 Z5")
     texts, picture = plotted(FIRST_THE_FACE + into, LATHE)
     assert [text.partition(": ")[0] for text in texts] == [
         "finding, line 38",
-        "not judged, line 25",
+        "note, line 25",
         "not judged, line 40",
     ]
     assert "into material" not in picture

@@ -24,6 +24,7 @@ from g12.tools.plot.mill import Layout, cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import heading, scene_of
 from g12.tools.plot.unrolled import unrolled
+from g12.tools.preview.moves import Event
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.subject import subject_of
@@ -414,6 +415,15 @@ def test_a_cylinder_is_drawn_unrolled():
     assert level.area.bounds == pytest.approx((-3, -13, 20 * np.radians(270) + 3, 5), abs=0.02)
     assert flat.path.points[-1] == pytest.approx((20 * np.radians(270), -10, 24))
     assert flat.path.part.letters == "CZX" and flat.path.time[-1] == shown.path.time[-1]
+
+
+def test_what_the_spindle_turns_is_no_swept_area():
+    events = [Event(at, 1, code) for at, code in ((1, "M3"), (3, "M5"))]
+    trace = replace(turned().trace(), events=events)
+    for spindles, found in (("2", ([2], [3])), ("1", ([], [2, 3]))):
+        ini = LATHE.replaced({"TRAJ": {"SPINDLES": spindles}})
+        shown = scene_of(subject_of(PROGRAM, ini, trace))
+        assert (shown.turned, shown.sweeping) == found
 
 
 def test_a_run_on_a_cylinder_is_drawn_along_its_path():

@@ -276,7 +276,8 @@ def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
     if scene.feed_colours:
         bands = feed_bands(scene)
         return [(paths(part, moves, PICTURE_CHORD), colour) for _, colour, moves in bands]
-    below = [index for index in scene.sweeping if not scene.across[index]] + scene.radial
+    below = [index for index in scene.sweeping if not scene.across[index]]
+    below += [*scene.radial, *scene.turned]
     muted = paths(part, [scene.moves[index] for index in below], PICTURE_CHORD)
     return [(muted, style.MUTED), *((level.lines, level.shade.line) for level in levels)]
 
@@ -340,7 +341,7 @@ def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = Non
     """Return the legend, with fewer depths where ``room`` limits its entries."""
     feeds = feed_entries(scene) if scene.feed_colours else []
     listed = []
-    for tool in sorted({scene.moves[index].tool for index in scene.fed}):
+    for tool in sorted({scene.moves[index].tool for index in {*scene.fed} - {*scene.turned}}):
         listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
@@ -370,6 +371,8 @@ def motion_entries(scene: Scene) -> list:
         listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
     if scene.radial:
         listed.append(style.stroke(style.MUTED, "toolpath in the side"))
+    if scene.turned:
+        listed.append(style.stroke(style.MUTED, "toolpath of turning"))
     if len(scene.fed) < len(scene.moves):
         listed.append(style.stroke(style.RAPID, "rapid", 0.9, dashed=True))
     if scene.real is not None:

@@ -3,10 +3,12 @@
 
 import re
 import textwrap
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import takewhile
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -73,9 +75,19 @@ class Scene:
         return [index for index in self.fed if sideways[index] == {True}]
 
     @cached_property
+    def turned(self) -> list[int]:
+        """The moves at feed at a part that its spindle turns, where tools have one of their own."""
+        if not self.path.part.turning or self.subject.ini.number("TRAJ", "SPINDLES", 1) < 2:
+            return []
+        codes = [(0, "M5"), *((each.at, each.text) for each in self.subject.trace.events)]
+        codes = [(at, text) for at, text in codes if text in ("M3", "M4", "M5")]
+        last = (bisect_right(codes, index, key=itemgetter(0)) - 1 for index in self.fed)
+        return [index for index, code in zip(self.fed, last) if codes[code][1] != "M5"]
+
+    @cached_property
     def sweeping(self) -> list[int]:
         """The moves at feed whose tool points along the view."""
-        return sorted({*self.fed} - {*self.radial})
+        return sorted({*self.fed} - {*self.radial, *self.turned})
 
     @cached_property
     def ends(self) -> np.ndarray:

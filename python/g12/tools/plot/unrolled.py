@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+from shapely.geometry import box
 
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
@@ -25,6 +26,7 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.workpiece import Workpiece
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
@@ -46,6 +48,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     more = DETAIL_ROW if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
     figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
+    flat = with_bar(flat, scene.marks.stock, low, high)
     view = SceneView(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
     frame_surface(view.axes, flat, low, high, scene.x0_text)
     draw_plan(view, levels)
@@ -85,11 +88,20 @@ def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x
 
 
 def unrolled(scene: Scene) -> Scene:
-    """Return a scene on the surface of its cylinder; a bar is round on the face alone."""
+    """Return a scene on the surface of its cylinder, without the bar."""
     radius = scene.marks.surface
     findings = tuple(on_radius(each, radius) for each in scene.marks.findings)
     marks = scene.marks._replace(findings=findings, stock=None)
     return replace(scene, subject=scene.subject.on_surface(radius), marks=marks)
+
+
+def with_bar(flat: Scene, bar: Workpiece | None, low: np.ndarray, high: np.ndarray) -> Scene:
+    """Return an unrolled scene with the bar, if any: all around, up to Z0, beyond the view."""
+    if bar is None:
+        return flat
+    (left, below), (right, _) = low - (high - low), high + (high - low)
+    shape = box(left, below, right, flat.subject.z0)
+    return replace(flat, marks=flat.marks._replace(stock=replace(bar, shape=shape)))
 
 
 def on_radius(finding: Finding, radius: float) -> Finding:
