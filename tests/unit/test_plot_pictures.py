@@ -419,7 +419,8 @@ def test_a_cylinder_is_drawn_unrolled():
 
 def test_what_the_spindle_turns_is_no_swept_area():
     events = [Event(at, 1, code) for at, code in ((1, "M3"), (3, "M5"))]
-    trace = replace(turned().trace(), events=events)
+    hand = Hand().rapid(z=2).rapid(x=20).line(z=-3).line(c=90)
+    trace = replace(hand.trace(), events=events)
     for spindles, found in (("2", ([2], [3])), ("1", ([], [2, 3]))):
         ini = LATHE.replaced({"TRAJ": {"SPINDLES": spindles}})
         shown = scene_of(subject_of(PROGRAM, ini, trace))
