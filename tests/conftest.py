@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import compileall
 import os
 import shutil
 from itertools import chain
@@ -13,11 +14,18 @@ from hypothesis import settings
 from g12.tools import progress
 from g12.tools.headless.namespaces import OneAtATime
 from support.processes import kill_session, start_in_terminal
+from support.sim_machines import ROOT
 
 NEED_LINUXCNC = ("faults", "interp", "sim")
 
 settings.register_profile("g12", deadline=None, derandomize=True, database=None)
 settings.load_profile("g12")
+
+
+def pytest_configure(config):
+    """Compile the package once: the many interpreters that tests start write no bytecode."""
+    if not hasattr(config, "workerinput"):  # which are xdist's
+        compileall.compile_dir(ROOT / "python" / "g12", quiet=2)
 
 
 def missing(folder):
