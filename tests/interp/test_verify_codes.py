@@ -39,6 +39,7 @@ LOW, HIGH = "G13 I9 Z-2 D4", "G13 I9 Z-3 D4|G0 Z1"
 RING, CLEARED, SHALLOW = "G13 I20.2 Z-4 D4", "G13 I7 K20 Q6 Z-4 D4", "G13 I7 K20 Q6 Z-2 D4"
 FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [120] [0] [0] [0]"
 SIDE_HOLE = "o<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120] [0] [0] [0]"
+TAP = FACE_HOLE.replace("[120]", "[1.5]").removesuffix("[0]") + "[1]"
 HOLES = "o<side_holes> call [4] [-15] [0] [90] [30] [6] [2] [100] [0] [.1] [0]"
 POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
 GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
@@ -82,7 +83,7 @@ CASES = [
     ("mill", "G64 P.02|G0 Z3|G20 G13.2 X0 Y0 Z-.2 I.1 R1. D1 H1 F20", ""),
     ("mill", "G0 X10 Y10 Z5|G91|o<circle_mill> call [7] [50] [7] [-6] [2] [10] [40] [2] [2] [3] "
      "[-9999] [.3] [150] [800] [400]", ""),
-    ("mill", f"G92 X4 Y5 Z1|G0 X10 Y20 Z1|G90.1|{P}", ""),
+    ("mill", f"G92 X4 Y5 Z1|G0 X10 Y20 Z1|G90.1|{P}", "offset-left 6"),
     # X words are diameters under G7
     ("mill", f"G7|G0 X60|{P} X60|G0 Z1|G91|{P} X96 G8|G90|G0 Z1", ""),
     ("mill", f"{P} X20 G7|G0 Z1|{P} X140|G0 Z1", ""),
@@ -99,7 +100,7 @@ CASES = [
     ("lathe", f"{FLAT}|G91 G0 C39.805571|C180|G90|{FLAT}", ""),
     ("lathe", f"G0 C30|{FLAT}|G0 Z10 C0|{ON_FACE.replace('[3]', '[1]', 1).replace('[20]', '[30]')}"
      f"|G0 X60 Z2|{FLAT}", ""),
-    ("lathe", f"{FLAT}|G92 C0|{FLAT}", ""),
+    ("lathe", f"{FLAT}|G92 C0|{FLAT}", "offset-left 13"),
     ("lathe", f"{FLAT}|G10 L20 P1 C0|{FLAT}", ""),
     ("lathe", f"o<turn> sub|G0 C0|o<turn> endsub|{FLAT}|o<turn> call|{FLAT}", ""),
     ("lathe", f"{FLAT}|o1 if [1]|G0 X60 C[10 - 10]|o1 endif|{FLAT}", ""),
@@ -108,7 +109,7 @@ CASES = [
     ("lathe", f"G0 Z5|{POLYGON}|G0 C0|{FLAT}", ""),
     ("lathe", f"G0 Z5|{POLYGON}|G0 Z5 C-1050|{FLAT}", ""),
     ("lathe", f"G0 Z5|{POLYGON}|G28 C0|{FLAT}", "place-not-set 7"),
-    ("lathe", f"G0 Z5|{POLYGON}|G92 C0|{FLAT}", ""),
+    ("lathe", f"G0 Z5|{POLYGON}|G92 C0|{FLAT}", "offset-left 7"),
     ("lathe", f"G0 Z5|{POLYGON}|{POLYGON}", ""),
     ("lathe", f"G0 Z10|{ON_FACE}|G0 X60 Z2|{FLAT}", "zero-line-turned 8"),
     ("lathe", f"G0 Z10|{ON_FACE}|G0 X60 Z2 C260|{FLAT}", ""),
@@ -360,6 +361,25 @@ CASES = [
     ("mill", "G13 I9 K15 Q4 Z-3 D4|G13 I20 K24 Q4|G0 Z5", ""),
     ("mill", "G13 I20 K24 Q4 Z-3 D4|G0 Z5", "uncut 6"),
     ("mill", "G13 I9 K15 Q4 Z-1 D4|G13 I20 K24 Q4 Z-3|G0 Z5", "uncut 7"),
+    # a spindle that starts in a cut, an offset that is left, what is beyond the axis
+    ("mill", f"M5|{P}|M3|G0 Z1", "spindle-off 7, start-in-cut 9"),
+    ("mill", f"M5|{P}|G0 Z1|M3|X1", "spindle-off 7"),
+    ("two spindles", "G12.1|G1 X20 F900|Z-5|X50|G13.1|M3 S100|G0 Z2",
+     "tool-spindle-unseen 5, plunge-into-stock 7, start-in-cut 11", "40"),
+    ("mill", f"G92 X0|{P}|G0 Z1|G52 Y9|X0", "offset-left 9"),
+    ("mill", f"G52 X4|{P}|G0 Z1|G92.1", ""),
+    ("mill", f"{P}|G0 Z1|G52 X4|G52 X0", ""),
+    ("lathe", f"{FLAT}|G92 C0", "offset-left 13"),
+    ("lathe", f"{FLAT}|G92 C[#<_c>-720]", ""),
+    ("lathe", f"{FLANK}|X-6|X44|G7.1 C0", "beyond-axis 6"),
+    # a tap without a hole, into a hole that is not as deep, in place of it
+    ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP}", ""),
+    ("lathe", f"G0 Z10|{TAP}|{FACE_HOLE}", "tap-undrilled 6"),
+    ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP.replace('[8]', '[9]')}|{TAP}", "tap-undrilled 7"),
+    ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP.replace('[0]', '[9]', 1)}|{TAP}", "tap-undrilled 7"),
+    # a section without a move
+    ("lathe", "G12.1|M8|G13.1", "empty 5"),
+    ("lathe", "G0 X44 Z-20|G7.1 C20|G7.1 C0|G0 Z2|X60", "empty 6"),
     # a retract that is missing between two, a circle where the tool came down
     ("mill", f"{P}|G13 X60 I7 K20 Q6 Z-3|G0 Z2", "rapid-through 7"),
     ("mill", f"{P}|G0 Z2|G13 X60 I7 K20 Q6 Z-3|G0 Z2", ""),
@@ -424,7 +444,7 @@ CASES = [
     ("yasnac", "Z-4|G12 I45 R28 D10 F400|G12 I50 R40 D10|G0 Z5", "bored-assumed 6"),
     ("mill", f"{CLEARED}|G0 Z5|X60|Z-5|G1 Y40|G0 Z5", "rapid-beside 9"),
     ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
-     "feed-cut-down 6"),
+     "tap-undrilled 6, feed-cut-down 6"),
     # holes with C
     ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}",
      "no-diameter 6, rapid-no-diameter 6"),

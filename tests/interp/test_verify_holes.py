@@ -42,13 +42,14 @@ def findings(path, ini):
 
 
 def a_call(chance, scale):
-    """Return a valid call of any kind, with its lengths in some unit."""
+    """Return a valid call of any kind, a tap's after its drill's; lengths are in some unit."""
     length = lambda low, high: f"[{round(chance.uniform(low, high) / scale, 4)}]"  # noqa: E731
     angle = lambda: f"[{round(chance.uniform(-360, 360), 3)}]"  # noqa: E731
     kind = chance.choice([0, 0, 0, 1, 3])
     peck = chance.choice(["[0]", length(1, 5), length(-5, -1)]) if not kind else "[0]"
     feed = length(0.5, 2) if kind == 1 else chance.choice([length(50, 900), "[-9999]"])
-    hole = [length(1, 15), length(0.5, 9), feed, peck, f"[{chance.choice([0, 0.5])}]", f"[{kind}]"]
+    levels = [length(1, 15), length(0.5, 9)]
+    hole = [*levels, feed, peck, f"[{chance.choice([0, 0.5])}]", f"[{kind}]"]
     turns = [angle(), chance.choice([angle(), "[-9999]"])]
     count = f"[{chance.randint(1, 6)}]"
     name, place = chance.choice(
@@ -58,7 +59,9 @@ def a_call(chance, scale):
             ("face_hole_at", [length(-30, 30), length(-20, 20)]),
         ]
     )
-    return f"o<{name}> call {' '.join([*place, *hole])}"
+    drill = [*levels, "[-9999]", "[0]", "[0]", "[0]"]
+    holes = [drill, hole] if kind == 1 else [hole]
+    return "\n".join(f"o<{name}> call {' '.join([*place, *each])}" for each in holes)
 
 
 @pytest.mark.parametrize(

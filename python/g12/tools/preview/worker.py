@@ -45,6 +45,7 @@ STATE_VARIABLES = (
     "feed_rate", "retract_mode", "cutter_comp_side", "cutter_comp_radius", "origin_index",
     "rotation_xy", "current_x", "current_y", "current_z", "AA_current", "BB_current",
     "CC_current", "current_tool", "call_level", "remap_level",
+    "axis_offset_x", "axis_offset_y", "axis_offset_z", "CC_axis_offset",
 )  # fmt: skip
 LENGTH_GROUP = 8  # index of G43, G43.1, G43.2 and G49 in a block's G codes
 LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes

@@ -25,7 +25,7 @@ PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 class Commanded(NamedTuple):
     """What a program commands; each circle has its block.
 
-    ``idle`` are the line and the code of each cycle that moves nothing, though it should.
+    ``idle`` are the line and the code of each cycle that moves nothing, and whether it should.
     ``clamp_is_traced`` says that events show the codes of C's clamp. ``moves_there`` are the moves
     with the work offsets of the machine's var file, None where they differ by more than those.
     ``in_g7`` says from which move on X words are diameters or not.
@@ -33,7 +33,7 @@ class Commanded(NamedTuple):
 
     circles: Sequence[tuple[Block, Target]] = ()
     sections: Sequence[SectionContour] = ()
-    idle: Sequence[tuple[int, str]] = ()
+    idle: Sequence[tuple[int, str, bool]] = ()
     shapes: Sequence[SubCall] = ()
     holes: Sequence[SubCall] = ()
     clamp_is_traced: bool = False
@@ -59,7 +59,7 @@ def commanded_by(
     reader = CircleReader(codes, ini, moves, trace.diameters)
     pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
-    still = [(each.line, each.code) for each in found if each.elements and each.at == each.end]
+    still = [(each.line, each.code, bool(each.elements)) for each in found if each.at == each.end]
     cut = [each for each in found if each.end > each.at]
     subs = (codes.shape_of, codes.holes_of)
     shapes, holes = (list(_calls(blocks, tracer, trace, sub)) for sub in subs)
@@ -93,13 +93,13 @@ def _calls(
         yield SubCall(block, first, trace.diameters.get(first.tool, 0.0) / 2, tracer.ini)
 
 
-def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str]]:
-    """Yield the line and the code of each cycle and shape that moves nothing."""
+def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str, bool]]:
+    """Yield the line and the code of each cycle and shape that moves nothing, and True."""
     for block in (each for each in blocks if each.at == each.end):
         if codes.cycle_of(block.text.call, block.codes):
-            yield block.text.number, codes.name_of(block.codes)
+            yield block.text.number, codes.name_of(block.codes), True
         elif codes.shape_of(block.text) or codes.holes_of(block.text):
-            yield block.text.number, block.text.call
+            yield block.text.number, block.text.call, True
 
 
 def _moves_there(

@@ -23,6 +23,7 @@ from g12.tools.path.part import X, Z, is_sideways
 from g12.tools.units import plain
 from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.expected.contour import SectionContour
+from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.mistakes.neighbours import judge_circles
 from g12.tools.verify.mistakes.tool import length_set_by, missing_length, uses_lengths
 from g12.tools.verify.result.finding import Finding
@@ -40,7 +41,8 @@ def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
     yield from _on_surfaces(workpiece)
     yield from judge_circles(flat_circles(workpiece.subject), workpiece.material)
     yield from _judged_in_stock(workpiece) if workpiece.stock else ()
-    yield from _tool_changes(workpiece)
+    yield from _started_in_cut(workpiece)
+    yield from _undrilled_taps(workpiece)
     yield from _upright(workpiece.subject)
     yield from assumptions(workpiece)
 
@@ -175,25 +177,48 @@ def _words_of(
 # ---------------------------------------------------------------- what is assumed
 
 
-def _tool_changes(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield the tool changes with the tool in the part, unless the machine takes it up first.
+def _started_in_cut(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield the tool changes and the starts of a spindle with the tool in the part.
 
-    What is beside a bar is no part: how far a turret reaches is not known.
+    A machine may take the tool up before it changes it. What is beside a bar is no part: how far a
+    turret reaches is not known.
     """
     subject = workpiece.subject
-    changes = [each for each in subject.trace.events if each.text.startswith("tool ") and each.at]
-    if subject.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0):
-        return
-    for event, view in product(changes, workpiece.views):
+    taken_up = subject.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
+    starts = ("M3", "M4") if taken_up else ("M3", "M4", "tool")
+    events = [each for each in subject.trace.events if each.at and each.text.split()[0] in starts]
+    for event, view in product(events, workpiece.views):
         last = event.at - 1
         point = view.part.points(np.array(subject.moves[last].end))[0]
         region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
         known = subject.ends_known[last] and view.meets(subject, last)
-        is_low = point[Z] < view.material.top - SAME_LEVEL
-        beside = subject.part.turning and not view.material.was_solid(region, point[Z], event.at)
-        if known and is_low and not beside:
-            values = {"tool": event.text.split()[1]}
-            yield Finding("change-in-cut", event.line, values, subject.end(last))
+        is_solid = view.material.was_solid(region, point[Z], event.at)
+        code, _, tool = event.text.partition(" ")
+        beside = not is_solid and (not tool or subject.part.turning)
+        if known and point[Z] < view.material.top - SAME_LEVEL and not beside:
+            found = "change-in-cut" if tool else "start-in-cut"
+            yield Finding(found, event.line, {"code": code, "tool": tool}, subject.end(last))
+
+
+def _undrilled_taps(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield one note of the taps that go deeper than all cuts before them."""
+    calls = (call for call in workpiece.subject.commanded.holes if call.is_tapped)
+    found = [call for call in calls if _meets_material(workpiece, call)]
+    for call in found[:1]:
+        more = {each.line for each in found} - {call.line}
+        yield Finding("tap-undrilled", call.line, {"more": more}, file=call.file)
+
+
+def _meets_material(workpiece: Workpiece, call: SubCall) -> bool:
+    """Tell whether a feed move of a call ends in material, at the tool's axis."""
+    subject, first = workpiece.subject, call.moves.start
+    ends = np.array([subject.moves[i].end for i in call.moves if subject.moves[i].kind != "rapid"])
+    return any(
+        view.material.standing(Point(end[:2]).buffer(ALLOWED), end[Z], first)
+        for view in workpiece.views
+        if view.meets(subject, first)
+        for end in view.part.points(ends)
+    )
 
 
 def _upright(subject: Subject) -> Iterator[Finding]:
@@ -218,6 +243,8 @@ def _on_surfaces(workpiece: Workpiece) -> Iterator[Finding]:
             values = {"code": section.code, "radius": section.surface, "inside": inside}
             yield Finding("inside-surface", section.line, values, first.start[:3])
         lowest = min((move.end[X] for move in own if move.kind != "rapid"), default=math.inf) - base
+        if lowest < -SAME_LEVEL:
+            yield Finding("beyond-axis", section.line, {"size": -lowest}, file=section.file)
         if lowest > section.surface - SAME_LEVEL:
             values = {"radius": section.surface, "size": lowest - section.surface}
             yield Finding("above-surface", section.line, values)

@@ -38,6 +38,7 @@ from g12.tools.verify.mistakes.tool import (
 from g12.tools.verify.mistakes.travel import judge_travel
 from g12.tools.verify.mistakes.words import (
     judge_home,
+    judge_left_offset,
     judge_preview,
     judge_return_levels,
     judge_reversals,
@@ -203,11 +204,12 @@ def _judged(subject: Subject, workpiece: Workpiece, cuts: Cuts) -> Iterator[Find
     yield from (each for kind in cuts for cut in kind for each in cut.judged)
     yield from judge_material(workpiece)
     yield from (Finding("not-measured", line, {"code": code}) for line, code in unmeasured)
-    yield from (Finding("not-cut", line, {"code": code}) for line, code in commanded.idle)
+    for line, code, is_asked in commanded.idle:
+        yield Finding("not-cut" if is_asked else "empty", line, {"code": code})
     yield from judge_travel(commanded.circles, commanded.moves_there, trace.events, ini)
     yield from _mistakes(subject, cuts, known)
     run = {cut.line for kind in cuts for cut in kind if not cut.file}
-    run |= {line for line, _ in (*unmeasured, *commanded.idle)}
+    run |= {line for line, _ in unmeasured} | {line for line, *_ in commanded.idle}
     yield from judge_unrun(read_lines(subject.program), Codes(ini), run)
 
 
@@ -234,6 +236,7 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     yield from judge_levels(cuts, moves)
     yield from judge_reversals([each.commanded for each in found.sections])
     yield from judge_preview(texts, min((cut.line for cut in cuts), default=0))
+    yield from judge_left_offset(texts, trace.state)
     yield from not_judged(moves, known)
     if part_of(ini).turning:
         yield from judge_native_c(moves, known, subject.path)

@@ -19,6 +19,7 @@ SETTING = {  # modes that no cycle changes, and the codes that do
 }
 FEED_MODES = {93.0, 94.0, 95.0}
 LEFT_OUT = -9999.0
+TAPS = (1.0, 2.0)  # kinds of holes: right-hand, left-hand
 CUT = ("depth", "depth_per_pass", "allowance", "feed", "plunge_feed")
 HOLE = ("depth", "retract", "feed", "peck", "dwell", "kind")
 ENTRIES = {
@@ -168,6 +169,10 @@ class SubCall:
     def is_side(self) -> bool:
         """Whether the tool points at the axis."""
         return self.name == "side_holes"
+
+    @property
+    def is_tapped(self) -> bool:
+        return self.given.get("kind", 0.0) in TAPS
 
     @property
     def surface(self) -> float:

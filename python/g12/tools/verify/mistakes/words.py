@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Codes and lines that most likely mean something else than they do."""
 
-from collections.abc import Collection, Iterator, Sequence
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from g12.tools.machine.ini import Ini
@@ -16,6 +17,9 @@ SETTING = {28.1: "G28", 30.1: "G30"}
 RETURN_LEVELS = {98.0: "G94", 99.0: "G95"}  # what a lathe of the Fanuc kind means by them
 DRILLING = (73.0, 74.0, *map(float, range(81, 90)))  # cycles that have return levels
 TABLE = {("L", "1"), ("L", "10"), ("L", "11")}  # of G10: the tool table
+SHIFTS = (52.0, 92.0)  # add to the work offset until G92.1, also in the next program
+SHIFTED = ("axis_offset_x", "axis_offset_y", "axis_offset_z")  # in the interpreter's state
+LEAST_SHIFT = 1e-6
 TOOL_NUMBER = ("M", "61")
 STRAIGHT_BACK = -0.999999  # cosine of the angle between the two directions, at most
 
@@ -50,6 +54,15 @@ def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
 
 def _sets_tools(text: Text) -> bool:
     return 10.0 in text.codes and not TABLE.isdisjoint(text.words)
+
+
+def judge_left_offset(texts: Sequence[Text], state: Mapping[str, float]) -> Iterator[Finding]:
+    """Yield a note of the last G92 or G52, if its offset is in force at the program's end."""
+    left = [*(state[name] for name in SHIFTED), math.remainder(state["CC_axis_offset"], 360.0)]
+    set_by = [(text.number, code) for text in texts for code in text.codes if code in SHIFTS]
+    if max(map(abs, left)) > LEAST_SHIFT:
+        for line, code in set_by[-1:]:
+            yield Finding("offset-left", line, {"code": f"G{code:g}"})
 
 
 def judge_return_levels(texts: Sequence[Text], codes: Codes) -> Iterator[Finding]:

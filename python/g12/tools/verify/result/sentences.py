@@ -100,6 +100,14 @@ NOTES = {
         "{code} is never run{more:also}: the program ends before it, jumps over it, or block "
         "delete skips it"
     ),
+    "empty": "{code} has nothing to cut: no line of it moves the tool",
+    "offset-left": (
+        "{code} is in force at the program's end: the next one begins with its zero shifted; "
+        "G92.1 ends it"
+    ),
+    "beyond-axis": "its lowest X is {size:fine} beyond the part's axis",
+    "tap-undrilled": "the tap goes into material, deeper than all cuts before it{more:also}",
+    "start-in-cut": "before this line the spindle starts ({code}) with the tool in a cut: retract",
     "above-surface": (
         "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
     ),
