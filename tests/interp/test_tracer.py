@@ -98,7 +98,8 @@ def test_the_tool_table_is_linuxcncs_own_reading(ini, tmp_path):
 
 def test_a_diameter_that_the_program_sets_is_the_tools(mill):
     """As on a machine: by G10 L1, of a tool that is loaded later or is in the spindle."""
-    for first, second in (("G10 L1 P1 R4", "T1 M6"), ("T1 M6", "G10 L1 P1 R4")):
+    size = "G10 L1 P1 R4"
+    for first, second in ((size, "T1 M6"), ("T1 M6", size), (f"{size}\nG10 L0", "T1 M6")):
         program = [first, second, "(print,#5410)", "T2 M6", "T1 M6", "(print,#5410)", "M2"]
         traced = mill.trace_text(program)
         assert traced.printed.split() == ["8.000000", "8.000000"]
@@ -161,8 +162,9 @@ def test_an_arc_is_turned_with_the_work_coordinates(mill):
     assert math.degrees(arc.sweep) == near(270.0)
 
 
-def test_tool_length_is_reported_beside_the_position(mill):
-    (move,) = mill.trace_text("T2 M6\nG43\nG1 Z5 F100").moves
+@pytest.mark.parametrize("change", ["T2 M6\nG43", "T2 M6 G43", "M61 Q2\nG43", "T1 M6\nM61 Q2 G43"])
+def test_tool_length_is_reported_beside_the_position(mill, change):
+    (move,) = mill.trace_text(f"{change}\nG1 Z5 F100").moves
     assert move.end[2] == near(5.0)
     assert move.tool_offset[2] == near(20.0)
     assert move.tool == 2
@@ -187,9 +189,11 @@ def test_an_axis_that_is_not_commanded_starts_where_it_ends(mill, system, change
         ("G55", (2.0, 2.0, 3.0)),
         ("G20", (2.0, 2.0, 3.0)),
         ("G43 H1", (2.0, 2.0, -7.0)),
+        ("G10 L1 P2 X7 Z9", (2.0, 2.0, 3.0)),
+        ("G43.1 X2 Z5", (0.0, 2.0, -2.0)),
     ],
 )
-@pytest.mark.parametrize("change", ["T2 M6", "G10 L0"])
+@pytest.mark.parametrize("change", ["T2 M6", "M61 Q2", "G10 L0"])
 def test_a_tool_change_does_not_move_the_tip(mill, before, start, change):
     """LinuxCNC then reads its position, which the preview does not know after such blocks."""
     lines = ["G0 X1 Y2 Z3", f"{before} F99", change, "G91 G0 C9"]

@@ -206,11 +206,12 @@ CASES = [
     ("mill", "G12 I7 K20 Q6 Z-3 D5", "wrong-cutter 6, uncut 6"),
     ("mill", "G10 L1 P6 R5.1|G12 I7 K20 Q6 Z-3 D6", "worn-cutter 7"),
     ("any mill", "G10 L1 P4 R0|T4 M6 G43|S900 M3|G0 X0 Y0 Z1|G13 I9 Z-2 D3", "loaded-unknown 6"),
+    ("mill", f"M61 Q3|{LOW}", "wrong-cutter 7, uncut 7, length-higher 7"),
+    ("mill", f"M61 Q3|G43|G0 Z1|{LOW.replace('D4', 'D3')}", ""),
     # words of other kinds in the block of a cycle
     ("mill", "G13 I9 Z-2 D4 M8|G0 Z1|G61|G13 X40 I9 Z-2 M9|G0 Z1", ""),
     # what the preview executes otherwise than a machine may
     ("mill", f"{LOW}|/X40|G0 Z1|X40|{LOW}|/G0 Z9", "block-delete 7"),
-    ("mill", f"M61 Q3|{LOW}", "tool-unread 6"),
     # feeds, return levels, C
     ("mill", f"G95 F60|{LOW}|G94", "feed-per-revolution 7"),
     ("mill", f"F.2|{LOW}", "feed-per-minute 7"),
@@ -665,6 +666,11 @@ def test_a_picture_shows_what_is_uncut_and_where_findings_are(proof_of):
         if each.code == "side-crossed"
     )
     assert crossed.place == pytest.approx((30, 0, 2))
+
+
+def test_a_random_tool_changer_keeps_the_loaded_tools_size_in_a_preview(codes):
+    changed = {"EMCIO": {"RANDOM_TOOLCHANGER": "1"}}
+    assert codes("mill", f"G10 L1 P3 R3.1|{LOW}", changed=changed) == "tool-table-set 6"
 
 
 def test_nothing_is_said_of_the_spindle_where_there_are_several(codes):

@@ -89,6 +89,11 @@ class Ini:
         except IniError:
             return 0.0
 
+    @property
+    def swaps_pockets(self) -> bool:
+        """Whether the tool changer is random: the loaded tool's pocket becomes that of the last."""
+        return self.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", "")
+
     def _valid(self, read: Callable[[], T]) -> T:
         try:
             return read()

@@ -231,7 +231,7 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
         "ini": str(expanded),
         "output": str(folder / "output.txt"),
         "tool_table": str(write_tools(tools, ini, folder / "tool.tbl")),
-        "random": ini.get("EMCIO", "RANDOM_TOOLCHANGER", "0") not in ("0", ""),
+        "random": ini.swaps_pockets,
         "units": 1.0 / unit,
         "beside": ini.tool_beside,
         "axis_mask": sum(1 << AXIS_LETTERS.index(letter) for letter in ini.axes),

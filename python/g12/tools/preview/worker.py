@@ -211,7 +211,7 @@ class Canon:
         self.plane = 17
         self.feed = self.program_feed = 0.0
         self.modal_feed, self.units = 0.0, INCHES  # F and its units
-        self.spindle = NO_TOOL
+        self.index, self.spindle = 0, NO_TOOL
 
     # Queries by the interpreter.
 
@@ -235,12 +235,13 @@ class Canon:
     def get_tool(self, index: int) -> tuple:
         """Return a record of the tool table; index 0 is the spindle.
 
-        The interpreter reads all of them, that of the spindle first, when it starts, after M6 and
-        after G10 L0, each time right after its position.
+        The interpreter reads all of them, that of the spindle first, when it starts, after M6, M61
+        and G10 L0, each time right after its position.
         """
         if not index:
             if self.position:
                 self._correct_position()
+                self._load(interpreter_object().current_pocket)
             return self.spindle
         return self.tools[index] if index < len(self.tools) else NO_TOOL
 
@@ -312,14 +313,19 @@ class Canon:
             this.feed_rate = self.program_feed
 
     def change_tool(self, _which: int) -> None:
-        """Note the tool in the spindle; LinuxCNC 2.9 passes its index, 2.10 its number.
+        """Load the selected tool: LinuxCNC 2.9 passes its index, 2.10 its number."""
+        self._load(interpreter_object().selected_pocket, by_m6=True)
 
-        LinuxCNC then reads the whole table; the values of G10 L1 remain, as on a machine.
+    def _load(self, index: int, by_m6=False) -> None:
+        """Note the tool in the spindle, by M6 or M61, and the table with the values of G10 L1.
+
+        LinuxCNC then reads the whole table, where they remain, as on a machine.
         """
-        index, table = interpreter_object().selected_pocket, interpreter_object().tool_table
+        table = interpreter_object().tool_table
         self.tools[1:] = [for_canon(table[each]) for each in range(1, len(self.tools))]
-        self.spindle = self.tools[index] if index else UNLOADED
-        self._note(f"tool {self.spindle[0]}")
+        if by_m6 or index != self.index:
+            self.index, self.spindle = index, self.tools[index] if index else UNLOADED
+            self._note(f"tool {self.spindle[0]}")
 
     def dwell(self, seconds: float) -> None:
         """Note a pause; the move before it is not blended into the next."""

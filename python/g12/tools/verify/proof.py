@@ -235,7 +235,8 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
     yield from judge_reversals([each.commanded for each in found.sections])
-    yield from judge_preview(texts, min((cut.line for cut in cuts), default=0))
+    first = 0 if ini.swaps_pockets else min((cut.line for cut in cuts), default=0)
+    yield from judge_preview(texts, first)
     yield from judge_left_offset(texts, trace.state)
     yield from not_judged(moves, known)
     if part_of(ini).turning:

@@ -20,7 +20,6 @@ TABLE = {("L", "1"), ("L", "10"), ("L", "11")}  # of G10: the tool table
 SHIFTS = (52.0, 92.0)  # add to the work offset until G92.1, also in the next program
 SHIFTED = ("axis_offset_x", "axis_offset_y", "axis_offset_z")  # in the interpreter's state
 LEAST_SHIFT = 1e-6
-TOOL_NUMBER = ("M", "61")
 STRAIGHT_BACK = -0.999999  # cosine of the angle between the two directions, at most
 
 
@@ -40,12 +39,12 @@ def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
 def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
     """Yield the lines that LinuxCNC's preview may execute otherwise than the machine.
 
-    ``first`` is the line of the first cut.
+    A tool table set after line ``first`` is one: after the first cut, and anywhere with a random
+    tool changer, whose loaded tool the preview does not change.
     """
     found = {
         "block-delete": [text.number for text in texts if text.deleted],
         "tool-table-set": [t.number for t in texts if t.number > first and _sets_tools(t)],
-        "tool-unread": [text.number for text in texts if TOOL_NUMBER in text.words],
     }
     for code, lines in found.items():
         if lines:

@@ -226,6 +226,5 @@ NOT_JUDGED = {
         "cuts with the sizes before this G10 L1, L10 or L11; verify takes the tool "
         "table as the program leaves it"
     ),
-    "tool-unread": "the tool of M61, which LinuxCNC's preview does not read; use T and M6",
     "plain-moves": "feed moves outside of cycles and sections",
 }
