@@ -179,6 +179,15 @@ PROGRAMS = [  # control, a whole program, its lines
     (HAAS, "O1\n%O5°(A)\nO5\nG20 G0 X1.\nM30\n", [
         f"{' '.join(HAAS.start)} (O1)", "(%O5°)(A)", "(O5)", "G20 G0 X1.", "M30",
     ]),
+    (HAAS, "%\nO5\n/G154 P2\nM99\nO1\nG20 G0 X0\nM98 P5\nM30\n", [
+        f"{' '.join(HAAS.start)} (%)", "(O1) (line 5)", "G20 G0 X0 (line 6)", "M98 P5 (line 7)",
+        "M30 (line 8)", "O5 (line 2)",
+        "/ o<unset_2> if [[#4011 EQ 0] AND [#4012 EQ 0] AND [#4013 EQ 0]] "
+        "(G154 P2 overwrites G59.3) (line 3)",
+        "/ (line 3) (MSG, G154 P2 was never set, it counts as 0: X is #4011)",
+        "/ o<unset_2> endif (line 3)",
+        "/ G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013 (line 3)", "M99 (line 4)",
+    ]),
     (HAAS, "\ufeff%\nG0 X0\nM30\n", [f"{' '.join(HAAS.start)} (%)", "G0 X0", "M30"]),
 ]  # fmt: skip
 
@@ -270,8 +279,8 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=[1", "] is missing before the end"),
     (LATHE, "T30303", "T30303 has 5 digits"),
     (LATHE, "G0 X1. U1.", "U1. and X in one block"),
-    (LATHE, "G96 S90 M3\nG97", "G97 without S while the spindle turns: LinuxCNC keeps to G96"),
-    (LATHE, "G97 S90 M3\nG96", "G96 without S while the spindle turns: LinuxCNC keeps to G97"),
+    (LATHE, "G96 S90 M3\nG97", "G97 without S, and the speed is not known: write S"),
+    (LATHE, "G97 S90\nG96", "G96 without S, and the speed is not known: write S"),
     (LATHE, "G50", "G50 needs S, a speed limit, or X and Z"),
     (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
     (LATHE, "G107", "G107 needs C"),

@@ -14,7 +14,7 @@ LONGEST_LINE = 254  # characters that LinuxCNC reads of a line
 LONGEST_MARK = 20  # of them for "/ " and "(line 123456)"
 LONGEST_COMMENT = 200
 ACTIVE_COMMENT = re.compile(r"\((MSG|ABORT), ")
-NUMBERED = re.compile("(N[0-9]+ )?")
+NUMBERED = re.compile("(/ )?(N[0-9]+ )?")  # what LinuxCNC takes at the start of a line only
 NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments after it
 
 

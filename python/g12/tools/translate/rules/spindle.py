@@ -32,16 +32,14 @@ def speed_limit(draft: Draft) -> None:
 
 
 def _mode_without_speed(draft: Draft) -> None:
-    """Give G96 its last S, as the controls do: LinuxCNC changes nothing before the next S."""
-    mode, before = draft.state.spindle_mode, draft.start.spindle_mode
+    """Give G96 its last S, as the controls do; LinuxCNC's G97 changes nothing before the next S."""
+    mode, before = draft.state.spindle_mode, draft.start.spindle_mode or "G97"
     surface = draft.sure("surface", "G96 without S") if "G96" in draft.codes() else UNKNOWN
+    turns = draft.state.spindle and "M5" not in draft.m_codes()
     if surface:
         draft.words.append(word_of(f"S{surface}"))
-    elif (before or "G97") != mode and draft.state.spindle and "M5" not in draft.m_codes():
-        raise NotTranslated(
-            f"{mode} without S while the spindle turns: LinuxCNC keeps to {before or 'G97'}, and S "
-            "is not known: write it"
-        )
+    elif mode == "G96" or (before != mode and turns):
+        raise NotTranslated(f"{mode} without S, and the speed is not known: write S")
 
 
 def _limit_or_origin(draft: Draft, code: str) -> None:
