@@ -300,6 +300,9 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS_LATHE, "G107 Y0 C0 R2.\nG1 C3.", "C while Y is mapped onto the cylinder"),
     (INTEGREX, "G0 B90.", "B90.: this control's machine has the axes XZC"),
     (INTEGREX, "G0 Y1.", "Y1.: this control's machine has the axes XZC"),
+    (LATHE, "G21 G99 G0 X50. Z5.\n/G90 X40. Z1. F.2\nX30.",
+     "X and Z may repeat a turning cycle, but the turning cycle here is not the same"),
+    (HAAS, "/M29 S99\nG84 Z-1. R.1 F9.", "G84 may be rigid, but the tap speed here is not"),
     (LATHE, "G21 G10.9 X0\nG90 X9. Z1. F9.", "a turning cycle where X words are radii"),
     (control_of("doosan-lathe"), "S9 M3 P13", "P13: no spindle of the machine: there are P11, P12"),
     *((HAAS, f"G0 F5.\n{block}", f"{block[-3:]}: this control's machine has the axes XYZ")

@@ -23,10 +23,10 @@ def rigid_tap(draft: Draft) -> None:
         if not speed:
             raise NotTranslated(f"{code.code} needs S, the speed of the tap")
         draft.comments.append(code.code)
-        draft.change(rigid=speed.value)
+        draft.change(tap_speed=speed.value)
     elif "cancel cycle" in draft.meanings or (draft.state.cycle and MOVES & set(draft.codes())):
-        draft.change(rigid=UNKNOWN, tap_top=UNKNOWN)
-    if draft.state.rigid:
+        draft.change(tap_speed=UNKNOWN, tap_top=UNKNOWN)
+    if draft.state.tap_speed:
         _tap(draft)
 
 
@@ -35,7 +35,7 @@ def _tap(draft: Draft) -> None:
     name = code.code if code else draft.state.cycle
     if name not in SPINDLE_OF_TAP:
         return
-    speed = draft.sure("rigid", f"{name} may be rigid")
+    speed = draft.sure("tap_speed", f"{name} may be rigid")
     if draft.state.distance != "G90" or draft.letters() & {"L", "K"}:
         raise NotTranslated(f"rigid tapping by {name} is translated under G90, hole by hole")
     values = {**dict(draft.state.cycle_words or ()), **{w.letter: w.value for w in draft.words}}

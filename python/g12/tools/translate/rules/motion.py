@@ -122,7 +122,7 @@ def is_plain(draft: Draft) -> bool:
     own = (state.own_motion, state.own_distance, state.own_feed)
     letters = {word.letter for word in words}
     if (
-        (control.onto, state.turn, state.cycle, state.polar, *own) != SETTLED
+        (control.onto, state.turning_cycle, state.cycle, state.polar, *own) != SETTLED
         or len(letters) < len(words)
         or not all(word.kind == "number" and PLAIN.fullmatch(word.text) for word in words)
         or not letters.isdisjoint(AXIS_NUMBERS.keys() - set(control.axes))

@@ -69,11 +69,11 @@ def live_tool(draft: Draft) -> None:
     if codes and named in ("", "$0", "$-1"):
         draft.change(spindle=next(iter(codes - {"M5"}), UNKNOWN))
     if codes - {"M5"}:
-        draft.change(live=named)
-    elif codes and named in (draft.state.live, "$-1"):
-        draft.change(live=UNKNOWN)
+        draft.change(live_tool=named)
+    elif codes and named in (draft.state.live_tool, "$-1"):
+        draft.change(live_tool=UNKNOWN)
     elif "S" in draft.letters() and not codes and not named:
-        live = draft.sure("live", "S is a spindle's")
+        live = draft.sure("live_tool", "S is a spindle's")
         draft.words += [word_of(live)] if live else []
 
 

@@ -42,7 +42,7 @@ def _turret_word(draft: Draft) -> None:
     if offset >= 0:
         texts += ["G43", f"H{offset}"] if offset else ["G49"]
     draft.replace(word, *map(word_of, texts))
-    if not loaded and SPINDLE_M_CODES.isdisjoint(draft.m_codes()) and not draft.state.live:
+    if not loaded and SPINDLE_M_CODES.isdisjoint(draft.m_codes()) and not draft.state.live_tool:
         why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
         draft.words += map(word_of, filter(None, [draft.sure("spindle", why)]))
     draft.comments += [word.text] if loaded else []

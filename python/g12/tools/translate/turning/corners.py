@@ -51,7 +51,7 @@ def _is_drawn(draft: Draft) -> bool:
     letters, codes = draft.letters(), set(draft.codes())
     if any(letter[0] == "," for letter in letters):
         return True
-    free = not draft.meanings and not draft.state.turn and draft.state.polar == "off"
+    free = not draft.meanings and not draft.state.turning_cycle and draft.state.polar == "off"
     line = draft.motion() == "G1" and not codes - {"G1", "G94", "G95"}
     moves = not letters.isdisjoint(DRAWN) and not letters.isdisjoint("XZUW")
     return draft.control.is_lathe and free and line and moves

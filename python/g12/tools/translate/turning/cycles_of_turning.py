@@ -65,20 +65,20 @@ def no_pass_yet(draft: Draft) -> None:
     if not ended and (moves or (len(draft.meanings) == 1 and _has_own_words(draft))):
         return
     del draft.meanings["turning pass"]
-    draft.change(turn=UNKNOWN if ended else "turning pass", pass_words=())
+    draft.change(turning_cycle=UNKNOWN if ended else "turning pass", pass_words=())
     draft.comments.append(code.text)
 
 
 def turning_cycle(draft: Draft) -> None:
     _follow_chamfers(draft)
     meaning = next((name for name in draft.meanings if name in CYCLES), "")
-    modal = draft.state.turn
+    modal = draft.state.turning_cycle
     if not meaning and modal:
         codes = set(draft.codes())
         if codes & MOTIONS or draft.meanings:
-            draft.change(turn=UNKNOWN)
+            draft.change(turning_cycle=UNKNOWN)
         elif _has_own_words(draft):
-            meaning = draft.sure("turn", "X and Z may repeat a turning cycle")
+            meaning = draft.sure("turning_cycle", "X and Z may repeat a turning cycle")
     if not meaning:
         return
     if draft.state.polar != "off":
@@ -88,7 +88,7 @@ def turning_cycle(draft: Draft) -> None:
     if draft.sure("x_words", "X of a turning cycle is a diameter") != "G7":
         raise NotTranslated("a turning cycle where X words are radii: write G10.9 X1 before it")
     if meaning != modal:
-        draft.change(turn=UNKNOWN)
+        draft.change(turning_cycle=UNKNOWN)
     CYCLES[meaning](draft, meaning)
     draft.meanings.pop(meaning, None)
 
@@ -251,7 +251,7 @@ def _single_pass(draft: Draft, meaning: str) -> None:
     """G90 and G94 of system A."""
     start, end, taper = _pass_words(draft, meaning)
     moves = (turning_pass if meaning == "turning pass" else facing_pass)(start, end, taper)
-    _write_moves(draft, moves, start, turn=meaning)
+    _write_moves(draft, moves, start, turning_cycle=meaning)
 
 
 def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
@@ -260,7 +260,7 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     if code and (set(draft.codes()) & MOTIONS or draft.letters().isdisjoint("XZUW")):
         raise NotTranslated(_other_meaning(code.code, meaning))
     start = start_point(draft)
-    again = draft.start.turn == meaning and meaning not in draft.meanings
+    again = draft.start.turning_cycle == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
     tapers = [take_number(draft, letter) for letter in ("R", TAPERS.get(meaning, "I"))]
     taper = next((number for number in tapers if number is not None), None)
@@ -290,7 +290,7 @@ def _one_thread_pass(draft: Draft, meaning: str) -> None:
     turn = take_turn(draft)
     start, end, taper = _pass_words(draft, meaning)
     thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft), turn)
-    _write_moves(draft, thread_pass(start, thread), start, turn=meaning)
+    _write_moves(draft, thread_pass(start, thread), start, turning_cycle=meaning)
 
 
 def _lead_of(draft: Draft) -> float:
@@ -367,7 +367,11 @@ def _thread_move(draft: Draft, meaning: str) -> None:
     in_absolute_words(draft)
     draft.has_motion = True
     draft.change(
-        turn=meaning, motion="G33", own_motion=AS_PROGRAMMED, at_x=2 * there.imag, at_z=there.real
+        turning_cycle=meaning,
+        motion="G33",
+        own_motion=AS_PROGRAMMED,
+        at_x=2 * there.imag,
+        at_z=there.real,
     )
 
 
