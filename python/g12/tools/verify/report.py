@@ -157,7 +157,7 @@ def _judged_values(found: Finding, proof: Proof) -> dict:
     """Return a finding or a note as plain values, its sentence in mm."""
     return {
         "code": found.code,
-        "line": proof.user_line(found.line, found.file),
+        "line": proof.user_line(found.line, found.file) or None,
         "lines": _lines_of(found, proof),
         "file": found.file or None,
         "text": proof.text(found, MM),
