@@ -274,7 +274,7 @@ def where_text(proof: Proof, found: Finding) -> str:
 
 
 def _lines_of(found: Finding, proof: Proof) -> list[int]:
-    return [proof.user_line(line, found.file) for line in found.lines]
+    return sorted({proof.user_line(line, found.file) for line in found.lines})
 
 
 def _listed(found: Sequence[Finding], proof: Proof, unit: Unit) -> list[str]:
