@@ -7,7 +7,7 @@ import math
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapely.geometry import LineString
+from shapely.geometry import LineString, Point
 
 from g12.compensation import simplify
 from g12.compensation.centre_path import centre_path
@@ -17,6 +17,7 @@ from g12.geometry.curve import Line
 from g12.polar.plan import PolarSettings, plan
 from support import planned_moves
 from support.planned_cuts import cuts, path
+from support.random_contours import as_shapely, polygon
 
 MACHINE = PolarSettings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
 
@@ -160,3 +161,44 @@ def test_the_moves_beside_a_short_one_meet(before, follows, z):
     if before is follows is bend:
         between.append(other._replace(curve=Line(one.end, other.start)))
     assert kept == [one, *between, other]
+
+
+# Fillets of the tool's radius.
+
+
+def in_thousandths(point):
+    return complex(round(point.real, 3), round(point.imag, 3))
+
+
+def with_fillets(turned, radius):
+    """Return a pocket of five sides, its fillets as round as the tool, and their centres.
+
+    All words have three decimals, also I and J: hardly a fillet has quite that radius.
+    """
+    corners = [cmath.rect(20.0, turned + 0.4 * math.pi * k) for k in range(5)]
+    sides, contour = polygon(corners), Contour(0.0, 0.0, radius_tolerance=0.01)
+    contour.compensation(41, radius, line=1)
+    contour.line(sides[0].start.real, sides[0].start.imag, line=1, feed=100.0)
+    centres = [side.end * (1.0 - radius / math.cos(math.pi / 5) / 20.0) for side in sides[:5]]
+    cut = radius * math.tan(math.pi / 5)
+    for line, (side, after, centre) in enumerate(zip(sides, sides[1:], centres), 2):
+        start = in_thousandths(side.end - cut * side.direction())
+        end = in_thousandths(side.end + cut * after.direction())
+        arm = in_thousandths(centre - start)
+        contour.line(start.real, start.imag, line=line, feed=100.0)
+        contour.arc(1, end.real, end.imag, i=arm.real, j=arm.imag, line=line, feed=100.0)
+    contour.line(sides[0].start.real, sides[0].start.imag, line=90, feed=100.0)
+    contour.compensation(40, 0.0, line=91)
+    contour.line(0.0, 0.0, line=91, feed=100.0)
+    return contour, centres
+
+
+@pytest.mark.parametrize("radius", [1.0, 3.0])
+def test_a_fillet_of_the_tools_radius_is_cut_though_it_is_rounded(radius):
+    for k in range(25):
+        contour, centres = with_fillets(0.07 * k, radius)
+        made, moved = centre_path(contour, MACHINE.tolerance)
+        assert moved < 0.0015
+        way, wall = as_shapely(made[1:-1]), as_shapely(contour.elements[1:-1])
+        assert radius - way.distance(wall) < MACHINE.tolerance
+        assert max(way.distance(Point(each.real, each.imag)) for each in centres) < 0.0015

@@ -5,7 +5,11 @@ from __future__ import annotations
 
 from g12.compensation.contour import Contour, PathElement
 from g12.compensation.offset import tool_path
-from g12.compensation.simplify import without_rounding_points, without_short_moves
+from g12.compensation.simplify import (
+    with_arcs_of_the_tool,
+    without_rounding_points,
+    without_short_moves,
+)
 from g12.errors import Refusal
 
 SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding
@@ -14,19 +18,22 @@ SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is roun
 def centre_path(contour: Contour, tolerance: float) -> tuple[list[PathElement], float]:
     """Return the tool centre's path, and the greatest shift of the contour for it.
 
-    Points as close together as their last decimal make corners that no tool can follow. Where a
-    contour would be refused, it is tried again without them.
+    Points as close together as their last decimal make corners that no tool can follow, and fillets
+    of the tool's radius are a little off it. Where a contour would be refused, it is tried again
+    without such rounding.
     """
     limit = SHORT_SHARE * tolerance
     elements, shift = without_short_moves(contour.elements, limit)
     try:
         return tool_path(contour, elements, tolerance - shift), shift
     except Refusal as refusal:
-        fewer, further_shift = without_rounding_points(elements, limit - shift)
-        if len(fewer) == len(elements):
+        simpler = elements
+        for simplified in (without_rounding_points, with_arcs_of_the_tool):
+            simpler, further_shift = simplified(simpler, limit - shift)
+            shift += further_shift
+        if simpler == elements:
             raise
-        shift += further_shift
         try:
-            return tool_path(contour, fewer, tolerance - shift), shift
+            return tool_path(contour, simpler, tolerance - shift), shift
         except Refusal:
             raise refusal from None

@@ -9,10 +9,11 @@ tolerance is removed and its neighbours are joined; its Z remains.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import copysign
 from typing import TypeGuard
 
 from g12.compensation.contour import SAME_POINT, PathElement, PlaneMove, Plunge
-from g12.geometry.curve import Line
+from g12.geometry.curve import Arc, Line
 
 MOST_POINTS = 100  # replaced by one line: each further point is checked against all of them
 
@@ -77,6 +78,27 @@ def without_rounding_points(
             element = element._replace(curve=Line(element.start, end.end))
         remaining.append(element)
         at = last + 1
+    return remaining, shift
+
+
+def with_arcs_of_the_tool(
+    elements: Sequence[PathElement], limit: float
+) -> tuple[list[PathElement], float]:
+    """Return a contour's elements with the tool's radius for inside arcs of nearly that radius.
+
+    Within ``limit``: a rounded I and J make such a fillet a little smaller or larger than the tool.
+    The centres are kept. Also returns the greatest shift of the contour by that. Program units.
+    """
+    remaining: list[PathElement] = []
+    shift = 0.0
+    for element in elements:
+        if isinstance(element, PlaneMove) and isinstance(element.curve, Arc):
+            arc = element.curve
+            growth = copysign(element.offset, element.offset * arc.sweep) - arc.radius
+            if element.offset and abs(growth) <= limit:
+                shift = max(shift, abs(growth))
+                element = element._replace(curve=arc.offset(-growth * copysign(1.0, arc.sweep)))
+        remaining.append(element)
     return remaining, shift
 
 
