@@ -300,6 +300,9 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS_LATHE, "G107 Y0 C0 R2.\nG1 C3.", "C while Y is mapped onto the cylinder"),
     (INTEGREX, "G0 B90.", "B90.: this control's machine has the axes XZC"),
     (INTEGREX, "G0 Y1.", "Y1.: this control's machine has the axes XZC"),
+    (control_of("fanuc-lathe-c"), "G21", "G21 is a cycle here, the thread pass, with X and Z and "
+     "no G0 or G1: where it is a mode, the control is fanuc-lathe or fanuc-lathe-b; else take"),
+    (control_of("fanuc-lathe-b"), "G77\nX40. Z1.", "G77 is a cycle here, the turning pass, with X"),
     (LATHE, "G21 G99 G0 X50. Z5.\n/G90 X40. Z1. F.2\nX30.",
      "X and Z may repeat a turning cycle, but the turning cycle here is not the same"),
     (HAAS, "/M29 S99\nG84 Z-1. R.1 F9.", "G84 may be rigid, but the tap speed here is not"),

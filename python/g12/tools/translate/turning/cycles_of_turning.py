@@ -6,8 +6,10 @@ modal: blocks of X, Z, U and W alone repeat them from the same start.
 """
 
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any
 
+from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import (
@@ -46,6 +48,7 @@ from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
+SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
@@ -268,7 +271,8 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
         draft.sure("pass_words", "the cycle takes the words of the block before") if again else ()
     )
     if again and not stored:
-        raise NotTranslated(_other_meaning("G90", meaning))
+        own_code = next(code for code, of in draft.control.meanings.items() if of == meaning)
+        raise NotTranslated(_other_meaning(own_code, meaning))
     words = {**dict(stored), **own}
     words.update({} if taper is None else {"R": taper})
     if not {"X", "Z"} <= words.keys():
@@ -277,11 +281,13 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
 
 
+@cache
 def _other_meaning(code: str, meaning: str) -> str:
     """Return why a single pass is refused whose code is a mode in other G code systems."""
+    others = [name for name in SYSTEMS if read_control(name).meanings.get(code) == "same"]
+    mode = f": where it is a mode, the control is {' or '.join(others)}; else take it out"
     return (
-        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it "
-        "is a mode, the control is fanuc-lathe-b or fanuc-lathe-c; else take it out"
+        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1{mode * bool(others)}"
     )
 
 
