@@ -51,6 +51,7 @@ FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
+ROUND = "o<polar_pocket> call [24] [0] [{}] [3] [1.5] [0] [600] [200]"
 EVENT = "G13.2 Y0 I2 R20 K5 D2 H2"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
 AIR = "T4 M6 G43|S900 M3|G0 X0 Y0 Z30"
@@ -456,7 +457,7 @@ CASES = [
     ("lathe", f"G0 Z10|G95|{ON_FACE}", "feed-per-revolution 7"),
     ("lathe", f"G0 Z10|G95|{ON_FACE.replace('[120]', '[.1]')}", ""),
     ("lathe", f"G0 Z10|{AROUND}|G0 Z10|{ON_FACE}", "rapid-into 6, rapid-turned 7", "50"),
-    ("lathe", f"G0 Z10|{AROUND}|G0 Z10|{ON_FACE}", "rapid-turned 7", "40"),
+    ("lathe", f"G0 Z10|{AROUND}|G0 Z10|{ON_FACE}", "rapid-turned 7, over-the-edge 8", "40"),
     # the stock
     ("mill", P, "", "100x80x20 bore 12"),
     ("mill", P, "", "bore 12"),
@@ -477,6 +478,13 @@ CASES = [
      "no-stock-met 14, above-zero 14, rapid-through 18", "40"),
     ("lathe", "G12.1|G1 Z-2 F300|Z2|G13.1", "no-stock-met 5", "40"),
     ("lathe", f"{FLANK}|G1 X44|G7.1 C0|G0 C0", "", "40"),
+    ("mill", f"X31|{P}|G0 Z1", "plunge-into-stock 7, over-the-edge 7", "100x80x20"),
+    ("mill", f"X29|{P}|G0 Z1", "", "100x80x20 bore 12"),
+    ("lathe", f"G0 Z10|{FACE_HOLE.replace('20', '27', 1)}", "", "40"),
+    ("lathe", f"G0 Z10|{FACE_HOLE.replace('20', '29', 1)}", "over-the-edge 6", "40"),
+    ("lathe", f"G0 Z9|{ROUND.format(15)}", "", "40"),
+    ("lathe", f"G0 Z9|{ROUND.format(18)}", "over-the-edge 6", "40"),
+    ("lathe", f"G0 Z5|{POLYGON}", "plunge-into-stock 6, bar-remains 6", "60"),
     ("lathe", f"{FLANK}|G1 Z-19|G7.1 C0|G0 C0", "rapid-through 11", "40"),
 ]  # fmt: skip
 SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are no cut

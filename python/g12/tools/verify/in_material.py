@@ -16,12 +16,13 @@ from itertools import product
 
 import numpy as np
 from shapely.geometry import LineString, Point
+from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
-from g12.tools.path.part import X, Z, is_sideways
+from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.units import plain
-from g12.tools.verify.compare.plane import plane_of
+from g12.tools.verify.compare.plane import plane_of, turned_plane
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.mistakes.neighbours import judge_circles
@@ -273,7 +274,7 @@ def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
 
 
 def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield plunges, what meets no stock, cuts below a block, and what remains of a bar."""
+    """Yield plunges, what meets no stock or its edge, cuts below a block, and what remains."""
     subject, view = workpiece.subject, workpiece.views[0]
     commanded, moves = subject.commanded, subject.moves
     fed = [
@@ -290,13 +291,46 @@ def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     for line, own in cuts:
         if subject.cutter(own[0]) and not any(_meets_stock(workpiece, index) for index in own):
             yield Finding("no-stock-met", line)
+    yield from _once_a_line(_over_the_edge(workpiece)) if workpiece.stock.is_whole else ()
     lowest = min(fed, key=lambda index: moves[index].end[Z], default=0)
     if workpiece.bottom is not None and fed:
         below = workpiece.bottom - moves[lowest].end[Z]
         if below > SAME_LEVEL:
             yield Finding("below-block", subject.line(lowest), {"size": below}, subject.end(lowest))
     if workpiece.stock.diameter:
-        yield from filter(None, (_remaining(workpiece, each) for each in commanded.on_face))
+        yield from filter(None, (_remaining(workpiece, *each) for each in _cut_away(workpiece)))
+
+
+def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
+    """Yield the pockets and the holes of which a portion lies outside of the stock."""
+    subject, whole = workpiece.subject, workpiece.shape.convex_hull
+    circles = (target for _, target in flat_circles(subject))
+    found = [(to.line, to.wall.origin, to.wall.radius, to.wall.inside) for to in circles]
+    for call in subject.commanded.shapes:
+        if call.name == "polar_pocket":
+            plane = turned_plane(math.radians(call.zero[2]), call.zero[1])
+            centre = plane.on_part(complex(call.x(), call.length("c")))
+            place = centre.real, centre.imag
+            found.append((call.line, place, call.length("diameter") / 2, True))
+    for call in (each for each in subject.commanded.holes if not each.is_side):
+        fed = (index for index in call.moves if subject.moves[index].kind != "rapid")
+        found += [(call.line, subject.end(index), call.cutter, True) for index in fed]
+    for line, (x, y, *_), radius, inside in found:
+        area = disc((x, y), radius - ALLOWED) if inside and radius > ALLOWED else whole
+        if area.intersects(whole) and not whole.covers(area):
+            yield Finding("over-the-edge", line)
+
+
+def _cut_away(workpiece: Workpiece) -> Iterator[tuple[int, range, BaseGeometry]]:
+    """Yield the cuts that a bar is to be cut away by: the line, the moves, the area."""
+    subject, bar = workpiece.subject, workpiece.shape
+    for section in subject.commanded.on_face:
+        plane = plane_of(section, subject.moves[section.at])
+        areas = [beyond(outline, plane, bar) for outline in outlines_of(section)]
+        yield section.line, range(section.at, section.end), unary_union(areas)
+    for call in (each for each in subject.commanded.shapes if each.name == "polar_polygon"):
+        corner = call.length("across_flats") / 2 / math.cos(math.pi / call.given["sides"])
+        yield call.line, call.moves, bar.difference(disc((0.0, 0.0), corner))
 
 
 def _plunge(workpiece: Workpiece, index: int) -> Finding | None:
@@ -323,12 +357,9 @@ def _meets_stock(workpiece: Workpiece, index: int) -> bool:
     return line.distance(workpiece.shape) < cutter - SAME_LEVEL
 
 
-def _remaining(workpiece: Workpiece, section: SectionContour) -> Finding | None:
-    """Return what remains of a bar beyond a contour that it is to be cut away to, if anything."""
-    moves = workpiece.subject.moves
-    level = min(moves[index].end[Z] for index in range(section.at, section.end))
-    plane = plane_of(section, moves[section.at])
-    region = unary_union([beyond(each, plane, workpiece.shape) for each in outlines_of(section)])
+def _remaining(workpiece: Workpiece, line: int, own: range, region: BaseGeometry) -> Finding | None:
+    """Return what remains of a region of the bar that a cut is to cut away, if anything."""
+    level = min(workpiece.subject.moves[index].end[Z] for index in own)
     if level < workpiece.top - SAME_LEVEL:
         uncut = workpiece.material.standing(region, level)
         region = uncut.buffer(-ALLOWED).buffer(ALLOWED)  # slivers are the contour's rounding
@@ -336,4 +367,4 @@ def _remaining(workpiece: Workpiece, section: SectionContour) -> Finding | None:
         return None
     place = (*region.representative_point().coords[0], level)
     values = {"area": region.area, "level": level - workpiece.top, "shape": region}
-    return Finding("bar-remains", section.line, values, place)
+    return Finding("bar-remains", line, values, place)

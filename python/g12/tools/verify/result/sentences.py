@@ -112,6 +112,7 @@ NOTES = {
         "nothing of it goes below its surface of radius {radius:mm}: it stays {size:fine} above"
     ),
     "plunge-into-stock": "it plunges with {share:0} % of the cutter into the stock, at {at:xyz}",
+    "over-the-edge": "a portion of it lies outside of the stock",
     "no-stock-met": "it meets nothing of the stock",
     "inside-surface": (
         "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
