@@ -83,14 +83,14 @@ def test_a_pocket_is_proved_on_the_line_of_the_users_file(reported):
 @pytest.mark.parametrize("command", ["trace", "verify"])
 def test_an_error_has_the_line_of_the_users_file(reported, command):
     code, _, errors = reported(command, POCKET.replace("I.6", "I.1"))
-    assert code == (2 if command == "verify" else 1)
+    assert code == 2
     assert errors.startswith(f"g12 {command}: PROGRAM:8: G12: I0.1 must be greater than")
 
 
 @pytest.mark.parametrize("command", ["trace", "verify"])
 def test_what_the_filter_refuses_is_told(reported, command):
     code, out, errors = reported(command, POCKET.replace("M98 P10", "G150 P10"))
-    assert (code, out) == (2 if command == "verify" else 1, "")
+    assert (code, out) == (2, "")
     assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
 
 
@@ -100,7 +100,7 @@ def test_a_picture_has_the_lines_of_the_users_file(reported, tmp_path):
     assert (code, "in red, line 8: the loaded tool" in out) == (0, True)
     assert "finding in line 8" in picture.read_text()
     code, *_ = reported("plot", POCKET.replace("I.6", "I.1"), "-o", str(picture))
-    assert (code, "refused in line 8: G12: I0.1 must" in picture.read_text()) == (1, True)
+    assert (code, "refused in line 8: G12: I0.1 must" in picture.read_text()) == (2, True)
 
 
 def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):

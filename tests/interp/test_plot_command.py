@@ -78,7 +78,7 @@ def test_where_neither_side_can_be_cut_nothing_is_asked(lathe):
 def test_a_refused_section_is_drawn_without_compensation(tmp_path, capsys):
     program, picture = tmp_path / "wrong.ngc", tmp_path / "wrong.svg"
     program.write_text(WRONG_SIDE)
-    assert main(["plot", str(program), "--ini", str(LATHE), "-o", str(picture)]) == 1
+    assert main(["plot", str(program), "--ini", str(LATHE), "-o", str(picture)]) == 2
     said = capsys.readouterr()
     assert said.out == f"{picture} written\n"
     assert said.err.endswith(f"g12 plot: {program}:15: G12.1: the tool of radius 6 {TIGHT}. G41?\n")

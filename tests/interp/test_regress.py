@@ -437,7 +437,7 @@ def test_a_machine_that_does_not_load_is_one_line(shop):
     shop.write("own.py", "import nothing_of_this_name\n", shop.folder)
     shop.write("plain.ngc", PLAIN)
     code, lines, errors = shop.run("record", shop.programs, "--ini", ini, jobs=2)
-    assert (code, lines, len(errors)) == (1, [], 1)
+    assert (code, lines, len(errors)) == (2, [], 1)
     assert "No module named 'nothing_of_this_name' (own.py:1)" in errors[0]
 
 

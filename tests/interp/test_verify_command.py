@@ -267,7 +267,7 @@ def test_plot_draws_any_program_and_a_lathe_with_c(program, ini, plot, tmp_path)
 
 def test_plot_draws_a_refused_program_up_to_there(plot, tmp_path):
     code, _, err = plot(WRONG)
-    assert code == 1 and "program.ngc:4: G12: I4 must be greater" in err
+    assert code == 2 and "program.ngc:4: G12: I4 must be greater" in err
     assert (tmp_path / "x.svg").exists()
 
 

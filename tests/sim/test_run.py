@@ -50,7 +50,7 @@ def g12_run(tmp_path, capsys):
         (
             "mill_mm",
             "G21 G90 F3000\nG1 C5\nM2\n",
-            1,
+            2,
             [],
             "running part.ngc in real time\n"
             "g12 run: PROGRAM:2: Bad character 'c' used: this INI's machine has axes X Y Z\n",
@@ -66,7 +66,7 @@ def test_what_a_run_says(g12_run, machine, text, code, out, error):
 def test_a_run_that_is_refused_on_its_way_says_where_it_stopped(g12_run):
     text = "G21 G90 F3000\nT1 M6\nG1 X5\nG12 I20 Z-1 D6\nM66 E0 L0\nG12 R5\nM2\n"
     code, (message, place, seconds), errors = g12_run(text)
-    assert code == 1
+    assert code == 2
     assert message == ("message: G12: the cycle uses D6, diameter 20; the loaded tool T1 has 6.35")
     assert place == "stopped at X5 Y0 Z-1 (machine position, mm)"
     assert float(seconds.removesuffix(" s in motion")) > 0
@@ -85,7 +85,7 @@ def test_a_run_starts_with_the_tools_and_offsets_of_files(g12_run, tmp_path):
 
 def test_a_program_that_cannot_be_opened_is_named_as_the_user_did(g12_run):
     code, _, errors = g12_run("")
-    assert code == 1
+    assert code == 2
     assert errors.startswith("running part.ngc in real time\n")
     assert "of PROGRAM " in errors
     assert "can't open PROGRAM" in errors

@@ -190,7 +190,7 @@ def test_a_pipe_that_breaks_elsewhere_is_reported(monkeypatch, capsys):
 
     monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=broken))
     monkeypatch.setattr(main, "nobody_reads", lambda: False)
-    assert ends(capsys, "run") == (1, "g12 run: [Errno 32] Broken pipe\n")
+    assert ends(capsys, "run") == (2, "g12 run: [Errno 32] Broken pipe\n")
 
 
 def test_of_a_log_the_most_specific_line_is_reported(capsys):
@@ -200,6 +200,6 @@ def test_of_a_log_the_most_specific_line_is_reported(capsys):
     def command(_words):
         raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))
 
-    assert command([]) == 1
+    assert command([]) == 2
     said = capsys.readouterr().err
     assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {log[1]}\n"

@@ -143,7 +143,7 @@ def test_the_command_prints_nothing_of_a_file_with_an_error(tmp_path):
     file = tmp_path / "bad.dyn"
     file.write_text(EXAMPLE + "\nN2(1)X1Y1$\n")
     done = subprocess.run([*COMMAND, str(file)], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (1, "")
+    assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr == (
         f"g12 dynapath: {file}: line 2: event type 1 is not the circle mill event, 4\n"
     )

@@ -18,7 +18,7 @@ from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.system import COMMAND
 
-GOOD, FINDING, USAGE = 0, 1, 2
+GOOD, FINDING, ERROR = 0, 1, 2
 WRONG_USE = (UsageError, IniError, OSError)
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
@@ -42,7 +42,7 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """End the program; ``message`` is the fault of its arguments."""
         name = self.prog.replace(COMMAND, "g12")
-        self.exit(USAGE, f"{name}: {message} (usage: {self.prog} --help)\n")
+        self.exit(ERROR, f"{name}: {message} (usage: {self.prog} --help)\n")
 
 
 def typed(text: str) -> str:
@@ -97,11 +97,8 @@ def report_line_numbers(name: str, opened: OpenedProgram) -> None:
         print_error(f"g12 {name}", opened.note)
 
 
-def one_line(name: str, refused: int = FINDING) -> Callable:
-    """Turn a command's errors into one line on standard error and an exit code.
-
-    ``refused`` is the exit code for a program that LinuxCNC refuses.
-    """
+def one_line(name: str) -> Callable:
+    """Turn a command's errors into one line on standard error and an exit code."""
 
     def decorate(command: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
         @functools.wraps(command)
@@ -110,12 +107,9 @@ def one_line(name: str, refused: int = FINDING) -> Callable:
                 return command(arguments)
             except BrokenPipeError:  # main() handles it
                 raise
-            except WRONG_USE as problem:
+            except (*WRONG_USE, *FAILURES) as problem:
                 print_error(f"g12 {name}", _text(problem))
-                return USAGE
-            except FAILURES as problem:
-                print_error(f"g12 {name}", _text(problem))
-                return refused
+                return ERROR
 
         return guarded
 

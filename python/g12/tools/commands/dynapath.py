@@ -21,7 +21,7 @@ examples:
   g12 dynapath events.dyn --units inch
   g12 dynapath events.dyn > events.ngc
 
-exit code: 0 the program is printed, 1 a line is wrong, 2 wrong use
+exit code: 0 the program is printed, 2 a line is wrong, or wrong use
 """
 
 

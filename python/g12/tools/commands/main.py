@@ -14,7 +14,7 @@ from g12 import __version__
 from g12.tools.errors import print_error
 from g12.tools.system import COMMAND
 
-FAILURE = 1
+ERROR = 2
 INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
 
 COMMANDS = {  # each a module of this folder
@@ -53,7 +53,7 @@ def main(arguments: list[str]) -> int:
     except BrokenPipeError as problem:
         if not nobody_reads():
             print_error(f"g12 {name}", problem)
-            return FAILURE
+            return ERROR
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return UNREAD
 
@@ -71,7 +71,7 @@ def command(name: str, arguments: list[str]) -> int:
         return 0
     if name not in COMMANDS:
         print_error("g12", f"no command {name!r} (usage: {COMMAND} --help)")
-        return 2
+        return ERROR
     return module_of(name).main(arguments)
 
 

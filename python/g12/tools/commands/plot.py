@@ -42,7 +42,7 @@ examples:
   g12 plot pocket.ngc --ini mill.ini -o pocket.pdf --run --override 500
   g12 plot flats.ngc --ini lathe.ini -o flats.svg --units inch --stock 1.5
 
-exit code: 0 the picture is there, 1 the program has an error, 2 wrong use
+exit code: 0 the picture is there, 2 the program has an error, or wrong use
 """
 KIND_WORDS = {"finding": "is_finding", "note": "is_note", "not judged": "is_not_judged"}
 

@@ -41,7 +41,7 @@ examples:
   g12 run pocket.ngc --ini mill.ini --override 500
   g12 run pocket.ngc --ini mill.ini --tools other.tbl --timeout 3600
 
-exit code: 0 the program came to its end, 1 it did not, 2 wrong use
+exit code: 0 the program came to its end, 2 it did not, or wrong use
 """
 POSITION_DECIMALS = 6
 LINE_IN_TEXT = re.compile(r"\bline \d")

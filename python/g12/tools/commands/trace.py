@@ -29,7 +29,7 @@ examples:
   g12 trace pocket.ngc --ini mill.ini
   g12 trace pocket.ngc --ini mill.ini --tools other.tbl --digits 10
 
-exit code: 0 the program came to its end, 1 it did not, 2 wrong use
+exit code: 0 the program came to its end, 2 it did not, or wrong use
 """
 
 

@@ -37,7 +37,7 @@ examples:
   g12 translate --control haas-mill part.nc > part.ngc
   g12 translate --control my_lathe.toml --ini lathe.ini part.nc
 
-exit code: 0 the program is printed, 1 a block is refused, 2 wrong use
+exit code: 0 the program is printed, 2 a block is refused, or wrong use
 """
 SAYS_UNITS = re.compile(r"G\s*0*(2[01])(?![0-9.])", re.IGNORECASE)
 UNIT_CODES = {"inch": "G20", "mm": "G21"}

@@ -13,7 +13,6 @@ from pathlib import Path
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
-    USAGE,
     Parser,
     checked_ini,
     number_above,
@@ -45,7 +44,7 @@ findings, beside sizes, areas and directions that are not as programmed:
   with --stock: a rapid goes into it, something of the bar stands beyond a contour
   an axis leaves its travel, with the work offsets of --var or else of the machine's var file
 
-exit code: 0 good, 1 findings (with --strict notes too), 2 refused by LinuxCNC or wrong use
+exit code: 0 good, 1 findings (with --strict notes too), 2 an error or wrong use
 """
 
 
@@ -60,7 +59,7 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("verify", refused=USAGE)
+@one_line("verify")
 def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
