@@ -6,6 +6,7 @@ import re
 import pytest
 
 from g12.tools.commands.main import main
+from g12.tools.machine.ini import read_ini
 from g12.tools.plot.refused import with_refused_contour
 from g12.tools.preview.tracer import Tracer
 from support.polar_programs import in_plane
@@ -73,6 +74,15 @@ def test_a_closed_contour_on_the_wrong_side_is_asked_about(lathe):
 def test_where_neither_side_can_be_cut_nothing_is_asked(lathe):
     across = lathe.trace_text(HEXAGON.replace("G40 X60.", "G40 X-60.")).error
     assert "beside one of them it cuts into the other" in across.text and "?" not in across.text
+
+
+def test_with_wrong_settings_nothing_is_drawn(tmp_path, capsys):
+    program, ini, picture = (tmp_path / name for name in ("wrong.ngc", "wrong.ini", "wrong.svg"))
+    program.write_text(WRONG_SIDE)
+    ini.write_text(read_ini(LATHE).replaced({"G12": {"POLAR_TOLERANCE": "x"}}).text)
+    assert main(["plot", str(program), "--ini", str(ini), "-o", str(picture)]) == 2
+    said = f"g12 plot: {ini}: [G12] POLAR_TOLERANCE = x: must be a number"
+    assert capsys.readouterr().err.startswith(said) and not picture.exists()
 
 
 def test_a_refused_section_is_drawn_without_compensation(tmp_path, capsys):

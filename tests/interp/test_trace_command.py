@@ -59,7 +59,7 @@ def test_a_var_file_gives_the_work_offsets_to_start_with(reported, tmp_path):
     [
         ("G0 X1\nG0 Q1 X\nM2\n", "PROGRAM:2: "),
         ("G0 X1\nG0 C1\nM2\n", "PROGRAM:2: Bad character 'c' used: this INI's machine has axes"),
-        ("", "PROGRAM:0: File ended with no percent sign"),
+        ("", "PROGRAM: File ended with no percent sign"),
     ],
 )
 @pytest.mark.parametrize(

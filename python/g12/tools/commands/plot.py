@@ -60,6 +60,7 @@ def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
     ini = checked_ini(options)
     style.check_format(options.output)
+    _ = ini.settings  # wrong ones are reported before a picture is written
     with opened_program(options.program, ini) as opened:
         found, commanded = moves_to_draw(opened.path, ini, options)
         in_source = trace_in_source(found, opened)

@@ -24,7 +24,8 @@ def ended(program: Path | str, result: Trace) -> Trace:
     """Return the trace of a program that ran to its end, or raise ProgramError."""
     error = result.error
     if error:
-        raise ProgramError(f"{program}:{error.line}: {error.rule}")
+        line = f":{error.line}" if error.line else ""  # an empty file has none
+        raise ProgramError(f"{program}{line}: {error.rule}")
     return result
 
 
