@@ -199,7 +199,11 @@ CASES = [
     ("mill", f"{LOW}|G0 Z1|G49|G0 Z10|X80", "rapid-length-not-used 9"),
     ("mill", f"{LOW}|G0 Z1|G49|G0 Z60|X80", ""),
     ("mill", f"{LOW}|G0 Z1|G49|X80|Z1|{LOW}", "length-deeper 11"),
-    ("mill", f"{LOW}|G10 L1 P4 R2", "path-off 6, tool-table-set 7"),
+    # the tool table as it is at a cut
+    ("mill", f"{LOW}|G10 L1 P4 R2 Z99", ""),
+    ("mill", f"{LOW}|G0 Z1|X40|G10 L1 P4 R4|{LOW}|G0 Z1|X80|G10 L1 P4 R5 Z9|{LOW}",
+     "length-higher 14"),
+    ("lathe", f"{FLAT}|G10 L1 P1 R3|G0 X60 Z10 C0|{FACE_HOLE}|G10 L1 P1 R9 X4", ""),
     # a Z0 that blocks compute each for itself
     ("any mill", "T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5|X40|X40 Z-2|"
      "G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5", "rapid-into 8"),

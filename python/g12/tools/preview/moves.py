@@ -64,6 +64,14 @@ class Error(NamedTuple):
         return re.sub(rf"^(\S+) line {self.line}: ", r"\1: ", self.text)
 
 
+class ToolTable(NamedTuple):
+    """Diameters, lengths along Z and offsets along X, in mm by tool number."""
+
+    diameters: Mapping[int, float]
+    lengths: Mapping[int, float]
+    offsets: Mapping[int, float]
+
+
 @dataclass(frozen=True)
 class Modes:
     """The modal state of an interpreter, in LinuxCNC's words.
@@ -188,7 +196,7 @@ class Trace:
     the global named parameters after the program. ``events`` include the messages. ``files`` are
     those of subs outside the program that execute a remapped code with motion. ``diameters`` and
     ``lengths`` (along Z) and ``offsets`` (along X) are those of the tool table, in mm by tool
-    number.
+    number, as the program leaves it. ``tables`` are those from moves on.
     """
 
     moves: list[Move]
@@ -203,6 +211,18 @@ class Trace:
     diameters: Mapping[int, float] = field(default_factory=dict)
     lengths: Mapping[int, float] = field(default_factory=dict)
     offsets: Mapping[int, float] = field(default_factory=dict)
+    tables: Sequence[tuple[int, ToolTable]] = ()
+
+    def table_at(self, index: int) -> ToolTable:
+        """Return the tool table at a move, which G10 L1 changes, as far as that is known."""
+        known = [table for at, table in self.tables if at <= index]
+        first = [table for _, table in self.tables[:1]]
+        end = ToolTable(self.diameters, self.lengths, self.offsets)
+        return (known or first or [end])[-1]
+
+    def radius(self, index: int) -> float:
+        """Return the radius of a move's tool, 0 if it has none."""
+        return self.table_at(index).diameters.get(self.moves[index].tool, 0.0) / 2
 
     @property
     def messages(self) -> list[Message]:

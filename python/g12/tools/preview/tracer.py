@@ -25,7 +25,7 @@ from typing import Self
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
-from g12.tools.preview.moves import Error, Event, Move, Trace, modes
+from g12.tools.preview.moves import Error, Event, Move, ToolTable, Trace, modes
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -94,7 +94,7 @@ class Tracer:
         machine units) or a var file; without them all are 0.  ``timeout`` is in seconds.
         ``alone`` discards the state of the machine's Python modules after the program. With
         ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
-        G92, that have changed since the previous message.
+        G92, that have changed since the previous message; ``Trace.tables`` are those at messages.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -245,6 +245,7 @@ def sizes_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> list[dict[in
 
 
 def _trace(answer: dict, mm: float) -> Trace:
+    tables = [(at, ToolTable(*sizes_in_mm(sizes, mm))) for at, sizes in answer["tables"]]
     diameters, lengths, offsets = sizes_in_mm(answer["tool_sizes"], mm)
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
@@ -256,4 +257,5 @@ def _trace(answer: dict, mm: float) -> Trace:
         diameters=diameters,
         lengths=lengths,
         offsets=offsets,
+        tables=tables,
     )

@@ -200,6 +200,7 @@ class Canon:
         self.in_force: tuple = ()
         self.watch_offsets = request.get("watch_offsets")
         self.offsets: dict = {}
+        self.tables: list[tuple[int, dict]] = []
         self.pitch = ""
         self.line = 0
         self.on_face = False  # on the face, where Y is the tool's
@@ -275,6 +276,7 @@ class Canon:
     def message(self, text: str) -> None:
         if self.watch_offsets:
             self._note_offsets()
+            self._note_tools()
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
@@ -364,6 +366,11 @@ class Canon:
         for name, values in self.offsets.items():
             if known and values != known[name]:
                 self._note(name)
+
+    def _note_tools(self) -> None:
+        sizes = tool_sizes(len(self.tools))
+        if not self.tables or sizes != self.tables[-1][1]:
+            self.tables.append((len(self.moves), sizes))
 
     def _note(self, text: str) -> None:
         self.events.append((len(self.moves), self.lines.now(), text))
@@ -562,6 +569,7 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
         "error": error,
         "files": sorted(canon.files),
         "tool_sizes": tool_sizes(len(tools)),
+        "tables": canon.tables,
         "position": canon.position,
         **state_after(request, canon.length),
     }

@@ -52,11 +52,13 @@ class Commanded(NamedTuple):
 
 def commanded_by(
     tracer: Tracer, program: Path, trace: Trace, tools: Tools, parameters: Parameters
-) -> Commanded:
-    """Return what the words of a traced program command."""
+) -> tuple[Trace, Commanded]:
+    """Return a traced program with its tool tables, and what its words command."""
     ini, moves, codes = tracer.ini, trace.moves, Codes(tracer.ini)
-    blocks, clamp_is_traced = executed_everywhere(tracer, program, trace, codes, tools, parameters)
-    reader = CircleReader(codes, ini, moves, trace.diameters)
+    blocks, clamp_is_traced, trace = executed_everywhere(
+        tracer, program, trace, codes, tools, parameters
+    )
+    reader = CircleReader(codes, ini, moves, trace)
     pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
     still = [(each.line, each.code, bool(each.elements)) for each in found if each.at == each.end]
@@ -65,7 +67,7 @@ def commanded_by(
     shapes, holes = (list(_calls(blocks, tracer, trace, sub)) for sub in subs)
     if cut:
         cut = with_zero_lines(cut, [*shapes, *holes], moves, CLines(program, codes, ini))
-    return Commanded(
+    return trace, Commanded(
         list(reader.targets(blocks)),
         cut,
         [*_idle_blocks(blocks, codes), *still],
@@ -90,7 +92,7 @@ def _calls(
     """Yield each call of the subs that are ``named`` which moves anything."""
     for block in (each for each in blocks if named(each.text) and each.end > each.at):
         first = trace.moves[block.at]
-        yield SubCall(block, first, trace.diameters.get(first.tool, 0.0) / 2, tracer.ini)
+        yield SubCall(block, first, trace.radius(block.at), tracer.ini)
 
 
 def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str, bool]]:

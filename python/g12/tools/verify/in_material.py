@@ -139,7 +139,7 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
     Of one tool and length the first is reported, if no cut is: ``known`` are the moves of cuts.
     """
     moves, trace, z0 = subject.moves, subject.trace, float(subject.zero[Z])
-    deeper = [missing_length(move, trace.lengths) for move in moves]
+    deeper = [missing_length(trace, index) for index in range(len(moves))]
     reported = {(moves[index].tool, deeper[index]) for index in known}
     for index, move in enumerate(moves if uses_lengths(moves) else ()):
         of, level = (move.tool, deeper[index]), move.end[Z] - deeper[index] - z0

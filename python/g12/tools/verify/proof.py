@@ -146,7 +146,7 @@ def moves_and_words(
         trace = explained(tracer.trace(program, parameters=parameters), ini.path)
         if trace.error:
             return trace, Commanded()
-        return trace, commanded_by(tracer, program, trace, tools, parameters)
+        return commanded_by(tracer, program, trace, tools, parameters)
 
 
 def prove_subject(
@@ -235,8 +235,7 @@ def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Findin
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
     yield from judge_reversals([each.commanded for each in found.sections])
-    first = 0 if ini.swaps_pockets else min((cut.line for cut in cuts), default=0)
-    yield from judge_preview(texts, first)
+    yield from judge_preview(texts, ini.swaps_pockets)
     yield from judge_left_offset(texts, trace.state)
     yield from not_judged(moves, known)
     if part_of(ini).turning:

@@ -135,7 +135,7 @@ class Subject:
     def cutter(self, index: int) -> float:
         """Return the radius of a move's cutter: the loaded one's, else D's; 0 if none is known."""
         tool = self.moves[index].tool
-        return self.trace.diameters.get(tool, 0.0) / 2 or self._named_cutters.get(tool, 0.0)
+        return self.trace.radius(index) or self._named_cutters.get(tool, 0.0)
 
     @cached_property
     def _named_cutters(self) -> dict[int, float]:

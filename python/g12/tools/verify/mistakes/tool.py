@@ -7,7 +7,7 @@ works with the lengths of the table.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from g12.tools.machine.ini import Ini
@@ -74,8 +74,8 @@ def judge_tool_length(cuts: Sequence[MeasuredCut], trace: Trace) -> Iterator[Fin
     with_length: set[int] = set()  # the tools that have cut with the length of the table
     for cut in (each for each in cuts if moves[each.own.start].tool > 0):
         at, first = cut.own.start, moves[cut.own.start]
-        deeper, set_by = missing_length(first, trace.lengths), length_set_by(events, at)
-        beside = trace.offsets.get(first.tool, 0.0) - first.tool_offset[X]
+        deeper, set_by = missing_length(trace, at), length_set_by(events, at)
+        beside = trace.table_at(at).offsets.get(first.tool, 0.0) - first.tool_offset[X]
         intended = set_by in ("G49", "G43.1", "G43.2") or not compensated
         if abs(beside) > SIZE and not intended and (first.tool, beside) not in beside_reported:
             beside_reported.add((first.tool, beside))
@@ -101,9 +101,10 @@ def uses_lengths(moves: Sequence[Move]) -> bool:
     return any(abs(move.tool_offset[axis]) > SIZE for move in moves for axis in (X, Z))
 
 
-def missing_length(move: Move, lengths: Mapping[int, float]) -> float:
+def missing_length(trace: Trace, at: int) -> float:
     """Return by how much the loaded tool is longer than the length in force."""
-    return lengths.get(move.tool, 0.0) - move.tool_offset[Z]
+    move = trace.moves[at]
+    return trace.table_at(at).lengths.get(move.tool, 0.0) - move.tool_offset[Z]
 
 
 def length_set_by(events: Sequence[Event], at: int) -> str:

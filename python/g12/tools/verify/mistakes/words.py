@@ -36,15 +36,14 @@ def judge_home(texts: Sequence[Text], ini: Ini) -> Iterator[Finding]:
             yield Finding("place-not-set", text.number, {"code": code})
 
 
-def judge_preview(texts: Sequence[Text], first: int) -> Iterator[Finding]:
+def judge_preview(texts: Sequence[Text], swaps_pockets: bool) -> Iterator[Finding]:
     """Yield the lines that LinuxCNC's preview may execute otherwise than the machine.
 
-    A tool table set after line ``first`` is one: after the first cut, and anywhere with a random
-    tool changer, whose loaded tool the preview does not change.
+    With a random tool changer, which swaps pockets, it does not change the loaded tool by G10.
     """
     found = {
         "block-delete": [text.number for text in texts if text.deleted],
-        "tool-table-set": [t.number for t in texts if t.number > first and _sets_tools(t)],
+        "tool-table-set": [t.number for t in texts if swaps_pockets and _sets_tools(t)],
     }
     for code, lines in found.items():
         if lines:

@@ -13,7 +13,7 @@ import numpy as np
 
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import Block
-from g12.tools.preview.moves import Move
+from g12.tools.preview.moves import Move, Trace
 from g12.tools.verify.expected.circle_mill import (
     EventWords,
     entries_of_call,
@@ -135,14 +135,16 @@ class CircleReader:
     codes: Codes
     ini: Ini
     moves: Sequence[Move]
-    diameters: Mapping[int, float]
+    trace: Trace
     offset: float | None = None  # radius of the D last commanded, mm
     number: int | None = None  # the tool that it named
+    diameters: Mapping[int, float] = field(default_factory=dict)  # in the block
     plane: float = 0.0  # W last commanded, mm in program coordinates
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle, and its target."""
         for block in blocks:
+            self.diameters = self.trace.table_at(block.at).diameters
             cycle = self.codes.cycle_of(block.text.call, block.codes)
             if cycle and block.end > block.at:
                 yield block, self._target(block, cycle)

@@ -9,6 +9,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -40,8 +41,10 @@ def executed_everywhere(
     codes: Codes,
     tools: Tools,
     parameters: Parameters = None,
-) -> tuple[list[Block], bool]:
+) -> tuple[list[Block], bool, Trace]:
     """Return every execution of the blocks that matter, in order; whether C's clamp is reported.
+
+    Also the trace with the tool table at each of them.
 
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
     are all, with what the subs of C's clamp tell, if it takes those.
@@ -59,7 +62,8 @@ def executed_everywhere(
         copy = copies.trace(tracer, lines, tools, parameters, watch_offsets=True)
         ends, expected = ([move.end for move in each.moves] for each in (copy, trace))
         if ends == expected or (not some and len(ends) == len(expected)):
-            return blocks_in(copy, copies.texts), bool(some and clamps)
+            blocks = blocks_in(copy, copies.texts)
+            return blocks, bool(some and clamps), replace(trace, tables=copy.tables)
     raise moves_differ(program)
 
 

@@ -224,8 +224,8 @@ NOT_JUDGED = {
     "upright": "the material around a circle in another plane than G17",
     "block-delete": "the program with block delete off: a preview skips what begins with /",
     "tool-table-set": (
-        "cuts with the sizes before this G10 L1, L10 or L11; verify takes the tool "
-        "table as the program leaves it"
+        "cuts with the sizes of this G10 L1, L10 or L11: with a random tool changer LinuxCNC's "
+        "preview keeps those of the loaded tool"
     ),
     "plain-moves": "feed moves outside of cycles and sections",
 }

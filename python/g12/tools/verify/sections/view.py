@@ -75,7 +75,7 @@ def view_of(
 ) -> SectionView:
     """Return the view of a section that moves; ``path`` and ``real`` are on its part."""
     first, allowed = trace.moves[section.at], tolerance + LAST_DECIMAL
-    tool = trace.diameters.get(first.tool, 0.0) / 2
+    tool = trace.radius(section.at)
     steps = contour_path(section.elements, section.height, tool, tolerance)
     kinematics = bool(axes.face) and not section.surface
     blended = max(allowed, blending_commanded(section)) if kinematics else allowed
