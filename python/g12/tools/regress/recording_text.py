@@ -40,7 +40,7 @@ FACTS = ("program", "machine", "linuxcnc", "units")
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
 BLOCK_LINE = re.compile(r"(\d+):(?: (.*))?")
 G92_OFF = "G92.2"  # recordings of earlier versions list it
-ERROR = re.compile(r"error at (\d+): (.*)")
+ERROR_LINE = re.compile(r"error at (\d+): (.*)")
 NUMBER_TEXT = r"[-\d.]{1,40}"  # longest number: above any machine, below infinite floats
 AXIS_WORDS = rf"((?: [XYZABCUVW]{NUMBER_TEXT})*)"
 MOVE = re.compile(
@@ -271,7 +271,7 @@ class RecordingReader:
 
 
 def _ending(line: str) -> tuple[Error | None, str]:
-    error = ERROR.fullmatch(line)
+    error = ERROR_LINE.fullmatch(line)
     if error:
         return Error(error.group(2), int(error.group(1))), ""
     if not line.startswith("end: "):

@@ -48,7 +48,7 @@ from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
-SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
+CODE_SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
 METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
@@ -284,7 +284,7 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
 @cache
 def _other_meaning(code: str, meaning: str) -> str:
     """Return why a single pass is refused whose code is a mode in other G code systems."""
-    others = [name for name in SYSTEMS if read_control(name).meanings.get(code) == "same"]
+    others = [name for name in CODE_SYSTEMS if read_control(name).meanings.get(code) == "same"]
     mode = f": where it is a mode, the control is {' or '.join(others)}; else take it out"
     return (
         f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1{mode * bool(others)}"
