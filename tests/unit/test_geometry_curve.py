@@ -57,6 +57,13 @@ def test_a_curve_reversed_is_the_same_the_other_way(curve, share):
     assert back.direction(share) == near(-curve.direction(1.0 - share))
 
 
+@given(CURVE, st.floats(0.0, 0.4))
+def test_the_curvature_is_the_turn_to_the_left_by_the_length(curve, share):
+    length = min(0.1, 0.5 * curve.length)
+    turned = curve.direction(share + length / curve.length) / curve.direction(share)
+    assert curve.curvature * length == near(angle_of(turned))
+
+
 @given(CURVE, st.floats(0.0, 0.4), st.floats(0.6, 1.0))
 def test_a_portion_lies_between_two_shares(curve, first, last):
     part = curve.portion(first, last)

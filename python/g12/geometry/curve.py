@@ -25,6 +25,10 @@ class Line(NamedTuple):
     def length(self) -> float:
         return abs(self.end - self.start)
 
+    @property
+    def curvature(self) -> float:
+        return 0.0
+
     def point(self, share: float) -> complex:
         return self.start + share * (self.end - self.start)
 
@@ -83,6 +87,11 @@ class Arc(NamedTuple):
     @property
     def length(self) -> float:
         return self.radius * abs(self.sweep)
+
+    @property
+    def curvature(self) -> float:
+        """The turn to the left in radians per unit of length."""
+        return math.copysign(1.0 / self.radius, self.sweep)
 
     def point(self, share: float) -> complex:
         return self.centre + (self.start - self.centre) * cmath.rect(1.0, share * self.sweep)

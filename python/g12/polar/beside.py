@@ -30,7 +30,7 @@ from math import copysign, pi, sqrt
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove
 from g12.errors import number
-from g12.geometry.curve import Arc, Curve, Line, angle_of
+from g12.geometry.curve import Curve, Line, angle_of
 from g12.moves.feed import Split
 from g12.moves.spacing import BULGE, Density, Stretch, spaced
 from g12.polar.pole import POLE
@@ -110,8 +110,7 @@ def _apsides(curve: Curve) -> list[float]:
 
 def _density(curve: Curve, law: Law, beside: float) -> Density:
     """Return the segments per unit of length, and their share of the deviation (+ is left)."""
-    length, even = curve.length, 0.5 / law.ripple
-    own = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
+    length, own, even = curve.length, curve.curvature, 0.5 / law.ripple
     bulging, flat = 1.0 / (8.0 * BULGE * law.deviation), 1.0 / (18.0 * BULGE * law.deviation)
 
     def density(at: float) -> tuple[float, float]:

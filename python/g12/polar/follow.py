@@ -23,7 +23,7 @@ acceleration by p times C's.
 
 from __future__ import annotations
 
-from math import ceil, copysign, inf, pi, sqrt
+from math import ceil, inf, pi, sqrt
 from typing import NamedTuple
 
 from g12.compensation.contour import SAME_POINT, PlaneMove
@@ -73,9 +73,8 @@ class MoveDemands:
 
     def __init__(self, move: PlaneMove, limits: FaceLimits) -> None:
         curve = move.curve
-        self._feed, self._bend, self._most = move.feed, 0.0, limits.acceleration
-        if isinstance(curve, Arc):
-            self._bend, self._most = 1.0 / curve.radius, limits.round_acceleration
+        self._feed, self._bend = move.feed, abs(curve.curvature)
+        self._most = limits.round_acceleration if self._bend else limits.acceleration
         self.points = [_demand(move, at, limits) for at in (0.0, *shares_to_check(curve))]
 
     def highest_feed(self, point: Demand, share: float = 1.0) -> float:
@@ -113,8 +112,7 @@ def _demand(move: PlaneMove, at: float, limits: FaceLimits) -> Demand:
     slowness = _slowness(min(MOST_TURNING, abs(around) / max(slide, SAME_POINT)), move.feed, limits)
     if abs(point) <= abs(beside) + SAME_POINT:
         return Demand(at, 0.0, (), slowness)
-    bent = copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
-    turning = around / slide
+    bent, turning = curve.curvature, around / slide
     sliding = along + beside * turning
     pushed = (bent * along - 2.0 * turning * sliding + beside * turning * turning) / slide
     lifted = turning * turning * slide - bent * around + beside * pushed

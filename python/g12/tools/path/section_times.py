@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from g12.geometry.curve import Arc, Curve
+from g12.geometry.curve import Curve
 from g12.tools.path.face_follow import axis_derivatives
 from g12.tools.path.lathe_axes import LatheAxes
 from g12.tools.path.least_time import least_seconds, seconds_at
@@ -105,14 +105,10 @@ def _drawn(run: Sequence[Leg]) -> _Stretch:
     shares = (lengths - ends[owners]) / np.diff(ends)[owners]
     points = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
     heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
-    bends = np.array([_bend(leg.curve) for leg in run])[owners]
+    bends = np.array([leg.curve.curvature for leg in run])[owners]
     feeds = np.array([leg.feed for leg in run])[owners]
     polar = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
     return _Stretch(points, feeds, bends, polar.real, polar.imag)
-
-
-def _bend(curve: Curve) -> float:
-    return math.copysign(1.0 / curve.radius, curve.sweep) if isinstance(curve, Arc) else 0.0
 
 
 def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
