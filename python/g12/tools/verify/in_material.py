@@ -81,11 +81,14 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     subject, face = workpiece.subject, workpiece.views[0]
     known = [False, *subject.ends_known]
     low = [(view, _low_moves(workpiece, view)) for view in workpiece.views]
+    reported: set[int] = set()  # lines: of one the first rapid through material is enough
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]
         for view in (view for view, is_low in low if is_low[index]):
-            if view.meets(subject, index):
-                yield from _in_view(workpiece, view, index, begins, ends)
+            if view.meets(subject, index) and not (reported and subject.line(index) in reported):
+                found = list(_in_view(workpiece, view, index, begins, ends))
+                reported |= {each.line for each in found if each.is_finding}
+                yield from found
         if begins and ends and len(subject.sideways[index]) > 1:
             yield Finding("rapid-turned", subject.line(index))
         end = subject.end(index)
