@@ -39,7 +39,9 @@ LOW, HIGH = "G13 I9 Z-2 D4", "G13 I9 Z-3 D4|G0 Z1"
 RING, CLEARED, SHALLOW = "G13 I20.2 Z-4 D4", "G13 I7 K20 Q6 Z-4 D4", "G13 I7 K20 Q6 Z-2 D4"
 FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [120] [0] [0] [0]"
 SIDE_HOLE = "o<side_holes> call [1] [-30] [0] [-9999] [60] [8] [2] [120] [0] [0] [0]"
-TAP = FACE_HOLE.replace("[120]", "[1.5]").removesuffix("[0]") + "[1]"
+TAP, SIDE_TAP = (
+    hole.replace("[120]", "[1.5]").removesuffix("[0]") + "[1]" for hole in (FACE_HOLE, SIDE_HOLE)
+)
 HOLES = "o<side_holes> call [4] [-15] [0] [90] [30] [6] [2] [100] [0] [.1] [0]"
 POCKET = "G13 I.2 K.45 Q.2 Z-.3 D1 F20"
 GROOVE = "G0 Z-20|G7.1 C25|G1 X48 F200|G1 Z-40 C60 F250"
@@ -192,6 +194,8 @@ CASES = [
     # a tool that is 10 mm longer has its tip in the pocket
     ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z9|T10 M6 G43|S900 M3|G0 X40 Z9",
      "rapid-through 9"),
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0 Z1|{LOW}|G0 Z9|G49|T10 M6 G43|S900 M3|G0 X40|Z9",
+     "rapid-through 10"),
     # a rapid with another length than the tool's
     ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z5|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}",
      "rapid-length 5"),
@@ -382,6 +386,8 @@ CASES = [
     ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP}", ""),
     ("lathe", f"G0 Z10|{TAP}|{FACE_HOLE}", "tap-undrilled 6"),
     ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP.replace('[8]', '[9]')}|{TAP}", "tap-undrilled 7"),
+    ("lathe", f"G0 X80 Z10|{SIDE_HOLE}|{SIDE_TAP}", ""),
+    ("lathe", f"G0 X80 Z10|{SIDE_HOLE}|{SIDE_TAP.replace('[8]', '[9]')}", "tap-undrilled 7"),
     ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP.replace('[0]', '[9]', 1)}|{TAP}", "tap-undrilled 7"),
     # a section without a move
     ("lathe", "G12.1|M8|G13.1", "empty 5"),
