@@ -13,6 +13,7 @@ import pytest
 
 from g12.tools.headless.errors import MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
+from support.cut_geometry import points_at
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package
 from support.small_configs import content_of
@@ -39,7 +40,7 @@ def test_real_motion_follows_the_trace(machine):
     program = ["G21 G90 G61 F1000", "G1 X10 Y5", "G3 X20 Y15 I0 J10", "G2 I5", "G0 Z3", "M2"]
     samples = machine.motion_of(program)
     moves = trace_text(program, SIM / "mill_mm.ini").moves
-    path = np.array([move.point(f)[:3] for move in moves for f in np.linspace(0, 1, 400)])
+    path = np.concatenate([points_at(move, np.linspace(0, 1, 400)) for move in moves])
     real = np.column_stack([samples.axes[axis] for axis in "XYZ"])
     for point in real[::20]:
         assert np.min(np.hypot(*(path - point).T[:2])) < 0.06

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from g12.tools.path.part import arc_points
+
 SAME_POINT = 1e-6  # mm
 NEAR = 1e-6  # of a move: the points whose difference is its direction
 
@@ -44,9 +46,17 @@ def radii(moves):
     return [circle.radius for circle in full_circles(moves)]
 
 
+def points_at(move, fractions):
+    """Return points (n, 3) after fractions of a move."""
+    fractions = np.asarray(fractions)
+    if move.kind == "arc":
+        return arc_points(move, fractions)[:, :3]
+    return np.outer(1.0 - fractions, move.start[:3]) + np.outer(fractions, move.end[:3])
+
+
 def tangent(move, fraction):
     """Return the unit direction in X, Y, Z after a fraction of a move; zeros without motion."""
-    before, after = (np.array(move.point(fraction + step)[:3]) for step in (-NEAR, NEAR))
+    before, after = points_at(move, [fraction - NEAR, fraction + NEAR])
     return (after - before) / (math.dist(before, after) or 1.0)
 
 

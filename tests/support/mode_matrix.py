@@ -73,8 +73,8 @@ def diameters(block):
 def path_of(traced):
     """Return points along all that moves, and each move's kind and feed."""
     moves = cut_geometry.moving(traced.moves)
-    points = [move.point(fraction)[:3] for move in moves for fraction in FRACTIONS]
-    return np.array(points), [(move.kind, round(move.feed, 6)) for move in moves]
+    points = [cut_geometry.points_at(move, FRACTIONS) for move in moves]
+    return np.concatenate(points), [(move.kind, round(move.feed, 6)) for move in moves]
 
 
 def check_same_path(inch, metric, coordinates, case):

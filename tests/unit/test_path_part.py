@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The part's view of a path: points, polylines, swept areas, tool tables."""
 
+import cmath
 import math
 
 import numpy as np
@@ -41,14 +42,24 @@ def test_chords_of_an_arc_stay_within_the_error(radius, sweep, error):
     assert sagitta <= error * (1 + 1e-6)
 
 
+def turned(place, degrees):
+    """Return a position turned about Z."""
+    x, y, *others = place
+    at = complex(x, y) * cmath.rect(1.0, math.radians(degrees))
+    return (at.real, at.imag, *others)
+
+
 @pytest.mark.parametrize("plane", [17, 18, 19])
-def test_many_points_of_an_arc_are_those_of_the_move(plane):
+def test_the_points_of_an_arc_turn_with_the_work_coordinate_system(plane):
     hand = Hand().rapid(x=9, y=8, z=7)
     hand.arc(-2, 3, 4, plane=plane, x=2, y=1, z=5, c=30)
-    move = hand.moves[-1]._replace(rotation=25.0)
-    fractions = np.linspace(0, 1, 9)
-    each = [move.point(fraction) for fraction in fractions]
-    assert np.allclose(part.arc_points(move, fractions), each, atol=1e-12)
+    move, fractions = hand.moves[-1], np.linspace(0, 1, 9)
+    start, end, centre = (turned(place, 25.0) for place in (move.start, move.end, move.centre))
+    rotated = move._replace(start=start, end=end, centre=centre, rotation=25.0)
+    points = part.arc_points(move, fractions)
+    assert np.allclose(points[:, 5], 30.0 * fractions)
+    expected = [turned(point, 25.0) for point in points]
+    assert np.allclose(part.arc_points(rotated, fractions), expected, atol=1e-12)
 
 
 @given(x=st.floats(-60, 60), turn=st.floats(-170, 170), start=st.floats(0, 60))

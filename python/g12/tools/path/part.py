@@ -173,7 +173,7 @@ def arc_segments(radius: float, sweep: float, chord_error: float) -> int:
 
 
 def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
-    """Return machine positions (n, 9) after fractions of an arc: ``Move.point`` of many."""
+    """Return machine positions (n, 9) after fractions of an arc."""
     axes, centre = plane_axes(move), np.array(move.centre)
     start, end = (axes @ (np.array(point[:3]) - centre) for point in (move.start, move.end))
     angles, radius = move.sweep * fractions, math.hypot(*start[:2])

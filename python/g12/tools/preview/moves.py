@@ -153,19 +153,6 @@ class Move(NamedTuple):
         rise = self._in_plane(self.end)[2] - self._in_plane(self.start)[2]
         return math.hypot(self.radius * self.sweep, rise)
 
-    def point(self, fraction: float) -> Position:
-        """Return the position after ``fraction`` (0 to 1) of the move."""
-        straight = tuple(a + (b - a) * fraction for a, b in zip(self.start, self.end))
-        if self.kind != "arc":
-            return straight
-        one, two, three = self._in_plane(self.start)
-        end_one, end_two, end_three = self._in_plane(self.end)
-        growth = 1 + (math.hypot(end_one, end_two) / self.radius - 1) * fraction
-        cos, sin = math.cos(self.sweep * fraction), math.sin(self.sweep * fraction)
-        rotated = ((one * cos - two * sin) * growth, (one * sin + two * cos) * growth)
-        level = three + (end_three - three) * fraction
-        return (*self._out_of_plane((*rotated, level)), *straight[3:])
-
     def _in_plane(self, position: Sequence[float]) -> tuple[float, float, float]:
         """First, second and third axis of the plane, seen from the centre of the arc."""
         (x, y, z), (x0, y0, z0) = position[:3], self.centre
@@ -175,14 +162,6 @@ class Move(NamedTuple):
         third = THIRD_AXIS[self.plane]
         first, second, last = ((x, y, z) * 2)[third + 1 : third + 4]
         return first, second, last
-
-    def _out_of_plane(self, values: Sequence[float]) -> tuple[float, float, float]:
-        """X, Y, Z of a point on the plane's axes, relative to the centre of the arc."""
-        third = THIRD_AXIS[self.plane]
-        x, y, z = (tuple(values) * 2)[2 - third : 5 - third]
-        x, y = _rotated(x, y, self.rotation)
-        x0, y0, z0 = self.centre
-        return x + x0, y + y0, z + z0
 
 
 @dataclass(frozen=True)

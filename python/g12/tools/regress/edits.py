@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
+from g12.tools.path.part import arc_points
 from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.alignment import pairs
 from g12.tools.regress.recording_text import Note, RecordedStep, turns_only
@@ -188,7 +189,7 @@ def _arc_changes(was: Move, now: Move, tolerance: Tolerance, moved: bool) -> lis
         return [Change("direction", 0.0, _direction(was), _direction(now))]
     if moved or math.dist(was.centre, now.centre) <= tolerance.length:
         return []
-    by = math.dist(was.point(0.5)[:3], now.point(0.5)[:3])
+    by = math.dist(*(arc_points(move, np.array([0.5]))[0, :3] for move in (was, now)))
     return [Change("radius", by, was.radius, now.radius)] if by > tolerance.length else []
 
 
