@@ -9,6 +9,8 @@ from __future__ import annotations
 import functools
 import itertools
 
+from interpreter import MODE_INCREMENTAL
+
 from g12.host.interp import (
     INVERSE_TIME,
     PER_REVOLUTION,
@@ -45,7 +47,6 @@ READING_WORDS = (  # codes that read words of a cycle's block
 )
 # M codes that neither read words of the block nor change the tool
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
-INCREMENTAL_MODE = 1  # distance_mode
 
 # every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
 CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
@@ -150,7 +151,7 @@ def snapshot(interp: Interp) -> Context:
         x=interp.current_x,
         y=interp.current_y,
         z=interp.current_z,
-        incremental=interp.distance_mode == INCREMENTAL_MODE,
+        incremental=interp.distance_mode == MODE_INCREMENTAL,
         plane=PLANE_CODES.get(interp.plane, "G17.1, G18.1 or G19.1"),
         inverse_time=interp.feed_mode == INVERSE_TIME,
         per_revolution=interp.feed_mode == PER_REVOLUTION,
