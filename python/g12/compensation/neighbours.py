@@ -68,7 +68,7 @@ class _Neighbourhood:
 
         Of points that are cut equally deep it is the last.
         """
-        found, depth = None, ALLOWANCE * self._wall.radius
+        found, depth = None, (1.0 - ALLOWANCE) * self._wall.radius
         for point in reversed(list(self._wall.points())):
             depth, cutting = self._others.deepest(point, depth, partial(self._cuts, point))
             found = (point, cutting) if cutting else found
@@ -102,7 +102,7 @@ class _Neighbourhood:
         """
         wall = self._wall
         inward = -1j * wall.side * point.direction
-        deep = point._replace(point=centre + ALLOWANCE * wall.radius * inward)
+        deep = point._replace(point=centre + (1.0 - ALLOWANCE) * wall.radius * inward)
         removed = deep if wall.clearance(deep.point)[0] < 0.0 else point  # a fin: air behind it
         return any(
             enters([each], wall, CHECK_STEP)
