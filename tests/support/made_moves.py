@@ -7,7 +7,7 @@ import numpy as np
 
 from g12.tools.path.samples import Samples
 from g12.tools.path.track import Limits
-from g12.tools.preview.moves import Modes, Move, Trace
+from g12.tools.preview.moves import Modes, Move, ToolTable, Trace
 
 HOME = (0.0,) * 9
 # X, Y and Z in mm/s, C in degrees/s, and along the path
@@ -63,7 +63,7 @@ class Hand:
             modes=METRIC,
             printed="",
             position=self.at,
-            diameters={1: 6.0, 2: 10.0},
+            tables=[(0, ToolTable({1: 6.0, 2: 10.0}, {}, {}))],
             **nothing,
         )
 

@@ -10,8 +10,10 @@ plus ``Move.tool_offset``.)
 
 import math
 import re
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from operator import itemgetter
 from typing import NamedTuple
 
 from g12.machine_ini import AXIS_LETTERS
@@ -173,9 +175,8 @@ class Trace:
     units (motion_mode, plane, feed_rate …), after the refused block if there was one. ``printed``
     is the text of ``(print, …)`` and of Python, ``position`` the end of the last move, ``globals``
     the global named parameters after the program. ``events`` include the messages. ``files`` are
-    those of subs outside the program that execute a remapped code with motion. ``diameters`` and
-    ``lengths`` (along Z) and ``offsets`` (along X) are those of the tool table, in mm by tool
-    number, as the program leaves it. ``tables`` are those from moves on.
+    those of subs outside the program that execute a remapped code with motion. ``tables`` are the
+    tool tables, each with the number of moves before it; the last is as the program leaves it.
     """
 
     moves: list[Move]
@@ -186,18 +187,18 @@ class Trace:
     printed: str
     position: Position
     globals: dict[str, float]
+    tables: Sequence[tuple[int, ToolTable]]
     files: tuple[str, ...] = ()
-    diameters: Mapping[int, float] = field(default_factory=dict)
-    lengths: Mapping[int, float] = field(default_factory=dict)
-    offsets: Mapping[int, float] = field(default_factory=dict)
-    tables: Sequence[tuple[int, ToolTable]] = ()
+
+    @property
+    def diameters(self) -> Mapping[int, float]:
+        """The tools' diameters as the program leaves them."""
+        return self.tables[-1][1].diameters
 
     def table_at(self, index: int) -> ToolTable:
         """Return the tool table at a move, which G10 L1 changes, as far as that is known."""
-        known = [table for at, table in self.tables if at <= index]
-        first = [table for _, table in self.tables[:1]]
-        end = ToolTable(self.diameters, self.lengths, self.offsets)
-        return (known or first or [end])[-1]
+        following = bisect_right(self.tables, index, key=itemgetter(0))
+        return self.tables[max(following - 1, 0)][1]
 
     def radius(self, index: int) -> float:
         """Return the radius of a move's tool, 0 if it has none."""

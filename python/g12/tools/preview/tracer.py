@@ -94,7 +94,7 @@ class Tracer:
         machine units) or a var file; without them all are 0.  ``timeout`` is in seconds.
         ``alone`` discards the state of the machine's Python modules after the program. With
         ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
-        G92, that have changed since the previous message; ``Trace.tables`` are those at messages.
+        G92, that have changed since the previous message; ``Trace.tables`` has those at messages.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -245,17 +245,13 @@ def sizes_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> list[dict[in
 
 
 def _trace(answer: dict, mm: float) -> Trace:
-    tables = [(at, ToolTable(*sizes_in_mm(sizes, mm))) for at, sizes in answer["tables"]]
-    diameters, lengths, offsets = sizes_in_mm(answer["tool_sizes"], mm)
+    sizes = [*answer["tables"], (len(answer["moves"]), answer["tool_sizes"])]
     return Trace(
         moves=[Move._make(move) for move in answer["moves"]],
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
         **{key: answer[key] for key in ("state", "printed", "position", "globals")},
+        tables=[(at, ToolTable(*sizes_in_mm(each, mm))) for at, each in sizes],
         files=tuple(answer["files"]),
-        diameters=diameters,
-        lengths=lengths,
-        offsets=offsets,
-        tables=tables,
     )
