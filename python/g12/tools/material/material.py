@@ -141,12 +141,7 @@ class _Areas:
         self._rows: list[tuple[float, ...]] = []
 
     def add(
-        self,
-        area: Solid | Opening | _Sweep,
-        bounds: Bounds,
-        level: float,
-        since: int,
-        until: float = math.inf,
+        self, area: Area, bounds: Bounds, level: float, since: int, until: float = math.inf
     ) -> None:
         if bounds:  # an empty area has none
             self._areas.append(area)

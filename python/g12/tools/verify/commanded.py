@@ -18,6 +18,7 @@ from g12.tools.verify.reading.codes import CYLINDER, POLAR, Codes
 from g12.tools.verify.reading.executed_subs import executed_everywhere
 from g12.tools.verify.reading.sections import sections
 from g12.tools.verify.reading.zero_lines import CLines, with_zero_lines
+from g12.tools.verify.result.finding import Finding
 
 PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 
@@ -25,7 +26,7 @@ PENS = {POLAR: Pen, CYLINDER: SurfacePen}
 class Commanded(NamedTuple):
     """What a program commands; each circle has its block.
 
-    ``idle`` are the line and the code of each cycle that moves nothing, and whether it should.
+    ``idle`` are the findings of the cycles and the sections that move nothing.
     ``clamp_is_traced`` says that events show the codes of C's clamp. ``moves_there`` are the moves
     with the work offsets of the machine's var file, None where they differ by more than those.
     ``in_g7`` says from which move on X words are diameters or not.
@@ -33,7 +34,7 @@ class Commanded(NamedTuple):
 
     circles: Sequence[tuple[Block, Target]] = ()
     sections: Sequence[SectionContour] = ()
-    idle: Sequence[tuple[int, str, bool]] = ()
+    idle: Sequence[Finding] = ()
     shapes: Sequence[SubCall] = ()
     holes: Sequence[SubCall] = ()
     clamp_is_traced: bool = False
@@ -61,7 +62,11 @@ def commanded_by(
     reader = CircleReader(codes, ini, moves, trace)
     pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
-    still = [(each.line, each.code, bool(each.elements)) for each in found if each.at == each.end]
+    still = [
+        Finding("not-cut" if each.elements else "empty", each.line, {"code": each.code})
+        for each in found
+        if each.at == each.end
+    ]
     cut = [each for each in found if each.end > each.at]
     subs = (codes.shape_of, codes.holes_of)
     shapes, holes = (list(_calls(blocks, tracer, trace, sub)) for sub in subs)
@@ -95,13 +100,13 @@ def _calls(
         yield SubCall(block, first, trace.radius(block.at), tracer.ini)
 
 
-def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[tuple[int, str, bool]]:
-    """Yield the line and the code of each cycle and shape that moves nothing, and True."""
+def _idle_blocks(blocks: Sequence[Block], codes: Codes) -> Iterator[Finding]:
+    """Yield the cycles and the shapes that move nothing."""
     for block in (each for each in blocks if each.at == each.end):
-        if codes.cycle_of(block.text.call, block.codes):
-            yield block.text.number, codes.name_of(block.codes), True
-        elif codes.shape_of(block.text) or codes.holes_of(block.text):
-            yield block.text.number, block.text.call, True
+        is_cycle = codes.cycle_of(block.text.call, block.codes)
+        if is_cycle or codes.shape_of(block.text) or codes.holes_of(block.text):
+            name = codes.name_of(block.codes) if is_cycle else block.text.call
+            yield Finding("not-cut", block.text.number, {"code": name})
 
 
 def _moves_there(

@@ -196,10 +196,10 @@ def _started_in_cut(workpiece: Workpiece) -> Iterator[Finding]:
         point = view.part.points(np.array(subject.moves[last].end))[0]
         region = Point(point[:2]).buffer(subject.cutter(last) or ALLOWED)
         known = subject.ends_known[last] and view.meets(subject, last)
-        is_solid = view.material.was_solid(region, point[Z], event.at)
         code, _, tool = event.text.partition(" ")
-        beside = not is_solid and (not tool or subject.part.turning)
-        if known and point[Z] < view.material.top - SAME_LEVEL and not beside:
+        is_below = known and point[Z] < view.material.top - SAME_LEVEL
+        anywhere = tool and not subject.part.turning
+        if is_below and (anywhere or view.material.was_solid(region, point[Z], event.at)):
             found = "change-in-cut" if tool else "start-in-cut"
             yield Finding(found, event.line, {"code": code, "tool": tool}, subject.end(last))
 

@@ -227,9 +227,10 @@ def _judge_depth(
 ) -> Iterator[Finding]:
     """Yield a depth above the tool, unless there is material to cut."""
     wall, depth = target.wall, target.wall.height(target.deepest)
+    if target.dialect == EVENT or target.deepest <= tolerance:
+        return
     own = disc(wall.origin, wall.radius)
-    is_above = target.dialect != EVENT and target.deepest > tolerance
-    if is_above and (wall.plane != Z or material.standing(own, depth, block.at).area <= LEAST_AREA):
+    if wall.plane != Z or material.standing(own, depth, block.at).area <= LEAST_AREA:
         values = {"depth": depth, "start": wall.height(0.0), "hint": minus_hint(depth, wall.face)}
         yield Finding("cuts-air", target.line, values)
 

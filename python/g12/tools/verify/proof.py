@@ -204,12 +204,11 @@ def _judged(subject: Subject, workpiece: Workpiece, cuts: Cuts) -> Iterator[Find
     yield from (each for kind in cuts for cut in kind for each in cut.judged)
     yield from judge_material(workpiece)
     yield from (Finding("not-measured", line, {"code": code}) for line, code in unmeasured)
-    for line, code, is_asked in commanded.idle:
-        yield Finding("not-cut" if is_asked else "empty", line, {"code": code})
+    yield from commanded.idle
     yield from judge_travel(commanded.circles, commanded.moves_there, trace.events, ini)
     yield from _mistakes(subject, cuts, known)
     run = {cut.line for kind in cuts for cut in kind if not cut.file}
-    run |= {line for line, _ in unmeasured} | {line for line, *_ in commanded.idle}
+    run |= {line for line, _ in unmeasured} | {each.line for each in commanded.idle}
     yield from judge_unrun(read_lines(subject.program), Codes(ini), run)
 
 

@@ -143,10 +143,10 @@ def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
     found = []
     for block, target in flat_circles(subject):
         x, y, z = map(float, target.wall.origin)
-        bore = disc((x, y), target.wall.bore - ALLOWED)
-        if target.wall.bore and not material.standing(bore, z, block.at).is_empty:
-            material.open(Opening(disc((x, y), target.wall.bore), z))
-            found.append(AssumedHole(target.line, (x, y, z), target.wall.bore, NAMED))
+        radius = target.wall.bore
+        if radius and not material.standing(disc((x, y), radius - ALLOWED), z, block.at).is_empty:
+            material.open(Opening(disc((x, y), radius), z))
+            found.append(AssumedHole(target.line, (x, y, z), radius, NAMED))
     return found + list(_holes_entered(subject, material))
 
 
