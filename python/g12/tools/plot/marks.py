@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 from g12.tools.path.part import Z
 from g12.tools.verify.proof import Proof
-from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.workpiece import Workpiece
 
@@ -48,9 +47,9 @@ def marks_of_proof(proof: Proof) -> Marks:
     place is in the coordinates of the face or the surface, of holes always in those of the face.
     """
     sections, holes = proof.sections, proof.cuts.holes
-    radii = [surface_of(cut) for cut in (*sections, *holes)]
+    radii = [cut.surface for cut in (*sections, *holes)]
     surface = radii[0] if radii and all(radii) else 0.0
-    others = holes if surface else [cut for cut in sections if surface_of(cut)]
+    others = holes if surface else [cut for cut in sections if cut.surface]
     elsewhere = {id(each) for cut in others for each in cut.judged}
     placed = (each for each in proof.judged if each.is_finding and each.place is not None)
     marked = (
@@ -59,10 +58,3 @@ def marks_of_proof(proof: Proof) -> Marks:
         if id(each) not in elsewhere and bool(each.values.get("surface", surface)) == bool(surface)
     )
     return Marks(tuple(marked), proof.given, surface, float(proof.subject.zero[Z]))
-
-
-def surface_of(cut: MeasuredCut) -> float:
-    """Return the radius of the cylinder that a section or holes are on, 0 on the face."""
-    if cut.values.get("along_z") is None:
-        return 0.0
-    return cut.values.get("surface") or cut.values["circle"] / 2

@@ -128,7 +128,8 @@ def measure_holes(
     }
     cut = _called_cut(call, found, values, judged)
     tapping = [holes.pitch * call.speed] if call.speed else []
-    return replace(cut, feeds=tuple(tapping) if holes.pitch else None)
+    surface = holes.circle / 2 if holes.side else 0.0
+    return replace(cut, feeds=tuple(tapping) if holes.pitch else None, surface=surface)
 
 
 def _times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:

@@ -20,6 +20,7 @@ class MeasuredCut:
 
     ``last`` is the last line of a section, ``file`` the name of a sub's own file. ``own`` are its
     moves, ``face`` is the machine Z of the program's Z0. C turns or holds the part (``turning``).
+    ``surface`` is the radius, mm, of the cylinder that it is on, 0 without one.
     ``feeds`` are those of its words along the part, mm/min, None where its moves show them.
     ``path`` is the expected toolpath, ``sound`` says that it was followed.
     ``values`` are its measures by the names of ``--json`` and the report: mm, mm², mm/min, degrees,
@@ -37,6 +38,7 @@ class MeasuredCut:
     judged: tuple[Finding, ...]
     last: int = 0
     turning: bool = True
+    surface: float = 0.0
     feeds: tuple[float, ...] | None = None
     path: Sequence[Expected] = ()
     sound: bool = True

@@ -60,6 +60,7 @@ def measure_section(view: SectionView) -> MeasuredCut:
             plane.place((section.start, section.height)),
         ),
         section.last,
+        surface=section.surface,
         feeds=tuple(element.feed for element in section.elements if element.feed),
         path=view.expected,
         sound=bool(section.doubt) or view.found.difference is None,
