@@ -254,3 +254,12 @@ def test_a_signal_on_an_acceleration_that_a_section_sets_is_named(monkeypatch):
         kinematics_switch.accelerate(interp, 0.5)
     kinematics_switch.restore_accelerations(interp)  # as an abort does
     assert set(pins.values()) == {707.0}
+
+
+def test_the_line_after_an_abort_ends_no_request_in_a_preview(monkeypatch):
+    written = []
+    monkeypatch.setattr(kinematics_switch.hal, "set_p", lambda *pin: written.append(pin))
+    monkeypatch.setattr(kinematics_switch.hal, "get_value", lambda pin: 0)
+    for task, pins in ((0, []), (1, [(kinematics_switch.END_PIN, "1")])):
+        kinematics_switch.end_request(SimpleNamespace(task=task))
+        assert written == pins

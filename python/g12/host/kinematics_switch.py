@@ -85,9 +85,12 @@ def restore_accelerations(interp: Interp) -> None:
         hal.set_p(pin, repr(acceleration))
 
 
-def end_request() -> None:
-    """End the request for the face at once; the machine leaves it when it is at rest."""
-    if not is_older():
+def end_request(interp: Interp) -> None:
+    """End the request for the face at once; the machine leaves it when it is at rest.
+
+    A screen's preview is in a process with HAL, too: it ends nothing.
+    """
+    if interp.task and not is_older():
         hal.set_p(END_PIN, "1")
 
 

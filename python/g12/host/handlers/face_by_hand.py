@@ -81,7 +81,7 @@ def abort(interp: Interp) -> None:
     """
     by_hand = _unlock(interp)
     kinematics_switch.restore_accelerations(interp)
-    kinematics_switch.end_request()
+    kinematics_switch.end_request(interp)
     if by_hand:
         state_of(interp).by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:
