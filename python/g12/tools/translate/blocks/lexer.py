@@ -123,7 +123,7 @@ class ForeignBlock(NamedTuple):
 
     @property
     def number(self) -> int | None:
-        """The number of a block that begins with N and a whole number, or has O before it."""
+        """The number after the N that a block begins with, an O before it aside, if it is whole."""
         first = next((word for word in self.words if word.letter != "O"), None)
         return int(first.value) if first and first.letter == "N" and first.value.isdigit() else None
 
