@@ -276,15 +276,10 @@ class Material:
             for area in self._solids.near(portion, levels, before).areas
         )
 
-    def covers(
-        self, points: np.ndarray, radius: float, before: float, below: float = -math.inf
-    ) -> bool:
-        """Return whether all that a cutter sweeps below the top is solid, or was cut before.
-
-        The top may be higher than that of the material: ``below`` where there may be more.
-        """
+    def covers(self, points: np.ndarray, radius: float, before: float, top: float) -> bool:
+        """Return whether all that a cutter sweeps below a top is solid, or was cut before."""
         course = Course(radius, math.inf, before)
-        lines = [each.line for each in _below(max(below, self.top), points)]
+        lines = [each.line for each in _below(top, points)]
         swept_area = swept((each for each in lines if not self._is_swept(each, course)), radius)
         rest = [portion for portion, _ in self._turned(swept_area)]
         for areas, move in ((self._solids, None), (self._cuts, before)):

@@ -80,7 +80,8 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     """
     subject, face = workpiece.subject, workpiece.views[0]
     known = [False, *subject.ends_known]
-    low = [(view, _low_moves(workpiece, view)) for view in workpiece.views]
+    tops = [(view, workpiece.top_in(view) - SAME_LEVEL) for view in workpiece.views]
+    low = [(view, subject.lowest(view.part) <= top) for view, top in tops]
     reported: set[int] = set()  # lines: of one the first rapid through material is enough
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]
@@ -96,17 +97,10 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
             yield Finding("rapid-from-unknown", subject.line(index), place=end)
 
 
-def _low_moves(workpiece: Workpiece, view: PartView) -> np.ndarray:
-    """Tell of each move whether it comes below the tops of a view and of what may be beside it."""
-    below = -math.inf if view.surface else workpiece.z0
-    lowest = workpiece.subject.lowest(view.part)
-    return lowest <= max(below, view.material.top) - SAME_LEVEL
-
-
 def _in_view(
     workpiece: Workpiece, view: PartView, index: int, begins: bool, ends: bool
 ) -> Iterator[Finding]:
-    """Yield a rapid if it goes through the material of a view, or why that is not known."""
+    """Yield a low rapid if it goes through the material of a view, or why that is not known."""
     subject, material, cutter = workpiece.subject, view.material, workpiece.subject.cutter(index)
     points = subject.points(index, view.part)
     touch = ends and material.touched(points if begins else points[-1:], cutter, index)
@@ -125,12 +119,10 @@ def _in_view(
         if points[0, Z] < material.top - SAME_LEVEL:
             yield Finding("rapid-by-machine", subject.line(index))
     elif begins and not (workpiece.stock and workpiece.stock.is_whole):
-        below = -math.inf if view.surface else workpiece.z0
         in_front = view.surface and points[:, 1].min() > subject.z0 - SAME_LEVEL
-        is_low = not in_front and points[:, Z].min() < max(below, material.top) - SAME_LEVEL
-        if is_low and not cutter:
+        if not (in_front or cutter):
             yield Finding("rapid-no-diameter", subject.line(index))
-        elif is_low and not material.covers(points, cutter, index, below):
+        elif not (in_front or material.covers(points, cutter, index, workpiece.top_in(view))):
             yield Finding("rapid-beside", subject.line(index))
     elif begins and not touch and material.touched(points, cutter, index, perhaps=True):
         yield Finding("rapid-after-cuts", subject.line(index))

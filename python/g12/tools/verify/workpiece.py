@@ -74,9 +74,13 @@ class Workpiece:
     def material(self) -> Material:
         return self.views[0].material
 
+    def top_in(self, view: PartView) -> float:
+        """Return the level below which material may be, beside that of a view, too."""
+        return max(view.material.top, -math.inf if view.surface else self._z0)
+
     @cached_property
-    def z0(self) -> float:
-        """The highest Z0 of the circles, below which there may be material."""
+    def _z0(self) -> float:
+        """The highest Z0 of the circles."""
         walls = [target.wall for _, target in flat_circles(self.subject)]
         return max((wall.face for wall in walls), default=-math.inf)
 

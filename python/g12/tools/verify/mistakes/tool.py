@@ -69,31 +69,33 @@ def judge_tool_length(cuts: Sequence[MeasuredCut], trace: Trace) -> Iterator[Fin
     """
     moves, events = trace.moves, trace.events
     compensated = uses_lengths(moves)
-    reported: set[tuple[int, float]] = set()
-    beside_reported: set[tuple[int, float]] = set()
+    reported: set[tuple[int, int, float]] = set()  # axis, tool, how far off
     with_length: set[int] = set()  # the tools that have cut with the length of the table
     for cut in (each for each in cuts if moves[each.own.start].tool > 0):
         at, first = cut.own.start, moves[cut.own.start]
         deeper, set_by = missing_length(trace, at), length_set_by(events, at)
         beside = trace.table_at(at).offsets.get(first.tool, 0.0) - first.tool_offset[X]
         intended = set_by in ("G49", "G43.1", "G43.2") or not compensated
-        if abs(beside) > SIZE and not intended and (first.tool, beside) not in beside_reported:
-            beside_reported.add((first.tool, beside))
-            values = {"tool": first.tool, "offset": first.tool_offset[X], "off": abs(beside)}
-            yield Finding("offset-beside", cut.line, values, first.end[:3], cut.file)
+        touched_off = set_by == "G49" and first.tool not in with_length
+        code = _length_code(deeper, set_by, used=compensated and not touched_off)
         if abs(deeper) < SIZE:
             with_length.add(first.tool)
-        if abs(deeper) < SIZE or (first.tool, deeper) in reported:
-            continue
-        reported.add((first.tool, deeper))
-        code = "length-deeper" if deeper > 0.0 else "length-higher"
-        touched_off = set_by == "G49" and first.tool not in with_length
-        code = "length-not-used" if touched_off or not compensated else code
-        added = set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0)
-        values = {"tool": first.tool, "length": first.tool_offset[Z], "off": abs(deeper)}
-        values |= {"code": set_by, "where": "deeper" if deeper > 0.0 else "higher"}
-        code = "length-commanded" if added else code
-        yield Finding(code, cut.line, values, first.end[:3], cut.file)
+        wrong = [("offset-beside", X, 0.0 if intended else beside), (code, Z, deeper)]
+        for found, axis, off in wrong:
+            if abs(off) > SIZE and (axis, first.tool, off) not in reported:
+                reported.add((axis, first.tool, off))
+                values = {"tool": first.tool, "offset": first.tool_offset[axis], "off": abs(off)}
+                values |= {"code": set_by, "where": "deeper" if off > 0.0 else "higher"}
+                yield Finding(found, cut.line, values, first.end[:3], cut.file)
+
+
+def _length_code(deeper: float, set_by: str, used: bool) -> str:
+    """Return what it is to cut by so much deeper, with a tool whose length is ``used`` or not."""
+    if set_by == "G43.2" or (set_by == "G43.1" and deeper < 0.0):
+        return "length-commanded"
+    if not used:
+        return "length-not-used"
+    return "length-deeper" if deeper > 0.0 else "length-higher"
 
 
 def uses_lengths(moves: Sequence[Move]) -> bool:

@@ -31,7 +31,7 @@ FINDINGS = {
     "travel": "the {axis} axis would go to {position:mm}, its limit is {limit:length}",
     # the tool
     "length-deeper": (
-        "the tool length in force, {length:mm}, is not that of T{tool}: "
+        "the tool length in force, {offset:mm}, is not that of T{tool}: "
         "it cuts {off:fine} deeper than its words say (G43 H{tool} after M6?)"
     ),
     "offset-beside": (
@@ -140,7 +140,7 @@ NOTES = {
     "boss-cut": "nothing of the boss remains at Z{level:mm}: other cuts remove it",
     "no-diameter": "the tool has no diameter: only the toolpath of its centre is measured",
     "length-higher": (
-        "the tool length in force, {length:mm}, is not that of T{tool}: "
+        "the tool length in force, {offset:mm}, is not that of T{tool}: "
         "it cuts {off:fine} higher than its words say (G43 H{tool} after M6?)"
     ),
     "length-not-used": (
@@ -152,7 +152,7 @@ NOTES = {
         "the length in force is {length:mm} (G49)"
     ),
     "length-commanded": (
-        "the tool length in force, {length:mm} by {code}, is not that of T{tool} in the table: "
+        "the tool length in force, {offset:mm} by {code}, is not that of T{tool} in the table: "
         "it cuts {off:fine} {where} than with G43"
     ),
     "feed-per-revolution": "F is {feed:mm} per revolution here (G95): was it meant per minute?",
