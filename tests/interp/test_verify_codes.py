@@ -182,6 +182,7 @@ CASES = [
     ("any lathe", f"G10 L1 P1 X20 R6|G10 L1 P3 X5 R3|T1 M6 G43|S900 M3|G0 X60 Z50 C0|T3 M6|"
      f"S900 M3|G0 X60 Z2|{FLAT}", "offset-beside 10"),
     ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G0 X60 Z2 C0|{FLAT}", ""),
+    ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G49|G0 X60 Z2 C0|{FLAT}", ""),
     # a length that changes before a cycle, with no move between
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43|G13 I9 Z-2 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43.1 Z30|G13 I9 Z-2 D4|G0 Z9", ""),

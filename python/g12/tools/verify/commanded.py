@@ -59,7 +59,7 @@ def commanded_by(
     blocks, clamp_is_traced, trace = executed_everywhere(
         tracer, program, trace, codes, tools, parameters
     )
-    reader = CircleReader(codes, ini, moves, trace)
+    reader = CircleReader(codes, ini, trace)
     pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
     still = [

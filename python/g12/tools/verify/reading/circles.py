@@ -134,7 +134,6 @@ class CircleReader:
 
     codes: Codes
     ini: Ini
-    moves: Sequence[Move]
     trace: Trace
     offset: float | None = None  # radius of the D last commanded, mm
     number: int | None = None  # the tool that it named
@@ -152,7 +151,7 @@ class CircleReader:
                 self._remember(block)
 
     def _target(self, block: Block, cycle: Cycle) -> Target:
-        own = self.moves[block.at : block.end]
+        own = self.trace.moves[block.at : block.end]
         if cycle == Cycle(EVENT):
             block = replace(block, words=words_of_call(block.arguments))
         view = BlockInMm(block, own[0])
@@ -193,7 +192,8 @@ class CircleReader:
 
     def _remember(self, block: Block) -> None:
         """Remember the D of a block that switches cutter compensation on."""
-        view = BlockInMm(block, self.moves[min(block.at, len(self.moves) - 1)])
+        moves = self.trace.moves
+        view = BlockInMm(block, moves[min(block.at, len(moves) - 1)])
         if DYNAMIC.intersection(block.codes):
             self.offset, self.number = view.length("D") / 2, None
         else:
