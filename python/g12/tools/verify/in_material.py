@@ -19,7 +19,7 @@ from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.tools.material.material import ALLOWED, LEAST_AREA, SAME_LEVEL
+from g12.tools.material.material import ALLOWED, LEAST_AREA, NOTHING, SAME_LEVEL
 from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.units import plain
 from g12.tools.verify.compare.plane import plane_of, turned_plane
@@ -299,19 +299,18 @@ def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
 def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the pockets and the holes of which a portion lies outside of the stock."""
     subject, whole = workpiece.subject, workpiece.shape.convex_hull
-    circles = (target for _, target in flat_circles(subject))
-    found = [(to.line, to.wall.origin, to.wall.radius, to.wall.inside) for to in circles]
+    pockets = [target for _, target in flat_circles(subject) if target.wall.inside]
+    found = [(pocket.line, tuple(pocket.wall.origin), pocket.wall.radius) for pocket in pockets]
     for call in subject.commanded.shapes:
         if call.name == "polar_pocket":
             plane = turned_plane(math.radians(call.zero[2]), call.zero[1])
             centre = plane.on_part(complex(call.x(), call.length("c")))
-            place = centre.real, centre.imag
-            found.append((call.line, place, call.length("diameter") / 2, True))
+            found.append((call.line, (centre.real, centre.imag), call.length("diameter") / 2))
     for call in (each for each in subject.commanded.holes if not each.is_side):
         fed = (index for index in call.moves if subject.moves[index].kind != "rapid")
-        found += [(call.line, subject.end(index), call.cutter, True) for index in fed]
-    for line, (x, y, *_), radius, inside in found:
-        area = disc((x, y), radius - ALLOWED) if inside and radius > ALLOWED else whole
+        found += [(call.line, subject.end(index), call.cutter) for index in fed]
+    for line, place, radius in found:
+        area = disc(place, radius - ALLOWED) if radius > ALLOWED else NOTHING
         if area.intersects(whole) and not whole.covers(area):
             yield Finding("over-the-edge", line)
 
