@@ -152,7 +152,7 @@ class Tracer:
             self.close()
             raise TraceFailure(f"{self.ini.path}: {answer['printed']}{error}")
         self.printed, self._no_end = answer["printed"], answer["no_end"]
-        self.diameters, self.lengths, _ = sizes_in_mm(answer["tool_sizes"], self.ini.mm)
+        self.diameters = _table_in_mm(answer["tool_sizes"], self.ini.mm).diameters
 
     def _stop(self) -> None:
         if self._process:
@@ -239,9 +239,9 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def sizes_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> list[dict[int, float]]:
-    """Convert tool sizes in machine units to diameters, lengths and offsets along X in mm."""
-    return [{tool: size[at] * mm for tool, size in sizes.items()} for at in range(3)]
+def _table_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> ToolTable:
+    """Return the tool table of the worker's sizes, which are in machine units."""
+    return ToolTable(*({tool: size[at] * mm for tool, size in sizes.items()} for at in range(3)))
 
 
 def _trace(answer: dict, mm: float) -> Trace:
@@ -252,6 +252,6 @@ def _trace(answer: dict, mm: float) -> Trace:
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
         **{key: answer[key] for key in ("state", "printed", "position", "globals")},
-        tables=[(at, ToolTable(*sizes_in_mm(each, mm))) for at, each in sizes],
+        tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
         files=tuple(answer["files"]),
     )

@@ -4,6 +4,7 @@
 import json
 import os
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -88,7 +89,7 @@ class Config:
     python: Python | None = None
     owned: frozenset[str] = frozenset()
     failure: str | None = None
-    diameters: dict[int, float] | None = None
+    diameters: Mapping[int, float] | None = None
 
     @property
     def folder(self) -> Path:

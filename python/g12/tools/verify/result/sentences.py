@@ -89,8 +89,8 @@ NOTES = {
         "--stock gives the real stock"
     ),
     "core-remains": (
-        "{area:mm2} remain in its middle when it is cut{more:also}: right only where that is bored "
-        "before, or is to stay: --stock gives what there is"
+        "{area:mm2} of material remain in its middle{more:also}: right only where it is bored "
+        "before or is to stay; --stock gives the real stock"
     ),
     "cuts-wall": (
         "its cut at {at:xyz} and that of line {line} at {other:xyz} go into each other's walls"
