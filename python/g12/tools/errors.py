@@ -3,6 +3,8 @@
 
 import sys
 
+ERROR = 2  # exit code
+
 
 class UsageError(ValueError):
     """A wrong file, suffix or word on the command line."""

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NoReturn
 
-from g12.tools.errors import ProgramError, UsageError, print_error
+from g12.tools.errors import ERROR, ProgramError, UsageError, print_error
 from g12.tools.headless.errors import MachineError, StartupError
 from g12.tools.machine.files import existing
 from g12.tools.machine.filter import OpenedProgram
@@ -18,7 +18,7 @@ from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.preview.tracer import TraceFailure
 from g12.tools.system import COMMAND
 
-GOOD, FINDING, ERROR = 0, 1, 2
+GOOD, FINDING = 0, 1  # exit codes
 WRONG_USE = (UsageError, IniError, OSError)
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"

@@ -11,10 +11,9 @@ from importlib import import_module
 from types import ModuleType
 
 from g12 import __version__
-from g12.tools.errors import print_error
+from g12.tools.errors import ERROR, print_error
 from g12.tools.system import COMMAND
 
-ERROR = 2
 INTERRUPTED, UNREAD = 130, 141  # a shell's exit codes for SIGINT, SIGPIPE
 
 COMMANDS = {  # each a module of this folder
