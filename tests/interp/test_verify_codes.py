@@ -53,6 +53,7 @@ FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
+FLATS = "o<polar_polygon> call [2] [24] [4] [30] [0] [2] [0] [600] [300] [30]"
 ROUND = "o<polar_pocket> call [24] [0] [{}] [3] [1.5] [0] [600] [200]"
 EVENT = "G13.2 Y0 I2 R20 K5 D2 H2"
 R38 = "G1 Z-5 F100|G12 I40 R38 D10 F300|G0 Z2"
@@ -496,6 +497,8 @@ CASES = [
     ("lathe", f"G0 Z9|{ROUND.format(15)}", "", "40"),
     ("lathe", f"G0 Z9|{ROUND.format(18)}", "over-the-edge 6", "40"),
     ("lathe", f"G0 Z5|{POLYGON}", "plunge-into-stock 6, bar-remains 6", "60"),
+    ("lathe", f"G0 Z5|{FLATS}", "", "32"),
+    ("lathe", f"G0 Z5|{FLATS}", "plunge-into-stock 6, bar-remains 6", "60"),
     ("lathe", f"{FLANK}|G1 Z-19|G7.1 C0|G0 C0", "rapid-through 11", "40"),
 ]  # fmt: skip
 SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are no cut

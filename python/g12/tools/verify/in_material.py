@@ -9,13 +9,15 @@ cylinder they are those of its unrolled surface. Only cutters with a diameter co
 those that cut sections.
 """
 
+import cmath
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import product
 
 import numpy as np
-from shapely.geometry import LineString, Point
+from shapely.affinity import rotate
+from shapely.geometry import LineString, Point, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -31,7 +33,7 @@ from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import SIZE
 from g12.tools.verify.sections.outline import outlines_of
 from g12.tools.verify.subject import Subject
-from g12.tools.verify.walls import beyond, flat_circles
+from g12.tools.verify.walls import FAR, beyond, flat_circles
 from g12.tools.verify.workpiece import PartView, Workpiece
 
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
@@ -303,8 +305,7 @@ def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
     found = [(pocket.line, tuple(pocket.wall.origin), pocket.wall.radius) for pocket in pockets]
     for call in subject.commanded.shapes:
         if call.name == "polar_pocket":
-            plane = turned_plane(math.radians(call.zero[2]), call.zero[1])
-            centre = plane.on_part(complex(call.x(), call.length("c")))
+            centre = _on_part(call, complex(call.x(), call.length("c")))
             found.append((call.line, (centre.real, centre.imag), call.length("diameter") / 2))
     for call in (each for each in subject.commanded.holes if not each.is_side):
         fed = (index for index in call.moves if subject.moves[index].kind != "rapid")
@@ -315,6 +316,11 @@ def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
             yield Finding("over-the-edge", line)
 
 
+def _on_part(call: SubCall, point: complex) -> complex:
+    """Return a point of a shape on the part."""
+    return complex(turned_plane(math.radians(call.zero[2]), call.zero[1]).on_part(point))
+
+
 def _cut_away(workpiece: Workpiece) -> Iterator[tuple[int, range, BaseGeometry]]:
     """Yield the cuts that a bar is to be cut away by: the line, the moves, the area."""
     subject, bar = workpiece.subject, workpiece.shape
@@ -323,8 +329,11 @@ def _cut_away(workpiece: Workpiece) -> Iterator[tuple[int, range, BaseGeometry]]
         areas = [beyond(outline, plane, bar) for outline in outlines_of(section)]
         yield section.line, range(section.at, section.end), unary_union(areas)
     for call in (each for each in subject.commanded.shapes if each.name == "polar_polygon"):
-        corner = call.length("across_flats") / 2 / math.cos(math.pi / call.given["sides"])
-        yield call.line, call.moves, bar.difference(disc((0.0, 0.0), corner))
+        beside, sides = box(call.length("across_flats") / 2, -FAR, FAR, FAR), call.given["sides"]
+        angles = math.radians(call.given.get("angle", 0.0)) + math.tau / sides * np.arange(sides)
+        turns = (cmath.phase(_on_part(call, cmath.rect(1.0, angle))) for angle in angles)
+        flats = [rotate(beside, turn, origin=(0, 0), use_radians=True) for turn in turns]
+        yield call.line, call.moves, bar.intersection(unary_union(flats))
 
 
 def _plunge(workpiece: Workpiece, index: int) -> Finding | None:
