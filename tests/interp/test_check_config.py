@@ -158,10 +158,10 @@ def tried(line, ini):
     """Tell whether LinuxCNC does what install says that a block does."""
     if line == "  open a .nc program of haas-mill":
         return True
-    block, words = re.fullmatch(r"  (.*?) +((?:is answered|does nothing).*)", line).groups()
+    block, words = re.fullmatch(r"  (.*?) +((?:is refused|does nothing).*)", line).groups()
     traced = trace_text([block, "M2"], ini)
     answer = traced.error.text if traced.error else "nothing"
-    first = re.sub(r"o<(.*)> call", r"\1", block) if "is answered" in words else "nothing"
+    first = re.sub(r"o<(.*)> call", r"\1", block) if "is refused" in words else "nothing"
     return traced.moves == [] and answer.startswith(first)
 
 

@@ -313,6 +313,12 @@ CASES = [
      "plunge-into-stock 8, rapid-after-cuts 22, tool-spindle 22", "40"),
     ("lathe", f"{HEXAGON}|G0 Z5|T2 M6|G0 X70 Z-3|{HOLES.replace('-15', '-3')}|G0 X80",
      "plunge-into-stock 8, rapid-into 22, tool-spindle 22", "40"),
+    ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5", "rapid-idle-tool 20"),
+    ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5",
+     "plunge-into-stock 8, rapid-idle-tool 20", "50"),
+    ("mill", f"{CLEARED}|G0 Z5|X200|Z-3|{CLEARED}",
+     "plunge-into-stock 6, rapid-into 9, no-stock-met 10",
+     "100x100x20"),
     # cylinders
     ("lathe", "G0 X44 Z10|G7.1 C20|G1 X34 F200|Z25 C180|X44|G7.1 C0", "above-zero 6"),
     ("lathe", f"{GROOVE}|G7.1 C0|G0 Z5", "rapid-through 10"),
@@ -435,7 +441,8 @@ CASES = [
     ("yasnac", "Z-4|G12 I45 R28 D10 F400|T6 M6|G43 H6|G0 Z50", "change-in-cut 7",
      "160x160x30 bore 56"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
-    ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5", "change-in-cut 10"),
+    ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5",
+     "change-in-cut 10, rapid-idle-tool 11"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),
     # rapids before the first section, and a hole for it; in front of the face
     ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-beside 5, rapid-through 6"),

@@ -29,6 +29,7 @@ from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.words import SubCall
 from g12.tools.verify.mistakes.neighbours import judge_circles
 from g12.tools.verify.mistakes.tool import length_set_by, missing_length, uses_lengths
+from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding
 from g12.tools.verify.result.tolerances import SIZE
 from g12.tools.verify.sections.outline import outlines_of
@@ -39,11 +40,11 @@ from g12.tools.verify.workpiece import PartView, Workpiece
 LEAST_SHARE = 0.01  # of a cutter that plunges into the stock
 
 
-def judge_material(workpiece: Workpiece) -> Iterator[Finding]:
+def judge_material(workpiece: Workpiece, cuts: Sequence[MeasuredCut]) -> Iterator[Finding]:
     yield from judge_rapids(workpiece)
     yield from _on_surfaces(workpiece)
     yield from judge_circles(flat_circles(workpiece.subject), workpiece.material)
-    yield from _judged_in_stock(workpiece) if workpiece.stock else ()
+    yield from _judged_in_stock(workpiece, cuts) if workpiece.stock else ()
     yield from _started_in_cut(workpiece)
     yield from _undrilled_taps(workpiece)
     yield from _upright(workpiece.subject)
@@ -84,6 +85,8 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     known = [False, *subject.ends_known]
     tops = [(view, workpiece.top_in(view) - SAME_LEVEL) for view in workpiece.views]
     low = [(view, subject.lowest(view.part) <= top) for view, top in tops]
+    z0 = subject.z0 if subject.commanded.sections or subject.commanded.holes else -math.inf
+    idle = subject.lowest(face.part) < max(z0, face.material.top) - SAME_LEVEL
     reported: set[int] = set()  # lines: of one the first rapid through material is enough
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]
@@ -94,6 +97,8 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
                 yield from found
         if begins and ends and len(subject.sideways[index]) > 1:
             yield Finding("rapid-turned", subject.line(index))
+        elif ends and idle[index] and not subject.sideways[index]:
+            yield Finding("rapid-idle-tool", subject.line(index))
         end = subject.end(index)
         if ends and not begins and end[Z] < face.material.top - SAME_LEVEL:
             yield Finding("rapid-from-unknown", subject.line(index), place=end)
@@ -270,7 +275,7 @@ def assumptions(workpiece: Workpiece) -> Iterator[Finding]:
 # ---------------------------------------------------------------- in a stock that is given
 
 
-def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
+def _judged_in_stock(workpiece: Workpiece, cuts: Sequence[MeasuredCut]) -> Iterator[Finding]:
     """Yield plunges, what meets no stock or its edge, cuts below a block, and what remains."""
     subject, view = workpiece.subject, workpiece.views[0]
     commanded, moves = subject.commanded, subject.moves
@@ -282,12 +287,9 @@ def _judged_in_stock(workpiece: Workpiece) -> Iterator[Finding]:
     drilled = {index for call in commanded.holes for index in call.moves}
     plunges = (_plunge(workpiece, index) for index in fed if index not in drilled)
     yield from _once_a_line(filter(None, plunges))
-    cuts = [(each.line, range(each.at, each.end)) for each in commanded.on_face]
-    cuts += [(to.line, range(block.at, block.end)) for block, to in commanded.circles]
-    cuts += [(call.line, call.moves) for call in commanded.holes if not call.is_side]
-    for line, own in cuts:
-        if subject.cutter(own[0]) and not any(_meets_stock(workpiece, index) for index in own):
-            yield Finding("no-stock-met", line)
+    for cut in (each for each in cuts if not each.surface and subject.cutter(each.own.start)):
+        if not any(_meets_stock(workpiece, index) for index in cut.own):
+            yield Finding("no-stock-met", cut.line, file=cut.file)
     yield from _once_a_line(_over_the_edge(workpiece)) if workpiece.stock.is_whole else ()
     lowest = min(fed, key=lambda index: moves[index].end[Z], default=0)
     if workpiece.bottom is not None and fed:
@@ -338,7 +340,7 @@ def _cut_away(workpiece: Workpiece) -> Iterator[tuple[int, range, BaseGeometry]]
 
 def _plunge(workpiece: Workpiece, index: int) -> Finding | None:
     subject, move = workpiece.subject, workpiece.subject.moves[index]
-    if is_sideways(move) or move.end[Z] >= move.start[Z]:
+    if is_sideways(move) or move.end[Z] >= move.start[Z] or not _meets_stock(workpiece, index):
         return None
     place = subject.end(index)
     cutter = Point(place[:2]).buffer(subject.cutter(index))

@@ -202,11 +202,12 @@ def _judged(subject: Subject, workpiece: Workpiece, cuts: Cuts) -> Iterator[Find
     known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
     unmeasured = _unmeasured_in(subject, known)
     yield from (each for kind in cuts for cut in kind for each in cut.judged)
-    yield from judge_material(workpiece)
+    all_cuts = [*cuts.pockets, *_as_called(cuts.sections, cuts.shapes), *cuts.holes]
+    yield from judge_material(workpiece, all_cuts)
     yield from (Finding("not-measured", line, {"code": code}) for line, code in unmeasured)
     yield from commanded.idle
     yield from judge_travel(commanded.circles, commanded.moves_there, trace.events, ini)
-    yield from _mistakes(subject, cuts, known)
+    yield from _mistakes(subject, all_cuts, known)
     run = {cut.line for kind in cuts for cut in kind if not cut.file}
     run |= {line for line, _ in unmeasured} | {each.line for each in commanded.idle}
     yield from judge_unrun(read_lines(subject.program), Codes(ini), run)
@@ -223,17 +224,16 @@ def _unmeasured_in(subject: Subject, known: set[int]) -> list[tuple[int, str]]:
     return list(dict.fromkeys(found))
 
 
-def _mistakes(subject: Subject, found: Cuts, known: set[int]) -> Iterator[Finding]:
+def _mistakes(subject: Subject, cuts: Sequence[MeasuredCut], known: set[int]) -> Iterator[Finding]:
     """Yield what the rules about words find; ``known`` are the moves of cuts."""
     trace, ini, moves = subject.trace, subject.ini, subject.moves
-    cuts = [*found.pockets, *_as_called(found.sections, found.shapes), *found.holes]
     texts = read_lines(subject.program)
     yield from judge_tool_length(cuts, trace)
     yield from judge_rapid_lengths(subject, known) if not part_of(ini).turning else ()
     yield from judge_feeds(cuts, moves, limits_of(ini))
     yield from judge_spindle(cuts, trace.events, ini)
     yield from judge_levels(cuts, moves)
-    yield from judge_reversals([each.commanded for each in found.sections])
+    yield from judge_reversals(subject.commanded.sections)
     yield from judge_preview(texts, ini.swaps_pockets)
     yield from judge_left_offset(texts, trace.state)
     yield from not_judged(moves, known)

@@ -115,9 +115,11 @@ def _given_workpiece(subject: Subject, stock: Stock) -> Workpiece:
     zero, walls = subject.zero, [target.wall for _, target in flat_circles(subject)]
     top = float(zero[Z])
     shape = stock.shape(zero, [(wall.origin, wall.radius) for wall in walls if wall.inside])
-    solids, bores = [Solid(shape, top)], []
+    assumed = list(solids_of_circles(approached(subject)))
+    apart = [each for each in assumed if each.shape.disjoint(shape)]  # in another part
+    solids, bores = [Solid(shape, top), *apart], []
     if not stock.is_whole:
-        solids = list(solids_of_circles(approached(subject)))
+        solids = assumed
         bores = [Opening(disc(wall.origin, stock.bore / 2)) for wall in walls]
     views = [_view(subject, subject.part, solids, bores)]
     views += _cylinder_views(subject, solids_of_sections(subject)[1])

@@ -213,6 +213,7 @@ NOT_JUDGED = {
     ),
     "rapid-after-cuts": "rapids from the side to where other cuts may have removed the bar before",
     "rapid-no-diameter": "rapids below the top, of a tool without a diameter",
+    "rapid-idle-tool": "rapids below Z0 of tools that cut no section, shape or hole",
     "rapid-turned": "rapids of a tool between cuts on the face and in the side",
     "rapid-by-machine": "rapids by G53, G28 or G30 that begin below the part's top",
     "travel-unplaced": (
