@@ -465,7 +465,7 @@ CASES = [
     ("yasnac", "Z-4|G12 I45 R28 D10 F400|G12 I50 R40 D10|G0 Z5", "bored-assumed 6"),
     ("mill", f"{CLEARED}|G0 Z5|X60|Z-5|G1 Y40|G0 Z5", "rapid-beside 9"),
     ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
-     "tap-undrilled 6, feed-cut-down 6"),
+     "tap-undrilled 6, feed-per-revolution 6, feed-cut-down 6"),
     # holes with C
     ("any lathe", f"G10 L1 P1 R0|T1 M6|S900 M3|G0 X60 Z10 C0|{ON_FACE}",
      "no-diameter 6, rapid-no-diameter 6"),

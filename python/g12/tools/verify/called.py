@@ -123,6 +123,7 @@ def measure_holes(
         "along_z": holes.z if holes.side else None,
         "depth": holes.depth,
         "count": holes.count,
+        "pitch": holes.pitch or None,
         "entries": call.given,
         **_times_of_holes(holes, pace(own, []), real),
     }

@@ -131,6 +131,7 @@ def judge_feeds(
     for cut in cuts:
         fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
         per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
+        per_turn += filter(None, [cut.values.get("pitch")])
         feeds = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
         if max(per_turn, default=0.0) > MOST_PER_TURN:

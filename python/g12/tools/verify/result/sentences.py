@@ -155,7 +155,7 @@ NOTES = {
         "the tool length in force, {offset:mm} by {code}, is not that of T{tool} in the table: "
         "it cuts {off:fine} {where} than with G43"
     ),
-    "feed-per-revolution": "F is {feed:mm} per revolution here (G95): was it meant per minute?",
+    "feed-per-revolution": "a feed or pitch of {feed:fine} a revolution: was it meant per minute?",
     "feed-per-minute": "F is {feed:feed} here (G94): was it meant per revolution?",
     "feed-cut-down": "a feed of {feed:feed}, the machine's limits allow {most:feed}",
     "native-c": (
