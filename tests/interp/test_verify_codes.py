@@ -319,6 +319,7 @@ CASES = [
     ("mill", f"{CLEARED}|G0 Z5|X200|Z-3|{CLEARED}",
      "plunge-into-stock 6, rapid-into 9, no-stock-met 10",
      "100x100x20"),
+    ("lathe", f"G0 Z10|{HOLES.replace('[-15]', '[-1]')}|G0 X80", "over-the-edge 6", "30"),
     # cylinders
     ("lathe", "G0 X44 Z10|G7.1 C20|G1 X34 F200|Z25 C180|X44|G7.1 C0", "above-zero 6"),
     ("lathe", f"{GROOVE}|G7.1 C0|G0 Z5", "rapid-through 10"),

@@ -301,7 +301,7 @@ def _judged_in_stock(workpiece: Workpiece, cuts: Sequence[MeasuredCut]) -> Itera
 
 
 def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
-    """Yield the pockets and the holes of which a portion lies outside of the stock."""
+    """Yield the pockets and the holes of which a portion lies outside of the stock, or in front."""
     subject, whole = workpiece.subject, workpiece.shape.convex_hull
     pockets = [target for _, target in flat_circles(subject) if target.wall.inside]
     found = [(pocket.line, tuple(pocket.wall.origin), pocket.wall.radius) for pocket in pockets]
@@ -309,9 +309,11 @@ def _over_the_edge(workpiece: Workpiece) -> Iterator[Finding]:
         if call.name == "polar_pocket":
             centre = _on_part(call, complex(call.x(), call.length("c")))
             found.append((call.line, (centre.real, centre.imag), call.length("diameter") / 2))
-    for call in (each for each in subject.commanded.holes if not each.is_side):
+    for call in subject.commanded.holes:
         fed = (index for index in call.moves if subject.moves[index].kind != "rapid")
-        found += [(call.line, subject.end(index), call.cutter) for index in fed]
+        found += [(call.line, subject.end(index), call.cutter) for index in fed if not call.is_side]
+        if call.is_side and abs(call.length("z")) < call.cutter - ALLOWED:
+            yield Finding("over-the-edge", call.line)
     for line, place, radius in found:
         area = disc(place, radius - ALLOWED) if radius > ALLOWED else NOTHING
         if area.intersects(whole) and not whole.covers(area):
