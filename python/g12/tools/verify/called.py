@@ -129,7 +129,7 @@ def measure_holes(
     }
     cut = _called_cut(call, found, values, judged)
     tapping = [holes.pitch * call.speed] if call.speed else []
-    surface = holes.circle / 2 if holes.side else 0.0
+    surface = holes.circle if holes.side else 0.0
     return replace(cut, feeds=tuple(tapping) if holes.pitch else None, surface=surface)
 
 
