@@ -310,9 +310,9 @@ CASES = [
     ("lathe", f"{GROOVE.replace('G7', 'X52|G7')}|G1 X60|G7.1 C0", "", "50"),
     ("lathe", f"{HEXAGON.replace('Z-5', 'Z-15')}|G0 Z5|T2 M6|G0 X70 Z-3|"
      f"{HOLES.replace('-15', '-3')}|G0 X80",
-     "plunge-into-stock 8, rapid-after-cuts 22, tool-spindle 22", "40"),
+     "plunge-into-stock 8, rapid-after-cuts 22, over-the-edge 22, tool-spindle 22", "40"),
     ("lathe", f"{HEXAGON}|G0 Z5|T2 M6|G0 X70 Z-3|{HOLES.replace('-15', '-3')}|G0 X80",
-     "plunge-into-stock 8, rapid-into 22, tool-spindle 22", "40"),
+     "plunge-into-stock 8, rapid-into 22, over-the-edge 22, tool-spindle 22", "40"),
     ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5", "rapid-idle-tool 20"),
     ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5",
      "plunge-into-stock 8, rapid-idle-tool 20", "50"),
