@@ -97,7 +97,7 @@ POCKETS = [  # a form filled in; its pocket, X, Y, floor, radius; its levels, ci
     ("haas", dict(x=12, y=-7, retract=20, top=3, z=-6, levels=3, i=8, k=25, q=6, feed=500,
                   code=12), (12, -7, -6, 25), ([0, -3, -6], [3, 9, 15, 20] * 3, -1, 36)),
     ("haas", dict(z=-2, levels=1, i=9, k=0, retract=12), (0, 0, -2, 9), ([-2], [4], 1, 3)),
-    ("yasnac", dict(x=4, y=5, retract=15, top=1, z=-8, code=12, i=50, r=40, k=0, q=0, circles=2,
+    ("yasnac", dict(x=4, y=5, retract=15, top=1, z=-8, code=12, i=50, r=30, k=0, q=0, circles=2,
                     feed=600), (4, 5, -8, 50), ([-8], [45] * 2, -1, 4)),
     ("yasnac", dict(z=-3, i=-40, r=0, k=-9, q=6, circles=1, retract=9), (0, 0, -3, 40),
      ([-3], [35], 1, 15)),

@@ -276,6 +276,11 @@ class Material:
             for area in self._solids.near(portion, levels, before).areas
         )
 
+    def is_cleared(self, region: BaseGeometry, level: float, before: float) -> bool:
+        """Return whether a region was material above a level, of which nothing stands there."""
+        known = self.was_solid(region, level, before)
+        return known and self.standing(region, level, before).area <= LEAST_AREA
+
     def covers(self, points: np.ndarray, radius: float, before: float, top: float) -> bool:
         """Return whether all that a cutter sweeps below a top is solid, or was cut before."""
         course = Course(radius, math.inf, before)

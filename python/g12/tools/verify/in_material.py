@@ -83,10 +83,10 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     """
     subject, face = workpiece.subject, workpiece.views[0]
     known = [False, *subject.ends_known]
-    tops = [(view, workpiece.top_in(view) - SAME_LEVEL) for view in workpiece.views]
-    low = [(view, subject.lowest(view.part) <= top) for view, top in tops]
+    levels = [(view, subject.lowest(view.part)) for view in workpiece.views]
+    low = [(view, lowest <= workpiece.top_in(view) - SAME_LEVEL) for view, lowest in levels]
     z0 = subject.z0 if subject.commanded.sections or subject.commanded.holes else -math.inf
-    idle = subject.lowest(face.part) < max(z0, face.material.top) - SAME_LEVEL
+    idle = levels[0][1] < max(z0, face.material.top) - SAME_LEVEL
     reported: set[int] = set()  # lines: of one the first rapid through material is enough
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]

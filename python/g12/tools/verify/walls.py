@@ -26,7 +26,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import split, transform, unary_union
 
-from g12.tools.material.material import ALLOWED, ALWAYS, SAME_LEVEL, Material, Opening, Solid
+from g12.tools.material.material import ALWAYS, SAME_LEVEL, Material, Opening, Solid
 from g12.tools.path.part import X, Z, disc, is_sideways
 from g12.tools.preview.executed_blocks import Block
 from g12.tools.preview.moves import Move
@@ -110,7 +110,7 @@ def solids_of_circles(circles: Approached) -> Iterator[Solid]:
     tops: dict[float, float] = {}  # by the program's Z0
     for target, (came, fed, floor, _) in circles:
         face = target.wall.face
-        if face not in tops and (floor < min(came, face) - SAME_LEVEL or target.wall.bore):
+        if face not in tops and floor < min(came, face) - SAME_LEVEL:
             tops[face] = min(face, fed) if fed is not None and floor < fed - SAME_LEVEL else face
     starts = sorted(each.came if each.fed is None else each.fed for _, each in circles)
     for target, approach in circles:
@@ -144,7 +144,7 @@ def assume_holes(subject: Subject, material: Material) -> list[AssumedHole]:
     for block, target in flat_circles(subject):
         x, y, z = map(float, target.wall.origin)
         radius = target.wall.bore
-        if radius and not material.standing(disc((x, y), radius - ALLOWED), z, block.at).is_empty:
+        if radius and not material.is_cleared(disc((x, y), radius), z, block.at):
             material.open(Opening(disc((x, y), radius), z))
             found.append(AssumedHole(target.line, (x, y, z), radius, NAMED))
     return found + list(_holes_entered(subject, material))

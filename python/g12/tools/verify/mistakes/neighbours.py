@@ -64,7 +64,7 @@ def _was_cut(block: Block, target: Target, material: Material) -> bool:
         return False
     own = disc(wall.origin, wall.radius - ALLOWED)
     own = own.difference(disc(wall.origin, wall.cleared)) if wall.cleared > ALLOWED else own
-    return material.standing(own, wall.height(target.deepest), block.at).area <= LEAST_AREA
+    return material.is_cleared(own, wall.height(target.deepest), block.at)
 
 
 def _bosses_cut(circles: Circles, material: Material) -> Iterator[Finding]:
