@@ -78,9 +78,9 @@ from which the module calculates the override.
 
 .B Refusals.
 A move that has no meaning in the active type fails with a message: one to a Y other than 0 in type 0,
-and one of C in type 1. So does any move while the active type is not the requested one: M68 E3 Q3
-requests neither, so nothing moves by program or MDI until the next request. The face is not switched
-on with the tool beyond the centre.
+and one of C in type 1. So does any move while the active type is not the requested one, and after a
+request by hand that has ended by itself, until the next request. The face is not switched on with the
+tool beyond the centre.
 
 .B The centre.
 In the centre the angle of C is free. It does not change there, so a path that leaves the centre in
@@ -141,7 +141,7 @@ author "the g12 package";
 #define LEAST_FEED 0.01 /* by program: no override is so high that it needs less */
 #define ASIDE 0.4  /* of the acceleration: the slide needs the rest for its own motion */
 
-enum { XZC, FACE, BY_HAND, NO_MOVES };
+enum { XZC, FACE, BY_HAND };
 static const char letters[] = "XYZABCUVW";
 
 static char *coordinates = "XZC";
@@ -237,7 +237,7 @@ static int refused(void)
     const struct __comp_state *__comp_inst = component;
 
     if (!state.given || !program) return 0;
-    if (request == NO_MOVES || (request == BY_HAND && state.spent))
+    if (request == BY_HAND && state.spent)
         return refuse("an abort or an error ended it, nothing moves until G13.1 or G12.1");
     if (is_face_requested(__comp_inst) != (state.kind == FACE))
         return refuse("the machine is about to change its kinematics, nothing moves until then");

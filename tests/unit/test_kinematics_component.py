@@ -319,9 +319,9 @@ def test_a_programs_feed_is_its_own_and_by_hand_far_out(kinematics):
     [
         ({"request": 0}, False),
         ({"request": 1}, False),
-        ({"request": 3}, True),
-        ({"request": 3, "program": 0}, False),  # a jog
-        ({"request": 2, "enabled": 0}, True),  # the request ended by itself
+        ({"request": 2, "end_request": 1}, True),  # the request ended by itself
+        ({"request": 2, "enabled": 0}, True),
+        ({"request": 2, "program": 0}, False),  # a jog
     ],
 )
 def test_a_line_is_refused_where_another_world_is_asked_for(kinematics, pins, refused):
