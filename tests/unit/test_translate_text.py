@@ -329,6 +329,7 @@ ELSEWHERE = [  # control, text, the line and the beginning of its sentence
     (HAAS, "M98 P5\nN1 M30\nO5\n/M99\nM99 P1", 5, "M99 with and without P in one program"),
     (HAAS, "M98 P5 L2\nN1 M30\nO5\nM99 P1", 1, "the called program returns by M99 P"),
     (HAAS, "M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 5, "Z-#3: n"),
+    (HAAS, "/#1=5.\nG0 X#1", 2, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
     (HAAS, "G65 P5\nG65 P6\nM30\nO5\n#31=1\nM99\nO6\n#31=1\nM99", 8, "#31 is used in two pr"),
     (HAAS, "G65 P5\nM30\nO5\nIF[#33EQ#0]GOTO9\nN9 M99", 4, "#33 EQ #0: no letter of G65"),
     (HAAS, "G65 P5 A1.\nM30\nO5\nIF[#1EQ2]GOTO9\n#2=1\nN9 X#2\nM99", 6, "O5 reads #2 (B of"),

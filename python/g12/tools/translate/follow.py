@@ -148,11 +148,11 @@ class FollowedProgram:
         block = self.structure.blocks[index]
         condition = block.expression if block.kind in ("goto", *OPENING) else None
         for last, following in ways_from(self.structure, index):
-            given: frozenset[int] = frozenset()
+            then = state
             if condition:
                 is_true = (following == index + 1) == (block.kind in OPENING)
-                given = condition.set_if_true if is_true else condition.set_if_false
-            self._arrive(last, following, state.giving(given))
+                then = state.giving(condition.set_if_true if is_true else condition.set_if_false)
+            self._arrive(last, following, then)
 
     def _arrive(self, index: int, following: int, state: ModalState) -> None:
         if following == index + 1 and self.structure.is_over(following):
@@ -170,9 +170,11 @@ class FollowedProgram:
             return
         self.kinds.setdefault(call.number, call.kind)
         self.callers[call.number].add(index)
-        given = frozenset(number for number, _ in call.arguments)
-        own = draft.state._replace(given=given, touched=given)
-        self._pending.append((entry, own if call.kind == "macro" else draft.state))
+        state = draft.state
+        if call.kind == "macro":
+            given = frozenset(number for number, _ in call.arguments)
+            state = state._replace(given=given, touched=given)
+        self._pending.append((entry, state))
         if call.number in self._exits:
             self._go_on(index, self._returned(index, call.number))
 
