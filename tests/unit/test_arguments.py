@@ -193,8 +193,18 @@ def test_a_pipe_that_breaks_elsewhere_is_reported(monkeypatch, capsys):
     assert ends(capsys, "run") == (2, "g12 run: [Errno 32] Broken pipe\n")
 
 
-def test_of_a_log_the_most_specific_line_is_reported(capsys):
-    log = ["Starting", "./c.hal:57: Pin 'iocontrol.0.lube' does not exist", "Recommend: both"]
+NO_SUB = "INTERP_REMAP: NGC file not found: ngc=g12_haas"
+
+
+@pytest.mark.parametrize(
+    ("line", "cure"),
+    [
+        ("./c.hal:57: Pin 'iocontrol.0.lube' does not exist", ""),
+        (NO_SUB, f"; see {COMMAND} check"),
+    ],
+)
+def test_of_a_log_the_most_specific_line_is_reported(line, cure, capsys):
+    log = ["Starting", line, "Recommend: both"]
 
     @arguments.one_line("run")
     def command(_words):
@@ -202,4 +212,4 @@ def test_of_a_log_the_most_specific_line_is_reported(capsys):
 
     assert command([]) == 2
     said = capsys.readouterr().err
-    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {log[1]}\n"
+    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {line}{cure}\n"

@@ -23,8 +23,11 @@ WRONG_USE = (UsageError, IniError, OSError)
 FAILURES = (ProgramError, TraceFailure, StartupError, MachineError)
 VAR_HELP = "var file: the work offsets and parameters to start with (default: all are 0)"
 COMMAND_NAME = re.compile(r"^( *)g12\b", re.MULTILINE)  # the command, at the beginning of a line
-# Python's line of an exception, and LinuxCNC's of a HAL line that it cannot load.
-SPECIFIC_LINE = re.compile(r"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: ")
+SUB_NOT_FOUND = "INTERP_REMAP: NGC file not found"
+# Python's line of an exception, and LinuxCNC's of a HAL line or a sub that it cannot load.
+SPECIFIC_LINE = re.compile(
+    rf"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: |.*{SUB_NOT_FOUND}"
+)
 
 
 class Parser(argparse.ArgumentParser):
@@ -108,7 +111,7 @@ def one_line(name: str) -> Callable:
             except BrokenPipeError:  # main() handles it
                 raise
             except (*WRONG_USE, *FAILURES) as problem:
-                print_error(f"g12 {name}", _text(problem))
+                print_error(f"g12 {name}", text_of(problem))
                 return ERROR
 
         return guarded
@@ -129,12 +132,11 @@ def checked_ini(options: argparse.Namespace) -> Ini:
     return read_machine_ini(options.ini)
 
 
-def _text(problem: Exception) -> str:
+def text_of(problem: Exception) -> str:
     """Return the error in one line, of a long log the most specific one."""
     if isinstance(problem, OSError) and problem.filename and problem.strerror:
         return f"{problem.filename}: {problem.strerror}"
-    lines = [line.strip() for line in str(problem).splitlines() if line.strip()]
-    if len(lines) < 2:
-        return "".join(lines)
+    lines = [line.strip() for line in str(problem).splitlines() if line.strip()] or [""]
     specific = [line for line in lines if SPECIFIC_LINE.match(line)]
-    return f"{lines[0]} … {(specific or lines)[-1]}"
+    text = " … ".join(dict.fromkeys((lines[0], (specific or lines)[-1])))
+    return f"{text}; see {COMMAND} check" if SUB_NOT_FOUND in text else text
