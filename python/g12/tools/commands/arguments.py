@@ -111,7 +111,7 @@ def one_line(name: str) -> Callable:
             except BrokenPipeError:  # main() handles it
                 raise
             except (*WRONG_USE, *FAILURES) as problem:
-                print_error(f"g12 {name}", text_of(problem))
+                print_error(f"g12 {name}", sentence_of(problem))
                 return ERROR
 
         return guarded
@@ -132,7 +132,7 @@ def checked_ini(options: argparse.Namespace) -> Ini:
     return read_machine_ini(options.ini)
 
 
-def text_of(problem: Exception) -> str:
+def sentence_of(problem: Exception) -> str:
     """Return the error in one line, of a long log the most specific one."""
     if isinstance(problem, OSError) and problem.filename and problem.strerror:
         return f"{problem.filename}: {problem.strerror}"

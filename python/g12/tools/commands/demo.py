@@ -4,7 +4,7 @@
 import os
 from pathlib import Path
 
-from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, one_line, text_of
+from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, one_line, sentence_of
 from g12.tools.demo.report import show
 from g12.tools.demo.samples import PROGRAM_FOLDER, SAMPLES, runs
 from g12.tools.errors import UsageError
@@ -32,7 +32,7 @@ def main(arguments: list[str]) -> int:
         try:
             text, sound = show(sample, job.result(), options.output)
         except FAILURES as problem:
-            text, sound = f"{sample.program}: FAILED: {text_of(problem)}", False
+            text, sound = f"{sample.program}: FAILED: {sentence_of(problem)}", False
         bad += [] if sound else [sample.program]
         print(f"[{count} of {len(SAMPLES)}] {text}\n", flush=True)
     verdict = f"NOT everything came out right: {', '.join(bad)}"
