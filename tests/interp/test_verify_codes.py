@@ -13,6 +13,7 @@ from g12.tools.commands.main import main
 from g12.tools.plot.scene import scene_of_proof
 from g12.tools.units import MM
 from g12.tools.verify.report import as_text
+from support.clamped import with_clamp
 from support.judged_programs import prove_lines
 from support.made_moves import samples_of
 from support.sim_machines import SIM
@@ -539,6 +540,31 @@ def codes(proof_of):
 def test_the_codes_of_a_program(case, codes):
     beginning, blocks, expected, *stock = case
     assert codes(beginning, blocks, *stock) == expected
+
+
+CLAMPED = [  # M10 closes the clamp of C, M11 opens it: a program, and C_CLAMP_SHAPES
+    ("M10|G0 C90|C180|M11|C0", "clamp-closed 6"),
+    ("M10|G0 C90|M11|C0|M10|C90", "clamp-closed 6, clamp-closed 10"),
+    ("M10|G0 X70|M11|C90", ""),
+    (f"M10|{FLAT}|M11", "clamp-closed 7"),
+    (f"G0 Z5|M10|{POLYGON}|M11", "clamp-closed 7"),
+    (f"M10|G0 Z10|{ON_FACE}|G0 C0", ""),
+    (f"G0 Z10|{ON_FACE}|M10|G0 C0", "clamp-closed 8"),
+    (f"M10|{FLAT}", "", "M12"),
+    (f"M10|{FLAT}|G0 C0", "", "M10"),
+    (f"G0 Z5|M10|{POLYGON}", "", "M12"),
+    (f"M10|G0 C180|{FLAT}", "clamp-closed 6", "M12"),
+]
+
+
+@pytest.mark.parametrize("case", CLAMPED)
+def test_c_turns_only_where_its_clamp_is_open(case, proof_of, tmp_path):
+    blocks, expected, *drag = case
+    settings = {"C_CLAMP_SHAPES": drag[0]} if drag else {}
+    changed = with_clamp("lathe_mm", tmp_path, **settings)
+    judged = proof_of("lathe", blocks, changed=changed).judged
+    found = [f"{each.code} {each.line}" for each in judged if "clamp" in each.code]
+    assert ", ".join(found) == expected
 
 
 RUNS = [  # a program, the axis along which a run is beside its path, what is found

@@ -17,6 +17,7 @@ from g12.tools.preview.moves import Event, Trace
 
 TAG = "g12-verify"
 CLAMP = "clamp"  # printed by the sub of a clamp code; the first word of its event
+CLAMP_TOLD = f"{TAG} {CLAMP} "
 VALUE = "#<@>"  # short: a line that LinuxCNC reads has 252 characters at most
 LONGEST_REPORT_LINE = 252  # characters
 ENLARGED = 1_000_000  # factor: LinuxCNC 2.9 prints values below 0.0001 as 0
@@ -205,10 +206,10 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
         if TAG not in event.text:
             events.append(event)
             continue
-        kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
-        if kind == CLAMP:
-            events.append(event._replace(text=f"{CLAMP} {number}"))
+        if CLAMP_TOLD in event.text:
+            events.append(_as_clamp_event(event))
             continue
+        kind, number, *rest = event.text.split(f"{TAG} ", 1)[1].split()
         values = [float(value) for value in rest]
         if kind == "begin":
             state = reported_state(values)
@@ -223,6 +224,15 @@ def blocks_in(trace: Trace, texts: Sequence[Text]) -> list[Block]:
     if opened:  # the program ended in it, with M2
         found.append(_block(opened[-1], len(trace.moves), {}, events, done))
     return found
+
+
+def clamp_events(trace: Trace) -> list[Event]:
+    """Return the codes of C's clamp that a trace reports, as ``clamp M10``."""
+    return [_as_clamp_event(event) for event in trace.events if CLAMP_TOLD in event.text]
+
+
+def _as_clamp_event(event: Event) -> Event:
+    return event._replace(text=f"{CLAMP} {event.text.split(CLAMP_TOLD, 1)[1].strip()}")
 
 
 def reported_state(values: Sequence[float]) -> dict[str, float]:

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.tools.preview.executed_blocks import Block, Text
-from g12.tools.preview.moves import Move, Trace
+from g12.tools.preview.moves import Event, Move, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.verify.expected.contour import SectionContour
 from g12.tools.verify.expected.cylinder import SurfacePen
@@ -27,9 +27,9 @@ class Commanded(NamedTuple):
     """What a program commands; each circle has its block.
 
     ``idle`` are the findings of the cycles and the sections that move nothing.
-    ``clamp_is_traced`` says that events show the codes of C's clamp. ``moves_there`` are the moves
-    with the work offsets of the machine's var file, None where they differ by more than those.
-    ``in_g7`` says from which move on X words are diameters or not.
+    ``clamped`` are the codes of C's clamp, None where no trace shows them.
+    ``moves_there`` are the moves with the work offsets of the machine's var file, None where they
+    differ by more than those. ``in_g7`` says from which move on X words are diameters or not.
     """
 
     circles: Sequence[tuple[Block, Target]] = ()
@@ -37,7 +37,7 @@ class Commanded(NamedTuple):
     idle: Sequence[Finding] = ()
     shapes: Sequence[SubCall] = ()
     holes: Sequence[SubCall] = ()
-    clamp_is_traced: bool = False
+    clamped: Sequence[Event] | None = None
     moves_there: Sequence[Move] | None = None
     in_g7: Sequence[tuple[int, bool]] = ()
 
@@ -56,9 +56,7 @@ def commanded_by(
 ) -> tuple[Trace, Commanded]:
     """Return a traced program with its tool tables, and what its words command."""
     ini, moves, codes = tracer.ini, trace.moves, Codes(tracer.ini)
-    blocks, clamp_is_traced, trace = executed_everywhere(
-        tracer, program, trace, codes, tools, parameters
-    )
+    blocks, clamped, trace = executed_everywhere(tracer, program, trace, codes, tools, parameters)
     reader = CircleReader(codes, ini, trace)
     pens = {kind: partial(pen, ini=ini) for kind, pen in PENS.items()}
     found = sections(tracer, program, codes, pens, blocks, tools, parameters)
@@ -78,7 +76,7 @@ def commanded_by(
         [*_idle_blocks(blocks, codes), *still],
         shapes,
         holes,
-        clamp_is_traced,
+        clamped,
         _moves_there(tracer, program, moves, parameters),
         _diameter_modes(blocks),
     )

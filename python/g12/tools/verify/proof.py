@@ -26,6 +26,7 @@ from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Report, counted, silent
 from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
+from g12.tools.verify.clamp import judge_clamp
 from g12.tools.verify.commanded import Commanded, commanded_by
 from g12.tools.verify.in_material import judge_material, judge_rapid_lengths
 from g12.tools.verify.mistakes.tool import (
@@ -177,7 +178,7 @@ def compared(subject: Subject, workpiece: Workpiece, allowed: Tolerances, tell: 
     commanded, moves, real, ini = subject.commanded, subject.moves, subject.real, subject.ini
     pace = partial(pace_of, path=subject.path, real=real)
     axes = lathe_axes(ini) if commanded.sections or commanded.shapes else None
-    clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], commanded.clamp_is_traced)
+    clamp = Clamp([f"M{code}" for code in ini.settings.c_clamp], commanded.clamped is not None)
     polar = allowed.polar
     return Cuts(
         [
@@ -238,6 +239,7 @@ def _mistakes(subject: Subject, cuts: Sequence[MeasuredCut], known: set[int]) ->
     yield from judge_left_offset(texts, trace.state)
     yield from not_judged(moves, known)
     if part_of(ini).turning:
+        yield from judge_clamp(subject)
         yield from judge_native_c(moves, known, subject.path)
         yield from judge_return_levels(texts, Codes(ini))
         yield from judge_home(texts, ini)

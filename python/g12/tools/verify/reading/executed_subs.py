@@ -17,17 +17,17 @@ from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.executed_blocks import (
-    CLAMP,
-    TAG,
+    CLAMP_TOLD,
     Block,
     Text,
     blocks_in,
+    clamp_events,
     lines_as_written,
     read_lines,
     reports_after,
     reports_before,
 )
-from g12.tools.preview.moves import Trace
+from g12.tools.preview.moves import Event, Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer, write_program
 from g12.tools.verify.reading.codes import CALL, Codes
 
@@ -41,10 +41,10 @@ def executed_everywhere(
     codes: Codes,
     tools: Tools,
     parameters: Parameters = None,
-) -> tuple[list[Block], bool, Trace]:
-    """Return every execution of the blocks that matter, in order; whether C's clamp is reported.
+) -> tuple[list[Block], list[Event] | None, Trace]:
+    """Return every execution of the blocks that matter, in order, and of the codes of C's clamp.
 
-    Also the trace with the tool table at each of them.
+    The latter are None where no trace shows them. Also the trace with the tool table at each block.
 
     ``trace`` is the program's. Where LinuxCNC does not take the copies, the blocks of the program
     are all, with what the subs of C's clamp tell, if it takes those.
@@ -62,8 +62,8 @@ def executed_everywhere(
         copy = copies.trace(tracer, lines, tools, parameters, watch_offsets=True)
         ends, expected = ([move.end for move in each.moves] for each in (copy, trace))
         if ends == expected or (not some and len(ends) == len(expected)):
-            blocks = blocks_in(copy, copies.texts)
-            return blocks, bool(some and clamps), replace(trace, tables=copy.tables)
+            blocks, clamped = blocks_in(copy, copies.texts), clamp_events(copy)
+            return blocks, clamped if some and clamps else None, replace(trace, tables=copy.tables)
     raise moves_differ(program)
 
 
@@ -123,7 +123,7 @@ def watched_lines(
     for index, (text, line) in enumerate(zip(copies.texts, copies.lines)):
         skip = index + 1 - text.number
         if text.file in clamps:
-            report = f"(DEBUG,{TAG} {CLAMP} {clamps[text.file]})"
+            report = f"(DEBUG,{CLAMP_TOLD}{clamps[text.file]})"
             yield (line, report) if BEGIN.match(line) else (line,)
         elif text in selected and not text.too_long:
             yield (*reports_before(text, skip), line, *reports_after(text, skip))
