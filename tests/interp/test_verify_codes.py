@@ -334,6 +334,8 @@ CASES = [
       for offset in ("G10 L2 P1 X4 Z-3 C20", "G10 L2 P1 X-9", "G55 G10 L2 P2 X70 C9")),
     ("radii", f"G0 X31 Z9 C0|G10 L20 P1 X35 Z4|{ROUND_A_FLAT}|G20",
      "rapid-from-unknown 4, rapid-beside 5"),
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0|Z-2|{LOW}|G0 Z1", "rapid-from-unknown 5"),
+    ("any mill", f"T4 M6 G43|S900 M3|G0 X0 Y0|Z1|{LOW}|G0 Z1", ""),
     # what LinuxCNC does slower than its words ask
     ("face", "G12.1|F1008.844|G1 X-57.93351 C0.11121|G13.1", "above-zero 5"),
     ("lathe", "G64 P.01|G0 X120 Z5|G12.1|F1008.844|G1 X-57.93351 C0.11121|G13.1", "above-zero 7"),

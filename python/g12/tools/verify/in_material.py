@@ -100,7 +100,7 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
         elif ends and idle[index] and not subject.sideways[index]:
             yield Finding("rapid-idle-tool", subject.line(index))
         end = subject.end(index)
-        if ends and not begins and end[Z] < face.material.top - SAME_LEVEL:
+        if ends and not begins and end[Z] < workpiece.top_in(face) - SAME_LEVEL:
             yield Finding("rapid-from-unknown", subject.line(index), place=end)
 
 
