@@ -36,6 +36,7 @@ FLAT = f"{BEGIN}|C-25|{END}"
 SLOT = "G12.1|G1 Z-1 F800|X-18|X18|Z2|G13.1"
 SIDES = "C-7.7942|X0 C-15.5885|X-27 C-7.7942|C7.7942|X0 C15.5885|X27 C7.7942"
 HEXAGON = f"G0 X70|G12.1|G1 G41 X27 F1000|Z-5|{SIDES}|C0|G40 X70|Z2|G13.1"
+SOCKET = "G0 X2|G12.1|G1 Z-3 F300|G41 X10|C10|X-10|C-10|X10|C0|G40 X2|G13.1"
 LOW, HIGH = "G13 I9 Z-2 D4", "G13 I9 Z-3 D4|G0 Z1"
 RING, CLEARED, SHALLOW = "G13 I20.2 Z-4 D4", "G13 I7 K20 Q6 Z-4 D4", "G13 I7 K20 Q6 Z-2 D4"
 FACE_HOLE = "o<face_hole_at> call [20] [0] [8] [2] [120] [0] [0] [0]"
@@ -445,6 +446,10 @@ CASES = [
     ("yasnac", "Z-4|G12 I45 R28 D10 F400|T6 M6|G43 H6|G0 Z50", "change-in-cut 7",
      "160x160x30 bore 56"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
+    ("radii", f"{SOCKET}|T1 M6|G0 Z9", "change-in-cut 16, rapid-idle-tool 17"),
+    ("radii", f"{SOCKET}|M3|G0 Z9", ""),
+    ("radii", f"{SOCKET}|G0 Z9|T1 M6", ""),
+    ("lathe", f"{FLAT.replace('|G0 Z2', '')}|T3 M6|G0 Z9", "rapid-idle-tool 13"),
     ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5",
      "change-in-cut 10, rapid-idle-tool 11"),
     ("two spindles", FLAT, "tool-spindle-unseen 5"),

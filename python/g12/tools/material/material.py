@@ -268,13 +268,22 @@ class Material:
 
     def was_solid(self, region: BaseGeometry, level: float, before: float) -> bool:
         """Return whether a portion of a region was material above a level."""
+        found = self._solids_near(region, level, before)
+        return any(solid.shape.intersects(portion) for portion, solid in found)
+
+    def surrounds(self, region: BaseGeometry, level: float, before: float) -> bool:
+        """Return whether a portion of a region was material above a level, or in a hole of it."""
+        found = self._solids_near(region, level, before)
+        return any(_filled(solid.shape).intersects(portion) for portion, solid in found)
+
+    def _solids_near(
+        self, region: BaseGeometry, level: float, before: float
+    ) -> Iterator[tuple[BaseGeometry, Area]]:
+        """Yield each portion of a region with a solid above a level that may meet it."""
         levels = (level + SAME_LEVEL, math.inf)
-        portions = [portion for portion, _ in self._turned(region)]
-        return any(
-            area.shape.intersects(portion)
-            for portion in portions
-            for area in self._solids.near(portion, levels, before).areas
-        )
+        for portion, _ in self._turned(region):
+            for solid in self._solids.near(portion, levels, before).areas:
+                yield portion, solid
 
     def is_cleared(self, region: BaseGeometry, level: float, before: float) -> bool:
         """Return whether a region was material above a level, of which nothing stands there."""
@@ -308,6 +317,12 @@ class Material:
                 found.append(area)
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
+
+
+def _filled(shape: BaseGeometry) -> BaseGeometry:
+    """Return an area without its holes."""
+    polygons = [each for each in getattr(shape, "geoms", [shape]) if isinstance(each, Polygon)]
+    return unary_union([Polygon(each.exterior) for each in polygons])
 
 
 def _key(line: np.ndarray) -> bytes:

@@ -183,8 +183,8 @@ def _words_of(
 def _started_in_cut(workpiece: Workpiece) -> Iterator[Finding]:
     """Yield the tool changes and the starts of a spindle with the tool in the part.
 
-    A machine may take the tool up before it changes it. What is beside a bar is no part: how far a
-    turret reaches is not known.
+    A machine may take the tool up before it changes it. A turret cannot turn with a tool in a hole
+    of the part. What is beside a bar is no part: how far a turret reaches is not known.
     """
     subject = workpiece.subject
     taken_up = subject.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
@@ -198,7 +198,8 @@ def _started_in_cut(workpiece: Workpiece) -> Iterator[Finding]:
         code, _, tool = event.text.partition(" ")
         is_below = known and point[Z] < view.material.top - SAME_LEVEL
         anywhere = tool and not subject.part.turning
-        if is_below and (anywhere or view.material.was_solid(region, point[Z], event.at)):
+        in_part = view.material.surrounds if tool else view.material.was_solid
+        if is_below and (anywhere or in_part(region, point[Z], event.at)):
             found = "change-in-cut" if tool else "start-in-cut"
             yield Finding(found, event.line, {"code": code, "tool": tool}, subject.end(last))
 
