@@ -495,6 +495,10 @@ CASES = [
     ("mill", f"X36|X80|Z-3|G0 Z1|X0|{P}|G0 Z1", "", "60x80x20@-30,-40 bore 12"),
     ("mill", f"Z-3|{P}|G0 Z1", "", "100x80x20 bore 12"),
     ("mill", f"Z-3|{P}|G0 Z1", "rapid-into 6", "100x80x20"),
+    # its sides are along the axes of the program, which may be turned on the machine
+    *(("mill", f"G10 L2 P1 R{turned}|G0 X30 Y0|{P}|G0 Z1", found, "100x60x20@-20,-30 bore 12")
+      for turned, found in ((0, ""), (30, ""), (90, ""))),
+    ("mill", f"G10 L2 P1 R90|G0 X0 Y30|{P}|G0 Z1", "over-the-edge 8", "100x60x20 bore 12"),
     ("mill", "X40|G12 I9 Z-1 D4", "no-stock-met 7", "20x20x9"),
     ("mill", "X40|G12 I9 Z-1 D4", "plunge-into-stock 7", "99x20x9"),
     ("lathe", FLAT, "", "40"),
@@ -667,6 +671,8 @@ SAID = [  # a program, and a part of its report
     ("lathe", "G0 X60 Z5|G1 Z4 C9 F500|Z5", "alone: the part's edge sees 2408.657 mm/min\n"),
     ("mill", f"{HIGH}|G0 X3000|{HIGH}", "the X axis would go to 3004, its limit is 500 mm"),
     ("mill", f"G10 L2 P1 X2 Z-30|G0 X0 Y0 Z1|{LOW}", f"{MOVED} X2 Y0 Z−30"),
+    ("mill", f"G10 L2 P1 X2 R30|G0 X0 Y0 Z1|{LOW}", f"{MOVED} X2 Y0 Z0, its axes turned by 30°"),
+    ("mill", f"G10 L2 P1 R-30|G0 X0 Y0 Z1|{LOW}", f"{MOVED} X0 Y0 Z0, its axes turned by −30°"),
     ("mill", f"G92 X-2 Y0 Z31|{LOW}", f"{MOVED} X2 Y0 Z−30"),
     ("radii", f"G10 L2 P1 X10 Z-90 C30|G0 X18 Z2 C0|{SLOT}", f"{MOVED} Z−90; {AT_X10}"),
     ("radii", "G10 L2 P1 X10 Z-90 C30|G0 X23 Z2 C0|G7.1 C20|G1 Z-40 C60 F250|G7.1 C0", AT_X10),

@@ -2,8 +2,9 @@
 """The stock, a bar or a block, from the user's text, and its position.
 
 A bar turns about the spindle's centre, its face is the program's Z0. A block's top is the
-program's Z0; the program's X0 Y0 is its middle, unless the text has its corner. A bore is in the
-middle of every pocket. Lengths are millimetres in machine coordinates, except in texts.
+program's Z0; the program's X0 Y0 is its middle, unless the text has its corner. Its sides are along
+the program's X and Y. A bore is in the middle of every pocket. Lengths are millimetres in machine
+coordinates, except in texts.
 """
 
 import re
@@ -11,6 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from shapely.affinity import rotate
 from shapely.geometry import Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
@@ -47,8 +49,8 @@ class Stock(NamedTuple):
         """Whether it is a bar or a block: of a bore alone only the pockets are known."""
         return bool(self.diameter or self.size)
 
-    def shape(self, zero: np.ndarray, pockets: Sequence[Circle]) -> BaseGeometry:
-        """Return its area as seen along Z; ``zero`` is the program's.
+    def shape(self, zero: np.ndarray, rotation: float, pockets: Sequence[Circle]) -> BaseGeometry:
+        """Return its area as seen along Z; ``zero`` and ``rotation`` (degrees) are the program's.
 
         Without a block, only the material around the pockets is known.
         """
@@ -56,7 +58,8 @@ class Stock(NamedTuple):
             return disc((0.0, 0.0), self.diameter / 2)
         if self.size:
             low = zero[:2] + np.array(self.corner or np.array(self.size[:2]) / -2)
-            whole = box(*low, *(low + np.array(self.size[:2])))
+            along = box(*low, *(low + np.array(self.size[:2])))
+            whole = rotate(along, rotation, origin=tuple(zero[:2]))
         else:
             whole = unary_union([Polygon(), *(disc(*pocket) for pocket in pockets)])
         bores = [disc(centre, self.bore / 2) for centre, _ in pockets] if self.bore else []

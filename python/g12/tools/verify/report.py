@@ -199,7 +199,10 @@ def _zero_text(proof: Proof, unit: Unit) -> str:
     zero = proof.subject.zero
     words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
     text = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
-    moved = in_words(text, {"zero": words}, unit) if max(abs(zero)) >= SIZE else ""
+    text += ", its axes turned by {rotation:1}°" if proof.subject.rotation else ""
+    is_moved = max(abs(zero)) >= SIZE or proof.subject.rotation
+    values = {"zero": words, "rotation": proof.subject.rotation}
+    moved = in_words(text, values, unit) if is_moved else ""
     x0 = x0_text(proof.subject.part, unit) if proof.sections else ""
     return "; ".join(filter(None, [moved, x0]))
 

@@ -204,6 +204,12 @@ class Subject:
         return np.array([0.0, 0.0, next((call.zero[1] for call in commanded.holes), 0.0)])
 
     @property
+    def rotation(self) -> float:
+        """The angle of the program's X on a mill where it first cuts a circle, degrees."""
+        first = next((block.at for block, _ in self.commanded.circles), None)
+        return 0.0 if first is None else self.moves[first].rotation
+
+    @property
     def z0(self) -> float:
         """The machine Z of the program's Z0; where all is cut on cylinders that of the first."""
         commanded = self.commanded

@@ -114,7 +114,8 @@ def _given_workpiece(subject: Subject, stock: Stock) -> Workpiece:
     """Return the stock; of a bore alone the pockets are known to be in something."""
     zero, walls = subject.zero, [target.wall for _, target in flat_circles(subject)]
     top = float(zero[Z])
-    shape = stock.shape(zero, [(wall.origin, wall.radius) for wall in walls if wall.inside])
+    pockets = [(wall.origin, wall.radius) for wall in walls if wall.inside]
+    shape = stock.shape(zero, subject.rotation, pockets)
     assumed = list(solids_of_circles(approached(subject)))
     apart = [each for each in assumed if each.shape.disjoint(shape)]  # in another part
     solids, bores = [Solid(shape, top), *apart], []
