@@ -165,6 +165,10 @@ CASES = [
     ("mill", f"S900 M4|{LOW}", "spindle-m4 7"),
     ("any lathe", f"T1 M6|G0 X60 Z2 C0|{FLAT}", "tool-spindle 4"),
     ("lathe", f"G0 Z5|M5|{POLYGON}", "tool-spindle 7"),
+    ("lathe", FLAT.replace("|C-25", "|M5|C-25"), "tool-spindle 10"),  # the move without it
+    ("lathe", FLAT.replace("|C-25", "|M4|C-25"), "spindle-m4 10"),
+    ("lathe", FLAT.replace("|C-25", "|M5|M3|C-25"), ""),
+    ("any lathe", f"T1 M6|G0 X60 Z2 C0|{FLAT.replace('|C-25', '|M5|C-25')}", "tool-spindle 4"),
     ("any mill", f"S900 M3|G43 H4|G0 X0 Y0 Z1|{LOW}", "none-loaded 5"),
     # tool length: T1 is 25.4 long, T3 25, T4 30
     ("mill", f"{LOW}|G0 Z50|T4 M6|G43|S900 M3|G0 X60 Z1|{LOW}", ""),

@@ -20,6 +20,7 @@ from g12.tools.verify.result.tolerances import LEVEL, SIZE
 
 USER_CODE = re.compile(r"M1\d\d P.*")  # may turn a spindle of its own
 SPEED = re.compile(r"S[\d.]+")
+SPINDLE = re.compile(rf"M[345]|{SPEED.pattern}")
 MOST_PER_TURN = 3.0  # mm per revolution: above it the number was meant per minute
 LEAST_PER_MINUTE = 1.0  # mm/min: below it the number was meant per revolution
 CUT_DOWN = 0.98  # of the feed
@@ -29,15 +30,22 @@ TURNS = 1e-6  # degrees or mm
 def judge_spindle(
     cuts: Sequence[MeasuredCut], events: Sequence[Event], ini: Ini
 ) -> Iterator[Finding]:
-    """Yield the first cut of each kind whose spindle is off, or turns the wrong way."""
+    """Yield the first cut of each kind whose spindle is off, or turns the wrong way.
+
+    Where that begins inside of a section, its line is that of the move after it.
+    """
     reported: set[str] = set()
     several = ini.number("TRAJ", "SPINDLES", 1) > 1
     for cut in cuts:
-        texts = [event.text for event in events if event.at < cut.own.stop]
-        code = _unusual_spindle(cut.turning, texts, several)
+        before = [event for event in events if event.at < cut.own.stop]
+        code = _unusual_spindle(cut.turning, [event.text for event in before], several)
         if code and code not in reported:
             reported.add(code)
-            yield Finding(code, cut.line, {"code": cut.code}, file=cut.file)
+            at_start = [event.text for event in before if event.at <= cut.own.start]
+            changes = [event.line for event in before if SPINDLE.fullmatch(event.text)]
+            inside = not cut.file and _unusual_spindle(cut.turning, at_start, several) != code
+            line = changes[-1] if inside else cut.line
+            yield Finding(code, line, {"code": cut.code}, file=cut.file)
 
 
 def _unusual_spindle(turning: bool, texts: Sequence[str], several: bool) -> str:
