@@ -116,7 +116,7 @@ NOTES = {
     "no-stock-met": "it meets nothing of the stock",
     "inside-surface": (
         "{code} begins {inside:fine} inside of its surface of radius {radius:mm}: "
-        "is its C a diameter? ([G12] CYLINDER_WORD)"
+        "a rapid into it, or is its C a diameter? ([G12] CYLINDER_WORD)"
     ),
     "below-block": "the lowest cut is {size:fine} below the block",
     "contour-unread": (
