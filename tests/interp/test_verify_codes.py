@@ -451,7 +451,7 @@ CASES = [
      "160x160x30 bore 56"),
     ("mill", "G13 I9 Z-25 D4|G0 Z1|T6 M6|G43 H6|G0 Z50", ""),
     ("radii", f"{SOCKET}|T1 M6|G0 Z9", "change-in-cut 16, rapid-idle-tool 17"),
-    ("radii", f"{SOCKET}|M3|G0 Z9", ""),
+    ("radii", f"{SOCKET}|M5|G0 X3|M3|Z9", ""),
     ("radii", f"{SOCKET}|G0 Z9|T1 M6", ""),
     ("lathe", f"{FLAT.replace('|G0 Z2', '')}|T3 M6|G0 Z9", "rapid-idle-tool 13"),
     ("lathe", f"{GROOVE}|G7.1 C0|T3 M6|G0 X60|Z5",
