@@ -78,17 +78,18 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
     )
 
 
-def follow(path: Track, samples: Samples, unit: float) -> Followed:
+def follow(path: Track, samples: Samples, unit: float, moves: np.ndarray | None = None) -> Followed:
     """Map the samples in motion onto a path; ``unit`` is one machine unit in mm.
 
     In a blended corner the tool has left the move of the line that LinuxCNC names. The distance is
-    the one to that move or to its neighbours, whichever is nearest.
+    the one to that move or to its neighbours, whichever is nearest. ``moves`` are the samples'
+    moves where another path has told them.
     """
-    moving = samples.moving()
-    axes = _positions(samples, unit)[moving]
+    samples = samples.only(samples.moving())
+    axes = _positions(samples, unit)
     axes[:, Y] += path.part.beside  # the tool is beside the joints' position
     axis_points = path.part.points(axes)
-    windows = windows_of(path, samples.line[moving])
+    windows = windows_of(path, samples.line) if moves is None else _by_move(path, moves)
     segment = _segments(path.axis_points, axis_points, windows.on_its_line)
     following = np.minimum(segment + 1, len(path.move) - 1)
     positions = axes - _offsets(path, axis_points, segment, following)
@@ -100,7 +101,7 @@ def follow(path: Track, samples: Samples, unit: float) -> Followed:
     nearest = np.where((other_away < away)[:, None], other, nearest)
     deviation = np.minimum(away, other_away)
     move = path.move[following]
-    return Followed(samples.time[moving], positions, points, move, nearest, deviation)
+    return Followed(samples.time, positions, points, move, nearest, deviation)
 
 
 def _programmed(path: Track, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
@@ -178,14 +179,21 @@ def windows_of(path: Track, lines: np.ndarray) -> Windows:
     if [moves[group[0]].line for group in groups] != [same[0] for same in named]:
         everywhere = np.tile([0, max(0, len(path.move) - 2)], (len(lines), 1))
         return Windows(everywhere, everywhere)
-    first = np.array([path.vertices(group[0]).start for group in groups], int)
-    last = np.array([max(0, path.vertices(group[-1]).stop - 2) for group in groups], int)
+    at = np.repeat(np.arange(len(named)), [len(same) for same in named])
+    return _windows(path, [(group[0], group[-1]) for group in groups], at)
+
+
+def _by_move(path: Track, moves: np.ndarray) -> Windows:
+    used, at = np.unique(moves, return_inverse=True)
+    return _windows(path, list(zip(used, used)), at)
+
+
+def _windows(path: Track, groups: Sequence[tuple[int, int]], at: np.ndarray) -> Windows:
+    """Return the windows of samples by the first and last move of groups; ``at`` has theirs."""
+    first = np.array([path.vertices(begin).start for begin, _ in groups], int)
+    last = np.array([max(0, path.vertices(end).stop - 2) for _, end in groups], int)
     earlier, later = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
-    lengths = [len(same) for same in named]
-    return Windows(
-        np.repeat(np.stack([first, last], axis=1), lengths, axis=0),
-        np.repeat(np.stack([earlier, later], axis=1), lengths, axis=0),
-    )
+    return Windows(np.stack([first, last], axis=1)[at], np.stack([earlier, later], axis=1)[at])
 
 
 def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:

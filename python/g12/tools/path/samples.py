@@ -2,6 +2,7 @@
 """The actual motion of a machine, recorded at the servo rate."""
 
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 
@@ -25,3 +26,10 @@ class Samples:
 
     def moving(self) -> np.ndarray:
         return self.kind != 0
+
+    def only(self, chosen: np.ndarray) -> Self:
+        """Return the samples of a mask."""
+        axes = {letter: values[chosen] for letter, values in self.axes.items()}
+        velocity, requested = self.velocity[chosen], self.requested[chosen]
+        line, kind = self.line[chosen], self.kind[chosen]
+        return type(self)(self.time[chosen], axes, velocity, requested, line, kind)

@@ -2,7 +2,7 @@
 """A program on a machine: as traced, as its words command, as it ran, and as its parts see it."""
 
 from bisect import bisect_right
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from operator import itemgetter
 from pathlib import Path
@@ -35,8 +35,8 @@ NOTHING = Commanded()
 class Subject:
     """A program on a machine, as traced, and as a part sees it; ``samples`` are those of a run.
 
-    It is of its ``own`` moves alone, if those are given and nothing ran; ``drawn`` are their path
-    and the motion of the run on it, if these are known.
+    It is of its ``own`` moves alone, if those are given, and of those beside them: a corner may be
+    blended. ``first`` is the same on the part of which the run was laid first.
     """
 
     program: Path
@@ -46,8 +46,7 @@ class Subject:
     samples: Samples | None = None
     commanded: Commanded = NOTHING
     own: range | None = None
-    drawn: tuple[Track, Followed | None] | None = None
-    _surfaces: dict[float, Self] = field(default_factory=dict)  # of a run: each has all of it
+    first: Self | None = None
 
     @property
     def moves(self) -> list[Move]:
@@ -56,17 +55,25 @@ class Subject:
     @cached_property
     def path(self) -> Track:
         """The moves as one polyline in time."""
-        if self.drawn:
-            return self.drawn[0]
         limits, speed = limits_of(self.ini), self.trace.modes.speed
-        return track(self.part, self.moves, limits, speed, own=self.own)
+        return track(self.part, self.moves, limits, speed, own=self._drawn)
+
+    @property
+    def _drawn(self) -> range:
+        every = range(len(self.moves))
+        return every[max(0, self.own.start - 1) : self.own.stop + 1] if self.own else every
 
     @cached_property
     def real(self) -> Followed | None:
         """The motion of the run, laid on the path."""
-        if self.drawn or not self.samples:
-            return self.drawn[1] if self.drawn else None
-        return follow(self.path, self.samples, self.ini.mm)
+        if not self.samples:
+            return None
+        if not (self.first and self.first.real):
+            return follow(self.path, self.samples, self.ini.mm)
+        moves, drawn = self.first.real.move, self._drawn
+        there = (drawn.start <= moves) & (moves < drawn.stop)
+        moving = self.samples.only(self.samples.moving())
+        return follow(self.path, moving.only(there), self.ini.mm, moves[there])
 
     def about(self, centre: float, own: range | None = None) -> Self:
         """Return the same with the spindle's axis at another machine X; of its ``own`` moves."""
@@ -74,8 +81,7 @@ class Subject:
         return self if same else self._on(replace(self.part, centre=centre), own)
 
     def on_surface(self, radius: float, own: range | None = None) -> Self:
-        there = self._on(Surface(turning=True, radius=radius), own)
-        return self._surfaces.setdefault(radius, there) if self.samples else there
+        return self._on(Surface(turning=True, radius=radius), own)
 
     def view(self, section: SectionContour, axes: LatheAxes, tolerance: float) -> SectionView:
         """Return a section that moves as its part sees it."""
@@ -85,7 +91,7 @@ class Subject:
         return view_of(section, self.trace, there.path, there.real, axes, tolerance)
 
     def _on(self, part: Part, own: range | None) -> Self:
-        return replace(self, part=part, own=None if self.samples else own)
+        return replace(self, part=part, own=own, first=self.first or self)
 
     # ------------------------------------------------------------ its moves
 
