@@ -62,12 +62,16 @@ def test_a_rounded_corner_is_off_by_what_it_misses():
     assert laid.deviation == pytest.approx(0.1 / math.sqrt(2), abs=1e-3)
 
 
+TIP, AHEAD = 1 + 0j, cmath.rect(1.0, math.radians(150))
+STRAIGHT = lines(0, TIP, TIP + AHEAD)
+ROUND = [Arc(TIP, TIP + 20j, -0.05).reversed(), Arc(TIP, TIP + 20j * AHEAD, 0.05)]
+
+
+@pytest.mark.parametrize("curves", [STRAIGHT, ROUND])
 @pytest.mark.parametrize(("missed", "kind"), [(0.008, None), (0.02, OFF)])
-def test_a_blended_corner_of_a_sharp_reversal_is_followed(missed, kind):
-    tip, ahead = 1 + 0j, cmath.rect(1.0, math.radians(150))
-    begin, end = tip - missed, tip + missed * ahead
-    points = [begin * step / 1000 for step in range(1001)]
-    points += [end + (tip + ahead - end) * step / 1000 for step in range(1001)]
+def test_a_blended_corner_of_a_sharp_reversal_is_followed(curves, missed, kind):
+    begins, ends = curves[0].portion(0.0, 1.0 - missed), curves[1].portion(missed, 1.0)
+    points = [curve.point(step / 1000) for curve in (begins, ends) for step in range(1001)]
     run = Made(0, [(point, LEVEL) for point in points], sampled=True)
-    laid = lay(expected(*lines(0, tip, tip + ahead)), [run], 0.01)
+    laid = lay(expected(*curves), [run], 0.01)
     assert (laid.difference and laid.difference.kind) == kind

@@ -87,10 +87,15 @@ class Made:
     def distance(self, point: Point, first: Point, last: Point) -> float:
         """Return how far a point is from the motion between two of the points."""
         curve = self.curve or Line(first[0], last[0])
-        chord = Expected("", Line(first[0], last[0]), first[1], last[1])
-        _, level = chord.point(chord.nearest(point))
+        _, level = _on_chord(point, first, last)
         away = abs(complex(curve.distance(point[0]), point[1] - level))
         return max(0.0, away - distance(first, last) / 2) if self.sampled else away
+
+
+def _on_chord(point: Point, first: Point, last: Point) -> Point:
+    """Return the point of a chord nearest to a point."""
+    chord = Expected("", Line(first[0], last[0]), first[1], last[1])
+    return chord.point(chord.nearest(point))
 
 
 def _along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
@@ -270,12 +275,21 @@ class _Cursor:
     def _within(
         self, move: Made, ends: tuple[Point, Point], index: int, begin: float, end: float
     ) -> tuple[float, Point]:
-        """Return the farthest point of an arc between two shares: of a line its ends suffice."""
+        """Return the farthest point of an arc between two shares: of a line its ends suffice.
+
+        A motion that cuts a corner meets the two ends alone: it is as far off as the arc is from
+        the chord between them.
+        """
         expected = self.path[index]
         if isinstance(expected.curve, Line) or begin == end:
             return 0.0, ends[1]
+        chord = expected.point(begin), expected.point(end)
         points = (expected.point(begin + part * (end - begin)) for part in ON_ARC)
-        return max(((move.distance(at, *ends), at) for at in points), key=_size)
+        away = (
+            (min(move.distance(at, *ends), distance(at, _on_chord(at, *chord))), at)
+            for at in points
+        )
+        return max(away, key=_size)
 
     def _rest(self) -> float:
         return (1.0 - self.share) * self._lengths[self.index]
