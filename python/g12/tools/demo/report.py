@@ -42,8 +42,7 @@ def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path
     if proof.pockets:
         lines += table(POCKET_HEADS, *(pocket_row(cut, unit) for cut in proof.pockets))
     if proof.sections:
-        allowed = proof.tolerances.polar
-        lines += table(SECTION_HEADS, *(section_row(cut, allowed, unit) for cut in proof.sections))
+        lines += table(SECTION_HEADS, *(section_row(cut, unit) for cut in proof.sections))
     found = (each for each in proof.judged if each.is_finding)
     lines += [f"  line {each.line}: {proof.text(each, unit)}" for each in found]
     return "\n".join(lines)
@@ -65,13 +64,13 @@ def pocket_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
     )
 
 
-def section_row(cut: MeasuredCut, allowed: float, unit: Unit) -> tuple[str, ...]:
+def section_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
     values = cut.values
     return (
         f"{cut.line}-{cut.last}",
         str(values["segments"]),
         f"{unit.fine(cut.deviation)} {unit.name}",
-        f"{unit.fine(allowed)} {unit.name}",
+        f"{unit.fine(values['allowed'])} {unit.name}",
         f"{plain(values['lowest_feed'] / unit.mm, 1)} {unit.name}/min",
         f"{plain(values['c_speed'], 1)} of {plain(values['c_limit'], 1)} °/s",
         f"{plain(values['seconds_programmed'], 1)} s",

@@ -228,7 +228,7 @@ def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     flats = dict.fromkeys(tuple(round(size, 3) for size in each) for each in flats)
     seconds, programmed = (values.get(name) for name in ("seconds", "seconds_programmed"))
     values |= {
-        "allowed": _allowed_of(kind, proof),
+        "allowed": _allowed_of(kind, [cut], proof),
         "unknown": "not judged" if math.isnan(cut.deviation) else "∞",
         "real_seconds": None if seconds == programmed else seconds,  # without acceleration
         **dict(zip(("flats", "flats_reached"), zip(*flats))),
@@ -240,8 +240,10 @@ def paragraph_of(kind: str, cut: MeasuredCut, proof: Proof, unit: Unit) -> str:
     return paragraph(title, rows_of(FORMS[kind][1], values, unit))
 
 
-def _allowed_of(kind: str, proof: Proof) -> float:
-    return proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
+def _allowed_of(kind: str, cuts: Sequence[MeasuredCut], proof: Proof) -> float:
+    """Return how far off cuts of a kind may be, mm: a run's corners are blended in sections."""
+    usual = proof.tolerances.pocket if kind == "pockets" else proof.tolerances.polar
+    return max(cut.values.get("allowed", usual) for cut in cuts)
 
 
 def _code_text(cut: MeasuredCut) -> str:
@@ -323,12 +325,12 @@ def _cut_lines(proof: Proof, unit: Unit) -> Iterator[tuple[str, ...]]:
     """
     of_shapes = {each.own for shape in proof.cuts.shapes for each in _sections_of(shape, proof)}
     for kind, cut in _in_order(proof):
-        allowed = unit.fine(_allowed_of(kind, proof))
         if kind == "sections" and cut.own in of_shapes:
             continue
         what = in_words(FORMS[kind][0], {**cut.values, **_what_words(kind, cut)}, unit)
         inside = _sections_of(cut, proof) if kind == "shapes" else []
         worst = max(each.deviation for each in (cut, *inside))
+        allowed = unit.fine(_allowed_of(kind, [cut, *inside], proof))
         off = f"{unit.fine(worst)} {unit.name} off ({allowed} allowed)"
         off = "not judged" if math.isnan(worst) else off
         seconds = [each.values.get("seconds") for each in inside or [cut]]

@@ -106,6 +106,7 @@ def motion_values(view: SectionView) -> dict[str, Any]:
         "across_flats": [list(flat) for flat in size.flats],
         "direction_jump": direction_jump(view),
         "segments": len(across),
+        "allowed": view.run_tolerance if view.real else view.tolerance,
         "shortest": min(lengths),
         "longest": max(lengths),
         **pace_values(pace),

@@ -25,13 +25,15 @@ IN_PLACE = 1e-6  # mm along the part: no more is made where C turns in place
 class SectionView(ToolpathView):
     """A section; ``steps`` are its expected moves, each with its element.
 
-    ``tool`` is the tool's radius, ``tolerance`` POLAR_TOLERANCE; mm.
+    ``tool`` is the tool's radius, ``tolerance`` POLAR_TOLERANCE, ``run_tolerance`` that of a run,
+    which rounds corners; mm.
     """
 
     section: SectionContour
     steps: Sequence[ContourStep]
     tool: float
     tolerance: float
+    run_tolerance: float
 
     @property
     def first(self) -> Move:
@@ -74,11 +76,11 @@ def view_of(
     tolerance: float,
 ) -> SectionView:
     """Return the view of a section that moves; ``path`` and ``real`` are on its part."""
-    first, allowed = trace.moves[section.at], tolerance + LAST_DECIMAL
+    first = trace.moves[section.at]
     tool = trace.radius(section.at)
     steps = contour_path(section.elements, section.height, tool, tolerance)
     kinematics = bool(axes.face) and not section.surface
-    blended = max(allowed, blending_commanded(section)) if kinematics else allowed
+    blended = max(tolerance, blending_commanded(section)) if kinematics else tolerance
     return SectionView(
         expected=[step.move for step in steps],
         plane=plane_of(section, first),
@@ -87,13 +89,14 @@ def view_of(
         path=path,
         real=real,
         axes=axes,
-        allowed=(allowed, blended),
+        allowed=(tolerance + LAST_DECIMAL, blended + LAST_DECIMAL),
         diameters=section.diameters,
         last=section.last,
         section=section,
         steps=steps,
         tool=tool,
         tolerance=tolerance,
+        run_tolerance=blended,
     )
 
 
