@@ -62,6 +62,15 @@ def test_a_rounded_corner_is_off_by_what_it_misses():
     assert laid.deviation == pytest.approx(0.1 / math.sqrt(2), abs=1e-3)
 
 
+def test_a_corner_that_is_cut_too_far_between_two_moves_is_off():
+    corner = [
+        Made(0, [(0j, LEVEL), (9.9 + 0j, LEVEL)]),
+        Made(1, [(10 + 0.1j, LEVEL), (10 + 10j, LEVEL)]),
+    ]
+    off = lay(expected(*lines(0, 10, 10 + 10j)), corner, 0.05).difference
+    assert (off.kind, off.size) == (OFF, pytest.approx(0.1, abs=1e-3))
+
+
 TIP, AHEAD = 1 + 0j, cmath.rect(1.0, math.radians(150))
 STRAIGHT = lines(0, TIP, TIP + AHEAD)
 ROUND = [Arc(TIP, TIP + 20j, -0.05).reversed(), Arc(TIP, TIP + 20j * AHEAD, 0.05)]

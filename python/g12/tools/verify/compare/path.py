@@ -28,6 +28,7 @@ TIE = 1e-7  # mm: of two points as near as that the earlier one counts
 ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
 ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
 COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
+MOST = 0.5  # share of a move: if more is done, its end is not reached but it is not missing
 SAME_FEED = 1e-5  # relative; a trace prints feeds with nine decimals
 OFF, MISSING, EXTRA = "path-off", "path-missing", "path-extra"
 RAPID, FEED, FEED_MODE = "rapid", "feed", "feed-mode"
@@ -198,6 +199,10 @@ class _Cursor:
         at = self.index if self._rest() > TIE else self.index + 1
         return self.path[min(at, len(self.path) - 1)]
 
+    def done_of_next(self) -> float:
+        """Return the share of `next_move` that is done."""
+        return self.share if self._rest() > TIE else 0.0
+
     def follow(self, move: Made) -> tuple[float, Point]:
         """Go along a move; return how far it is off at most, and where."""
         off = self._take_whole(move)
@@ -303,11 +308,12 @@ def lay(path: Sequence[Expected], made: Iterable[Made], tolerance: float) -> Lai
     """Lay actual moves along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
     laid, cursor, moves = Laid([[] for _ in path]), _Cursor(path), iter(made)
     for move in moves:
+        done = cursor.done_of_next()
         off = _lay_move(cursor, move, tolerance, laid)
         if off:
             is_segment = off.kind == OFF and move.curve is None
             rest = chain([move], moves)
-            laid.add(_at_its_worst(path, off, rest, tolerance) if is_segment else off)
+            laid.add(_at_its_worst(path, off, rest, tolerance, done) if is_segment else off)
             return laid
     if cursor.remaining > tolerance:
         missing = cursor.next_move()
@@ -331,17 +337,22 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Path
 
 
 def _at_its_worst(
-    path: Sequence[Expected], off: PathDifference, moves: Iterable[Made], tolerance: float
+    path: Sequence[Expected],
+    off: PathDifference,
+    moves: Iterable[Made],
+    tolerance: float,
+    done: float,
 ) -> PathDifference:
     """Return how far the motion leaves the toolpath before it comes back.
 
     ``moves`` are the one that is off and those after it. Where that one is on the toolpath farther
-    ahead, the moves between are missing.
+    ahead, the moves between are missing, unless the first of them was ``done`` for the most part.
     """
     at = next(index for index, move in enumerate(path) if move is off.expected)
     ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
     for move in moves:
-        if move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance:
+        is_ahead = move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance
+        if is_ahead and done < MOST:
             return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
         size, where = _farthest(move, ahead)
         if size <= found.size + TIE:
