@@ -186,7 +186,6 @@ def test_a_plunge_after_an_arc_is_rounded_by_more_than_p(lathe):
     assert proof.findings == [] and 0.052 < proof.sections[0].deviation < 2.15 * 0.05
 
 
-
 def test_blocks_that_wait_cut_a_section_in_two(lathe):
     waiting = [line for block in SQUARE for line in (block, "M66 P0 L0")]
     samples = lathe.motion_of([*ROUGHLY, *waiting, "G13.1", "M2"])
