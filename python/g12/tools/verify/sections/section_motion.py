@@ -31,7 +31,7 @@ from g12.tools.verify.compare.path import Span
 from g12.tools.verify.compare.section import turns
 from g12.tools.verify.expected.toolpath import Expected
 from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.result.tolerances import LEVEL
+from g12.tools.verify.result.tolerances import LEVEL, STATE
 from g12.tools.verify.sections.view import G64_P, SectionView
 
 STILL = 1e-7  # mm: C turns in place
@@ -204,7 +204,7 @@ def judge_c(view: SectionView) -> Iterator[Finding]:
     """Yield where C is faster than its limit, turns farther than it needs to, or rubs."""
     line, moves, in_place = view.section.line, view.moves, view.turned_in_place
     speed = max([c_speed(view), *(rate(moves[index], 0.0) for index in in_place)])
-    if speed > view.axes.most_c_speed:
+    if speed > view.axes.most_c_speed * (1.0 + STATE):
         yield Finding("c-speed", line, {"made": speed, "limit": view.axes.c.speed})
     far = [index for index, turn in in_place.items() if turn > HALF_TURN][:1]
     for index in far:
