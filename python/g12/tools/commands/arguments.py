@@ -89,7 +89,7 @@ def program_parser(name: str, description: str, epilog: str) -> Parser:
 
 
 def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
-    text = f"feed override {whose} (default 100): real time is what a run takes"
+    text = f"feed override {whose} (default 100); above it LinuxCNC rounds corners more"
     percent: dict[str, Any] = {"type": number_above(0), "default": 100.0, "metavar": "PERCENT"}
     parser.add_argument("--override", **percent, help=text)
 
