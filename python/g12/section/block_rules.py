@@ -141,6 +141,13 @@ def check_codes(
             _check_m(code // 10, location)
 
 
+def never_ended(line: TextLine) -> str:
+    """Return why the lines after an O-word are skipped to the end of the file."""
+    if line.control == "call":
+        return f"there is no sub for {line.text}, in the program or as a file"
+    return f"the program ends before what belongs to {line.text}"
+
+
 def check_call(text: str, off_code: str, location: BlockLocation) -> None:
     """Refuse a call of holes or a shape by its name; ``text`` has no blanks, in lower case.
 

@@ -63,7 +63,7 @@ class Section:
         self.reader, self.output = reader, output
         self._first = first
         self._phase = Phase.READING
-        self._skipped_for = ""  # the O-word whose lines are skipped
+        self._unended: Refusal | None = None  # of the O-word that skips lines, if they never end
 
     def run(self) -> Iterator[int]:
         """Read, plan and move the section; yield where LinuxCNC has to wait for the machine."""
@@ -211,16 +211,13 @@ class Section:
 
     def _update_phase(self, line: TextLine) -> None:
         """Note whether the following lines are skipped, and the O-word that skips them."""
-        skipping = self.program.skipping()
-        if skipping and self._phase is Phase.READING:
-            self._skipped_for = line.text
-        self._phase = Phase.SKIPPING if skipping else Phase.READING
+        if not self.program.skipping():
+            self._phase, self._unended = Phase.READING, None
+        elif not self._unended:
+            self._phase, self._unended = Phase.SKIPPING, self._refuse(block_rules.never_ended(line))
 
     def _end_of_file(self) -> None:
-        if self._phase is Phase.SKIPPING:
-            reason = f"the program ends before what belongs to {self._skipped_for}"
-            raise self._refuse(reason)
-        raise self._missing_off("the program ends before it")
+        raise self._unended or self._missing_off("the program ends before it")
 
     def _missing_off(self, what: str) -> Refusal:
         return self._refuse(f"{self.codes.off_code} is missing: {what}")
