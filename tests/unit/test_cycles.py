@@ -107,7 +107,7 @@ REFUSED = {
         ("D.5", "D0.5 must be a whole number"),
         ("J.00005", "J0.00005 must be at least 0.0002"),
         ("Q.00005", "Q0.00005 must be at least 0.0002"),
-        ("L1", "L needs Q as well: the finish dimension"),
+        ("L1", "L1 needs Q as well: the finish dimension"),
         ("Q.02 L2", "L2 must be at most 1"),
         ("E.05", "E0.05 must not be below the first reference plane I0.1"),
         ("Z.1", "Z0.1 must be below the first reference plane I0.1"),

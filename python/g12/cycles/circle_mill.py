@@ -146,10 +146,11 @@ def finish_feed_of_call(words: Words) -> float | None:
 
 def finish_of_code(words: Words) -> tuple[float, bool]:
     """Return finish dimension and bottom finish of the words Q and L."""
-    if "L" in words and "Q" not in words:
-        raise words.refuse("L needs Q as well: the finish dimension")
-    finish = words.take_positive("Q") or 0.0
+    is_given = "L" in words
     bottom = words.take_whole("L", least=0, most=1, default=1)
+    if is_given and "Q" not in words:
+        raise words.refuse_word("L", bottom, "needs Q as well: the finish dimension")
+    finish = words.take_positive("Q") or 0.0
     return finish, finish > 0 and bottom == 1
 
 
