@@ -96,6 +96,19 @@ def test_a_wrong_file_is_reported_in_one_line(name, files, capsys):
         assert said.startswith(f"g12 {name}: ") and says in said
 
 
+def test_a_file_that_may_not_be_read_is_reported_in_one_line(files, monkeypatch, capsys):
+    opened = open
+
+    def refused(path, *words, **more):
+        if path == files.program:
+            raise PermissionError(13, "Permission denied", str(path))
+        return opened(path, *words, **more)
+
+    monkeypatch.setattr("builtins.open", refused)
+    says = f"g12 verify: {files.program}: Permission denied\n"
+    assert ends(capsys, "verify", files.program, "--ini", files.ini) == (2, says)
+
+
 ANY_TABLE = ["", "; none yet\n", TOOLS, "P1 T1 D6 ; mill\nd.25 t2\n", "T3\n"]
 NO_TABLE = [MILL, "G21\nT1 M6\nM2\n", "P1 D6\n"]
 ANY_VAR = ["", "5220\t1.000000\n5221\t-10.5\n\n", " 31 5 kept\n"]

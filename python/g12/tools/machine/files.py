@@ -16,11 +16,13 @@ BACKUP = ".before-g12"
 
 
 def existing(path: Path) -> Path:
+    """Return the path of a file that can be read; raise UsageError or OSError."""
     if path.is_dir():
         raise UsageError(f"{path}: is a folder")
     if not path.is_file():
         raise UsageError(f"{path}: no such file")
-    return path
+    with open(path, "rb"):
+        return path
 
 
 def difference(path: Path, content: bytes) -> Iterator[str]:

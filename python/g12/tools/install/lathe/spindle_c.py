@@ -27,6 +27,7 @@ from g12.tools.install.lathe.hal import (
 )
 from g12.tools.install.lathe.kinematics_lines import joints
 from g12.tools.install.lathe.kinematics_rules import GUARD_HAL, uses_face_kinematics
+from g12.tools.machine.files import existing
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
 SPINDLE_C_HAL = "configs/include/spindle_c.hal"
@@ -97,8 +98,8 @@ class Pins(NamedTuple):
 def read_pins(path: Path) -> Pins:
     """Return the data of a file of pins; refuse unknown and missing entries."""
     try:
-        entries = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        entries = tomllib.loads(existing(path).read_text(encoding="utf-8"))
+    except ValueError as error:
         raise UsageError(f"{path}: {error}") from None
     known: dict[str, Any] = dict.fromkeys(DRIVE, str)
     known |= {key.lower(): (int, float) for key in NUMBERS}
