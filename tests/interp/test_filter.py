@@ -94,6 +94,19 @@ def test_what_the_filter_refuses_is_told(reported, command):
     assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
 
 
+@pytest.mark.parametrize(
+    ("command", "last"),
+    [
+        ("false", "without a word"),
+        ("nosuchfilter", "[FILTER]: 1: nosuchfilter: not found"),
+        ("ls --nothing", "Try 'ls --help' for more information."),
+    ],
+)
+def test_a_filter_that_fails_is_named(reported, command, last):
+    said = f"g12 verify: PROGRAM: the filter {command} failed: {last}\n"
+    assert reported("verify", POCKET, command=command) == (2, "", said)
+
+
 def test_a_picture_has_the_lines_of_the_users_file(reported, tmp_path):
     picture = tmp_path / "part.svg"
     code, out, _ = reported("plot", POCKET.replace("D02", "D03"), "-o", str(picture))

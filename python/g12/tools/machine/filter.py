@@ -106,7 +106,7 @@ def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
 def filtered(program: Path, command: str, ini: Ini) -> bytes:
     """Return a filter's output for a program; it runs as LinuxCNC's screens run it."""
     done = subprocess.run(
-        ["sh", "-c", f'{command} "$0"', str(program.absolute())],
+        ["sh", "-c", f'{command} "$1"', "[FILTER]", str(program.absolute())],
         cwd=ini.directory,
         env={**os.environ, "INI_FILE_NAME": str(ini.path)},
         stdin=subprocess.DEVNULL,
@@ -119,10 +119,12 @@ def filtered(program: Path, command: str, ini: Ini) -> bytes:
 
 
 def filter_error(text: str, command: str, program: Path) -> str:
-    """Return the last line of a filter's error output."""
+    """Return the error of a filter of the package, of any other its command and last line."""
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith(PROGRESS)]
-    last = OWN_ERROR.sub("", lines[-1].strip()) if lines else f"the filter failed: {command}"
-    return last.replace(str(program.absolute()), str(program))
+    last = lines[-1].strip() if lines else "without a word"
+    own = OWN_ERROR.match(last)
+    said = last[own.end() :] if own else f"{program}: the filter {command} failed: {last}"
+    return said.replace(str(program.absolute()), str(program))
 
 
 def lines_of_source(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...]:
