@@ -45,6 +45,15 @@ def test_the_first_program_of_a_page_cuts_what_it_says(page, tmp_path, capsys):
     assert len(reported["pockets"]) + len(reported["sections"]) == cuts
 
 
+def test_what_the_page_of_verify_shows_is_what_it_prints(tmp_path, capsys):
+    program = tmp_path / "pocket.ngc"
+    first, second = program_of("ngc/haas.md").rsplit("Q.2", 1)
+    program.write_text(f"{first}Q.3{second}", encoding="utf-8")
+    assert main(["verify", str(program), "--ini", str(SIM / "mill_inch_headless.ini")]) == 1
+    page = (ROOT / "python" / "README.md").read_text(encoding="utf-8")
+    assert f"```\n{capsys.readouterr().out}```" in page
+
+
 @pytest.mark.parametrize(("number", "flats"), [(1, [[27.0] * 3]), (2, [[], []])])
 def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, flats, tmp_path, capsys):
     text = (ROOT / "ngc" / "polar.md").read_text(encoding="utf-8")
