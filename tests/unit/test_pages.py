@@ -66,6 +66,12 @@ def test_the_first_pages_are_short_enough_to_be_read(page, most):
     assert len((ROOT / page).read_text(encoding="utf-8").splitlines()) <= most
 
 
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_the_prose_of_a_page_is_wrapped_at_100_characters(page):
+    rows = (line for line in prose(page).splitlines() if not line.startswith(("|", "![")))
+    assert [line for line in rows if len(line) > 100] == []
+
+
 def test_what_install_copies_needs_nothing_else_to_be_read():
     copied = set(package_copy.package_files())
     pages = [page for page in PAGES if name_of(page) in copied]
