@@ -579,7 +579,7 @@ def test_old_versions_are_never_overwritten(tmp_path):
     [
         ([], "the INI is missing, --with is missing"),
         (["mill.ini", "--with"], "expected at least one argument"),
-        (["mill.ini", "--with", "yasnak"], "no such feature; the nearest is yasnac"),
+        (["mill.ini", "--with", "heidenhain"], "no feature 'heidenhain' (usage: "),
     ],
 )
 def test_wrong_use_of_install(arguments, says, capsys):

@@ -7,7 +7,6 @@ by `check` is refused.
 """
 
 from collections.abc import Sequence
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -59,12 +58,9 @@ def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | Non
 
 def wrong_words(ini: Path | None, requested: Sequence[str]) -> str:
     """Return the fault of the command line's features, "" without one."""
-    for name in requested:
-        if name not in features.FEATURE_NAMES:
-            (nearest,) = get_close_matches(name, features.FEATURE_NAMES, 1, 0.0)
-            return f"--with {name:.40}: there is no such feature; the nearest is {nearest}"
+    unknown = [f"no feature {name!r}" for name in requested if name not in features.FEATURE_NAMES]
     given = {"the INI": ini, "--with": requested}
-    return ", ".join(f"{name} is missing" for name in given if not given[name])
+    return ", ".join(unknown[:1] or [f"{name} is missing" for name in given if not given[name]])
 
 
 @one_line("install")
