@@ -122,7 +122,7 @@ class Scene:
             self.subject.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
-            f"run at {self.override:g} %" if self.real and self.override != 100 else "",
+            f"run at {self.override:g}\u00a0%" if self.real and self.override != 100 else "",
         ]
         return " · ".join(filter(None, facts))
 

@@ -216,8 +216,7 @@ def _path_of(name: str) -> Path:
     if name.endswith(".toml"):
         return Path(name)
     if name not in shipped_controls():
-        known = ", ".join(shipped_controls())
-        raise ControlError(f"no control {name}: there are {known}, or give a .toml file")
+        raise ControlError(f"no control {name}: translate --list names them; or give a .toml file")
     return CONTROL_FOLDER / f"{name}.toml"
 
 
