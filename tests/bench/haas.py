@@ -90,7 +90,7 @@ def plain_block(move, x, y):
         whole = math.dist(move.start[:2], move.end[:2]) < cut_geometry.SAME_POINT
         target = "" if whole else f"X{end[0] + x:.6f} Y{end[1] + y:.6f} "
         return f"G3 {target}I{i:.6f} J{j:.6f}"
-    if cut_geometry.tangent(move, 0)[2]:
+    if move.end[2] != move.start[2]:
         return f"G1 Z{end[2]:.6f}"
     return f"G1 X{end[0] + x:.6f} Y{end[1] + y:.6f}"
 
