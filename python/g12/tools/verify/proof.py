@@ -28,7 +28,7 @@ from g12.tools.units import Unit
 from g12.tools.verify.called import Clamp, measure_holes, measure_shape
 from g12.tools.verify.clamp import judge_clamp
 from g12.tools.verify.commanded import Commanded, commanded_by
-from g12.tools.verify.in_material import judge_material, judge_rapid_lengths
+from g12.tools.verify.in_material import judge_material
 from g12.tools.verify.mistakes.tool import (
     judge_feeds,
     judge_levels,
@@ -46,6 +46,7 @@ from g12.tools.verify.mistakes.words import (
     judge_unrun,
 )
 from g12.tools.verify.pocket import measure_pocket
+from g12.tools.verify.rapids import judge_rapid_lengths
 from g12.tools.verify.reading.codes import Codes
 from g12.tools.verify.result.cut import MeasuredCut
 from g12.tools.verify.result.finding import Finding

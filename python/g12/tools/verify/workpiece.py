@@ -22,7 +22,8 @@ from g12.tools.material.stock import Stock, StockText, read_stock
 from g12.tools.path.part import FLAT, Part, Z, disc, is_sideways, part_of
 from g12.tools.path.surface import Surface
 from g12.tools.preview.moves import Move
-from g12.tools.units import unit_of
+from g12.tools.units import plain, unit_of
+from g12.tools.verify.compare.plane import plane_of
 from g12.tools.verify.subject import Subject
 from g12.tools.verify.walls import (
     FAR,
@@ -54,6 +55,28 @@ class PartView(NamedTuple):
     def meets(self, subject: Subject, index: int) -> bool:
         """Tell whether the tool of a move points at it."""
         return subject.sideways[index] == {self.surface > 0.0}
+
+    def words(
+        self, subject: Subject, index: int, point: Sequence[float]
+    ) -> tuple[tuple[str, float | str], ...]:
+        """Return a point of a move as words: X Y Z of a mill, X C Z of a lathe.
+
+        In a section on the face they are the section's own.
+        """
+        if not self.part.turning:
+            return tuple(zip("XYZ", point))
+        for section in subject.commanded.on_face:
+            if section.at <= index < section.end:
+                plane = plane_of(section, subject.moves[section.at])
+                at = complex(plane.points(np.array([point]))[0])
+                return plane.words((at, point[2] - plane.base), section.diameters)
+        if self.surface:
+            around, along, level = point
+            x, c, z = level - self.part.centre, math.degrees(around / self.surface), along
+        else:
+            x, z, c = math.hypot(*point[:2]), point[2], math.degrees(math.atan2(point[1], point[0]))
+        factor = 2 if subject.commanded.in_diameters(index) else 1
+        return ("X", factor * x), ("C", plain(c, 3)), ("Z", z)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,7 @@
 """A finding or a note of verify: a code of the table of sentences, a line, values and a place."""
 
 import string
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -50,6 +50,14 @@ class Finding:
 
     def text(self, unit: Unit = MM) -> str:
         return in_words(SENTENCES[self.code], self.values, unit)
+
+
+def once_a_line(found: Iterable[Finding]) -> Iterator[Finding]:
+    """Yield the first finding of each line."""
+    lines: dict[int, Finding] = {}
+    for each in found:
+        lines.setdefault(each.line, each)
+    yield from lines.values()
 
 
 def minus_hint(level: float, zero: float) -> str:
