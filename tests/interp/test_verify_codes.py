@@ -477,6 +477,8 @@ CASES = [
     ("mill", "G13 I6 K9 Q3 Z-8 D4|G13 I6 K14 Q3 Z-4|G0 Z5", ""),  # from below upwards
     ("yasnac", "Z-4|G12 I45 R28 D10 F400|G12 I50 R40 D10|G0 Z5", "bored-assumed 6"),
     ("mill", f"{CLEARED}|G0 Z5|X60|Z-5|G1 Y40|G0 Z5", "rapid-beside 9"),
+    ("mill", f"{CLEARED}|G0 Z5|X60|Z2|G1 Z-2|Y40|G0 Z-2|Z2", ""),
+    ("mill", f"{CLEARED}|G0 Z5|X60|Z2|G1 Z-2|Y40|G0 Z-5|Z2", "rapid-beside 12"),
     ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
      "tap-undrilled 6, feed-per-revolution 6, feed-cut-down 6"),
     # holes with C

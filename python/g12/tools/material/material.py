@@ -30,7 +30,6 @@ RAPID_STEP = 0.5  # between the evaluated points of a rapid
 BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
 NOTHING = Polygon()
 ALWAYS = -1  # move number of what exists before the program
-ANY = (-math.inf, math.inf)
 
 Bounds = Sequence[float]  # least and greatest of both coordinates of the plane
 Levels = tuple[float, float]  # the lowest and the highest
@@ -291,14 +290,23 @@ class Material:
         return known and self.standing(region, level, before).area <= LEAST_AREA
 
     def covers(self, points: np.ndarray, radius: float, before: float, top: float) -> bool:
-        """Return whether all that a cutter sweeps below a top is solid, or was cut before."""
-        course = Course(radius, math.inf, before)
-        lines = [each.line for each in _below(top, points)]
-        swept_area = swept((each for each in lines if not self._is_swept(each, course)), radius)
-        rest = [portion for portion, _ in self._turned(swept_area)]
-        for areas, move in ((self._solids, None), (self._cuts, before)):
-            rest = [areas.near(each, ANY, move).without(each) for each in rest]
-        return sum(each.area for each in rest) <= LEAST_AREA
+        """Return whether all that a cutter sweeps below a top is solid, or was cut as low before.
+
+        What is below a cut outside of the solids is not known.
+        """
+        for portion in _below(top, points):
+            course = Course(radius, portion.high + SAME_LEVEL, before)
+            if self._is_swept(portion.line, course):
+                continue
+            rest = [each for each, _ in self._turned(swept([portion.line], radius))]
+            for areas, most, move in (
+                (self._solids, math.inf, None),
+                (self._cuts, course.level, before),
+            ):
+                rest = [areas.near(each, (-math.inf, most), move).without(each) for each in rest]
+            if sum(each.area for each in rest) > LEAST_AREA:
+                return False
+        return True
 
     def touched(
         self, points: np.ndarray, radius: float, before: float, perhaps: bool = False

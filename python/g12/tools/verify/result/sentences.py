@@ -209,7 +209,8 @@ NOT_JUDGED = {
     ),
     "rapid-from-unknown": "rapids from an unknown start to a point below the part's top or Z0",
     "rapid-beside": (
-        "rapids below the part's top or Z0, beside what is cut; --stock defines the material there"
+        "rapids below the part's top or Z0, beside or below what is cut; --stock defines the"
+        " material there"
     ),
     "rapid-after-cuts": "rapids from the side to where other cuts may have removed the bar before",
     "rapid-no-diameter": "rapids below the top, of a tool without a diameter",
