@@ -70,6 +70,10 @@ SQUARE_AND_PIN = (  # in one section, the pin at a place beside the square
     "T1 M6|S900 M3|G0 X80 Z2 C0|G12.1|G1 X80 F300|G41 X20|Z-1|C-10|X-20|C10|X20|C0|G40 X80|"
     "G41 X{0}|G2 X{0} C0 I-4 J0|G1 G40 X80|Z2|G13.1"
 )
+TRIANGLE = (
+    "G12.1|G1 X3.07783 C-11.27755|G41 X2.32495 C-7.17287|Z-3.6|X-13.93686 C-10.15559|"
+    "X-0.52437 C22.3497|X18.58676 C-4.19015|X2.32495 C-7.17287|G40 X3.07783 C-11.27755|G13.1|G0 X60"
+)
 ROUND_A_FLAT = "G0 X30 Z2 C0|G12.1|G1 X20 C3 F900|G42 X14 C0 F600|Z-1 F200|C10 F600|X-10|C-10|X14|"
 ROUND_A_FLAT += "C0|G40 X20 C-3|Z2|G13.1"
 
@@ -459,6 +463,9 @@ CASES = [
     ("two spindles", FLAT, "tool-spindle-unseen 5"),
     # rapids before the first section, and a hole for it; in front of the face
     ("lathe", f"G0 X70 Z-3|X0|Z5|X70|{HEXAGON}", "rapid-beside 5, rapid-through 6"),
+    # two points of the first are one but for rounding; so is their shape when it is turned
+    ("any lathe", f"G8|T3 M6|S900 M3|G0 X60 Z5 C-45|{TRIANGLE}|Z5|C15|{TRIANGLE}|Z5",
+     "rapid-beside 16, rapid-through 29"),
     ("lathe", "G0 X60 Z-20|X10|X60|G7.1 C20|G1 X34 F80|Z-40|X60|G7.1 C0", "rapid-into 6"),
     ("lathe", "G0 X10|Z-3|G12.1|G1 X20 F600|Z2|G13.1", "bored-assumed 6"),
     ("lathe", f"G0 X10 Z50|X70 Z5|{SIDE_HOLE}", ""),

@@ -291,7 +291,8 @@ def _material_side(outline: Outline, plane: Plane) -> BaseGeometry:
         return there.real, there.imag
 
     area = outline.part(WALL)
-    return area if area.is_empty else transform(on_part, area)
+    turned = area if area.is_empty else transform(on_part, area)
+    return turned.buffer(0)  # by rounding, its edge may cross itself where two points coincide
 
 
 def beyond(outline: Outline, plane: Plane, bar: BaseGeometry) -> BaseGeometry:
