@@ -98,7 +98,7 @@ def check_what_is_left(lathe, was_c, keeps, becoming_c):
     stood = lathe.get("spindle-turns")
     time.sleep(0.3)
     assert lathe.get("spindle-turns") == pytest.approx(stood, abs=1e-3)
-    assert lathe.is_c() == (was_c and keeps)
+    assert lathe.is_c() == (was_c and keeps) or (becoming_c and keeps)
     assert lathe.get("spindle-c-holds") == lathe.is_c()
     lost = was_c and not keeps and bool(lathe.get("motion.digital-out-02"))
     assert becoming_c or (LOST in [error.text for error in lathe.errors()]) == lost
