@@ -57,7 +57,7 @@ bench: setup kinematics
 soak: setup
 	@echo "soak: for about $(MINUTES) minutes on two cores, seed $(SEED)"
 	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) sh -c 'PYTHONPATH=tests:$$PYTHONPATH \
-		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(JOBS) $(SOAKED)'
+		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(WORKERS) $(SOAKED)'
 
 deb:
 	@sh .ci/deb
