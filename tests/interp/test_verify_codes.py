@@ -54,6 +54,7 @@ OTHER_FLAT = "X-80|G41 X-27 C-25|Z-5|C25|G40 X-80 C0|Z2|G13.1"
 FLANK = "G0 X44 Z-20|G7.1 C20|G1 X36 F500|C90"
 AROUND = "o<side_holes> call [3] [-10] [20] [-9999] [40] [8] [2] [120] [-3] [0] [0]"
 ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
+ELSEWHERE = "T3 M6|S900 M3|G10 L2 P1 X90|G0 X60 Z2"
 POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
 FLATS = "o<polar_polygon> call [2] [24] [4] [30] [0] [2] [0] [600] [300] [30]"
 ROUND = "o<polar_pocket> call [24] [0] [{}] [3] [1.5] [0] [600] [200]"
@@ -129,6 +130,12 @@ CASES = [
     ("lathe", f"{FLANK}|X44|G7.1 C0|G0 Z2|X60 C90|{FLAT}", ""),
     ("lathe", f"{FLAT}|G0 C0|{FLANK}|X44|G7.1 C0|G0 Z2|X60|{FLAT}",
      "rapid-turned 13, zero-line-turned 22"),
+    # where C never moves, and X0 is elsewhere
+    ("any lathe", f"{ELSEWHERE}|C0|Z-2|G12.1|G1 X20|X60|Z2|G13.1", "", "40"),
+    ("any lathe", f"{ELSEWHERE}|{FACE_HOLE.replace('[20]', '[0]')}", "", "40"),
+    ("any lathe", f"{ELSEWHERE}|C0|X24 Z-2|G12.1|G1 X20|Z2|G13.1", "rapid-through 7", "40"),
+    ("any lathe", f"{ELSEWHERE}|X44|Z-20|X38|G7.1 C20|G1 X36|Z-30|X44|G7.1 C0",
+     "rapid-into 8, inside-surface 9", "40"),
     # at the centre
     ("radii", f"{SLOT}|{SLOT}", "rubs 5, rubs 11"),
     ("radii", "G12.1|G1 X-18 F800|Z-1|X-10|G13.1|G0 Z2", ""),
@@ -644,6 +651,11 @@ def test_cuts_are_listed_as_they_are_run(proof_of):
     assert [line.split()[1] for line in lines] == ["6", "8", "10", "19"]
 
 
+def test_the_depth_of_a_groove_is_its_x_word(proof_of):
+    blocks = f"{ELSEWHERE}|X44|Z-20|G7.1 C20|G1 X36|Z-30|X44|G7.1 C0"
+    assert ", on the contour, to X36 " in as_text(proof_of("any lathe", blocks), MM)
+
+
 MOVED = "positions below are the machine's; the program's zero is at machine"
 AT_X10 = "X0, the spindle's axis, is at machine X10\n"
 SAID = [  # a program, and a part of its report
@@ -689,6 +701,10 @@ SAID = [  # a program, and a part of its report
     ("mill", f"G92 X-2 Y0 Z31|{LOW}", f"{MOVED} X2 Y0 Z−30"),
     ("radii", f"G10 L2 P1 X10 Z-90 C30|G0 X18 Z2 C0|{SLOT}", f"{MOVED} Z−90; {AT_X10}"),
     ("radii", "G10 L2 P1 X10 Z-90 C30|G0 X23 Z2 C0|G7.1 C20|G1 Z-40 C60 F250|G7.1 C0", AT_X10),
+    ("any lathe", f"{ELSEWHERE}|X44|Z-20|G7.1 C20|G1 X36|Z-30|G7.1 C0|G0 Z5",
+     "a rapid goes through material, from X36 C0 Z−"),
+    ("any lathe", f"{ELSEWHERE}|Z9|{FACE_HOLE.replace('[20]', '[0]')}|G0 X30|Z-1",
+     "line 9: a rapid goes down into 27.337 mm² of material, at X30 C0 Z−1\n", "40"),
     ("lathe", f"{BEGIN}|{SIDES}|{END}", "  from centre     programmed 13.5 to "),
     ("lathe", f"{BEGIN.replace('C25', 'C12')}|{SIDES}|{END}", "programmed 13.5 to 15.58"),
     ("lathe", f"{BEGIN}|{SIDES}|{END}", "  across flats    programmed 27, reached 27"),

@@ -98,10 +98,10 @@ def part_of(ini: Ini) -> Part:
     return Part(turning, ini.tool_beside)
 
 
-def part_of_program(ini: Ini, trace: Trace) -> Part:
-    """Return the part of a program; on a lathe C turns it about X0, if C moves at all."""
+def part_of_program(ini: Ini, trace: Trace, is_milled: bool) -> Part:
+    """Return the part of a program; on a lathe C turns it about X0, if C moves or mills at all."""
     part = part_of(ini)
-    turning = part.turning and any(map(_turns_part, trace.moves))
+    turning = part.turning and (is_milled or any(map(_turns_part, trace.moves)))
     return replace(part, turning=turning, centre=last_x0(trace) if turning else 0.0)
 
 

@@ -158,9 +158,9 @@ class Subject:
         Next to a cut it points as in that one. There are two answers where cuts differ, none for a
         tool of a lathe that cuts neither a section nor a hole.
         """
-        commanded = self.commanded
-        if not (self.part.turning or commanded.sections or commanded.holes):
+        if not self.part.turning:
             return [{False}] * len(self.moves)
+        commanded = self.commanded
         cuts = [(each.at, each.end, each.surface > 0.0) for each in commanded.sections]
         cuts += [(each.moves.start, each.moves.stop, each.is_side) for each in commanded.holes]
         of_tool: dict[int, list[tuple[int, int, bool]]] = {}
@@ -233,7 +233,8 @@ def subject_of(
     commanded: Commanded = NOTHING,
 ) -> Subject:
     """Return a traced program, and a run of it, about the X0 of its first section on the face."""
-    subject = Subject(program, ini, trace, part_of_program(ini, trace), samples, commanded)
+    part = part_of_program(ini, trace, bool(commanded.sections or commanded.holes))
+    subject = Subject(program, ini, trace, part, samples, commanded)
     for first in commanded.on_face[:1]:
         return subject.about(x0_of(first, trace.moves[first.at]))
     return subject

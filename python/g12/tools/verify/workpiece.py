@@ -156,7 +156,8 @@ def _cylinder_views(
     subject: Subject, cylinders: Mapping[SurfaceKey, Iterable[Solid]]
 ) -> Iterator[PartView]:
     for key, solids in cylinders.items():
-        yield _view(subject, Surface(turning=True, radius=key.radius), solids)
+        part = Surface(turning=True, centre=key.face - key.radius, radius=key.radius)
+        yield _view(subject, part, solids)
 
 
 def _bar_from_side(subject: Subject, radius: float) -> PartView:

@@ -79,7 +79,10 @@ def judge_section(view: SectionView) -> Iterator[Finding]:
 
 
 def section_words(view: SectionView) -> dict[str, Any]:
-    """Return what the words of a section command as plain values; ``lowest`` is Z, or X."""
+    """Return what the words of a section command as plain values.
+
+    ``lowest`` is machine Z, or how far from the axis of a cylinder.
+    """
     section, radius = view.section, view.section.surface
     return {
         "cutter": 2 * view.tool,
@@ -88,7 +91,7 @@ def section_words(view: SectionView) -> dict[str, Any]:
         "starts_at": section.c if radius else None,
         "zero_line": None if radius else view.first.start[C],
         "x_words": "diameters" if section.diameters else "radii",
-        "lowest": view.lowest,
+        "lowest": view.lowest - (view.plane.base if radius else 0.0),
         "below_surface": view.plane.face - view.lowest if radius else None,
     }
 
