@@ -139,6 +139,7 @@ CASES = [
     # at the centre
     ("radii", f"{SLOT}|{SLOT}", "rubs 5, rubs 11"),
     ("radii", "G12.1|G1 X-18 F800|Z-1|X-10|G13.1|G0 Z2", ""),
+    ("radii", "G0 Z5|o<polar_slot> call [6] [24] [2] [-9999] [0] [600] [300] [0]", "rubs 6"),
     # the side of compensation
     ("lathe", "G12.1|G1 X100 F2000|G42 X60 F1000|Z-5|C-30|X-60|C30|X60|C0|Z2|G40 X100|G13.1",
      "side-other 5"),

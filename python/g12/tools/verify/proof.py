@@ -203,8 +203,9 @@ def _judged(subject: Subject, workpiece: Workpiece, cuts: Cuts) -> Iterator[Find
     commanded, trace, ini = subject.commanded, subject.trace, subject.ini
     known = {index for cut in (*cuts.pockets, *cuts.sections, *cuts.holes) for index in cut.own}
     unmeasured = _unmeasured_in(subject, known)
-    yield from (each for kind in cuts for cut in kind for each in cut.judged)
-    all_cuts = [*cuts.pockets, *_as_called(cuts.sections, cuts.shapes), *cuts.holes]
+    sections = list(_as_called(cuts.sections, cuts.shapes))
+    all_cuts = [*cuts.pockets, *sections, *cuts.holes]
+    yield from (each for cut in (*all_cuts, *cuts.shapes) for each in cut.judged)
     yield from judge_material(workpiece, all_cuts)
     yield from (Finding("not-measured", line, {"code": code}) for line, code in unmeasured)
     yield from commanded.idle
@@ -249,11 +250,19 @@ def _mistakes(subject: Subject, cuts: Sequence[MeasuredCut], known: set[int]) ->
 def _as_called(
     sections: Sequence[MeasuredCut], shapes: Sequence[MeasuredCut]
 ) -> Iterator[MeasuredCut]:
-    """Yield sections, that in a shape's own sub with the user's line that calls the shape."""
+    """Yield sections, that in a shape's own sub with the user's line that calls the shape.
+
+    Findings about the whole section get that line, too.
+    """
     for section in sections:
         callers = (shape for shape in shapes if section.own.start in shape.own)
         caller = next(callers, section)
-        yield replace(section, line=caller.line, file=caller.file)
+        line, file = caller.line, caller.file
+        judged = (
+            replace(each, line=line, file=file) if each.line == section.line else each
+            for each in section.judged
+        )
+        yield replace(section, line=line, file=file, judged=tuple(judged))
 
 
 def not_judged(moves: Sequence[Move], known: set[int]) -> Iterator[Finding]:
