@@ -220,7 +220,8 @@ CASES = [
     ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z5|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}",
      "rapid-length 5"),
     ("any mill", f"T3 M6|S900 M3|G0 X0 Y0|Z50|G43 H3|G0 Z5|{LOW.replace('D4', 'D3')}", ""),
-    ("mill", f"{LOW}|G0 Z1|G49|G0 Z10|X80", "rapid-length-not-used 9"),
+    ("mill", f"{LOW}|G0 Z1|G49|G0 Z10|X80", "rapid-length 9"),
+    ("mill", f"{LOW}|G0 Z50|T3 M6|S900 M3|G49|G0 X40|Z5", "rapid-length-not-used 12"),
     ("mill", f"{LOW}|G0 Z1|G49|G0 Z60|X80", ""),
     ("mill", f"{LOW}|G0 Z1|G49|X80|Z1|{LOW}", "length-deeper 11"),
     # the tool table as it is at a cut

@@ -100,6 +100,7 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
     """Yield rapids that lead the tip below Z0, as another length than the tool's is in force.
 
     Of one tool and length the first is reported, if no cut is: ``known`` are the moves of cuts.
+    After a cut with the length of the table G49 does not mean that Z was touched off.
     """
     moves, trace, z0 = subject.moves, subject.trace, float(subject.zero[Z])
     deeper = [missing_length(trace, index) for index in range(len(moves))]
@@ -110,6 +111,10 @@ def judge_rapid_lengths(subject: Subject, known: set[int]) -> Iterator[Finding]:
         if move.kind == "rapid" and is_low and of not in reported:
             reported.add(of)
             values = {"tool": move.tool, "length": move.tool_offset[Z], "level": level}
-            cancelled = length_set_by(trace.events, index) == "G49"
-            code = "rapid-length-not-used" if cancelled else "rapid-length"
+            with_length = any(
+                at < index and moves[at].tool == move.tool and abs(deeper[at]) < SIZE
+                for at in known
+            )
+            touched_off = length_set_by(trace.events, index) == "G49" and not with_length
+            code = "rapid-length-not-used" if touched_off else "rapid-length"
             yield Finding(code, subject.line(index), values, subject.end(index))

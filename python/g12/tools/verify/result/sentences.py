@@ -40,7 +40,7 @@ FINDINGS = {
     ),
     "rapid-length": (
         "with the length of T{tool} in the table the tip goes by rapid to Z{level:mm}: "
-        "the length in force is {length:mm} (G43 H{tool} after M6?)"
+        "the length in force is {length:mm} (G43 H{tool} missing?)"
     ),
     # holes
     "act-off-bottom": "{act} does not come at the bottom of the hole",
