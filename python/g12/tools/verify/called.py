@@ -130,7 +130,8 @@ def measure_holes(
     cut = _called_cut(call, found, values, judged)
     tapping = [holes.pitch * call.speed] if call.speed else []
     surface = holes.circle if holes.side else 0.0
-    return replace(cut, feeds=tuple(tapping) if holes.pitch else None, surface=surface)
+    feeds = tuple(tapping) if holes.pitch else None
+    return replace(cut, feeds=feeds, per_turn=holes.pitch, surface=surface)
 
 
 def _times_of_holes(holes: Holes, pace: Pace, real: Followed | None) -> dict[str, float | None]:

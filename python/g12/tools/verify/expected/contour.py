@@ -28,6 +28,7 @@ class Element:
     ``side`` is +1 with the tool on the left (G41), -1 on the right, 0 without compensation;
     ``ramp`` says that compensation is switched on or off along it. ``depth`` is Z at its end,
     ``feed`` along it in mm/min, None where the words do not say. A move of Z alone has no length.
+    ``per_turn`` is that feed in mm per revolution, 0 where it is per minute.
     ``exact`` says whether it ends in an exact path or stop, None as it was before the section.
     """
 
@@ -41,6 +42,7 @@ class Element:
     sweep: float = 0.0
     feed: float | None = None
     exact: bool | None = None
+    per_turn: float = 0.0
 
     @property
     def curve(self) -> Curve:

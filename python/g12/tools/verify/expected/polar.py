@@ -9,6 +9,7 @@ import cmath
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 from g12.geometry.curve import FULL_TURN, recentred, sweep_between
 from g12.lengths import MM_PER_INCH
@@ -69,10 +70,10 @@ class Pen:
             line = block.text.number
             ramp, self.changes = self.changes, False
             form = self.tool, end, self.side, ramp, self.depth, centre, sweep
-            yield Element(line, *form, self._feed(), self._exact(block))
+            yield Element(line, *form, **self._how(block))
         elif depth != self.depth:
             still = Element(block.text.number, end, end, 0, False, self.depth)
-            yield replace(still, feed=self._feed(), exact=self._exact(block))
+            yield replace(still, **self._how(block))
         if end != self.tool or centre is not None:
             self.at = self.tool = end
 
@@ -114,6 +115,11 @@ class Pen:
         angle -= math.atan2(self.beside, slide)
         found = {"_x": slide / self.unit, "_z": self.depth / self.unit}
         return {**found, "_c": c + math.degrees(angle)} if radius > AT_CENTRE else found
+
+    def _how(self, block: Block) -> dict[str, Any]:
+        """Return the feed and the exact stop of an element."""
+        per_turn = self.feed if self.per_revolution and self.motion != 0.0 else None
+        return {"feed": self._feed(), "exact": self._exact(block), "per_turn": per_turn or 0.0}
 
     def _feed(self) -> float | None:
         if self.motion == 0.0:

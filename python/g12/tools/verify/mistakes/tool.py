@@ -138,11 +138,10 @@ def judge_feeds(
     """Yield what to know of the feeds of cuts."""
     for cut in cuts:
         fed = [move for move in cut.fed(moves) if move.feed and cut.feeds is None]
-        per_turn = [move.feed for move in fed if move.feed_mode == "G95"]
-        per_turn += filter(None, [cut.values.get("pitch")])
+        per_turn = [cut.per_turn, *(move.feed for move in fed if move.feed_mode == "G95")]
         feeds = cut.feeds or [move.feed for move in fed if move.feed_mode != "G95"]
         most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
-        if max(per_turn, default=0.0) > MOST_PER_TURN:
+        if max(per_turn) > MOST_PER_TURN:
             values = {"feed": max(per_turn)}
             yield Finding("feed-per-revolution", cut.line, values, file=cut.file)
         if min(feeds, default=LEAST_PER_MINUTE) < LEAST_PER_MINUTE:

@@ -22,6 +22,7 @@ class MeasuredCut:
     moves, ``face`` is the machine Z of the program's Z0. C turns or holds the part (``turning``).
     ``surface`` is the radius, mm, of the cylinder that it is on, 0 without one.
     ``feeds`` are those of its words along the part, mm/min, None where its moves show them.
+    ``per_turn`` is the highest of its words per revolution, mm, 0 where its moves show it.
     ``path`` is the expected toolpath, ``sound`` says that it was followed.
     ``values`` are its measures by the names of ``--json`` and the report: mm, mm², mm/min, degrees,
     seconds; None is not known.
@@ -40,6 +41,7 @@ class MeasuredCut:
     turning: bool = True
     surface: float = 0.0
     feeds: tuple[float, ...] | None = None
+    per_turn: float = 0.0
     path: Sequence[Expected] = ()
     sound: bool = True
 

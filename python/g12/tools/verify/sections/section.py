@@ -62,6 +62,7 @@ def measure_section(view: SectionView) -> MeasuredCut:
         section.last,
         surface=section.surface,
         feeds=tuple(element.feed for element in section.elements if element.feed),
+        per_turn=max((element.per_turn for element in section.elements), default=0.0),
         path=view.expected,
         sound=bool(section.doubt) or view.found.difference is None,
     )
