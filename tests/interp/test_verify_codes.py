@@ -201,7 +201,7 @@ CASES = [
     ("any lathe", f"G10 L1 P1 X20 R6|G10 L1 P3 X5 R3|T1 M6 G43|S900 M3|G0 X60 Z50 C0|T3 M6|"
      f"S900 M3|G0 X60 Z2|{FLAT}", "offset-beside 10"),
     ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G0 X60 Z2 C0|{FLAT}", ""),
-    ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G49|G0 X60 Z2 C0|{FLAT}", ""),
+    ("any lathe", f"G10 L1 P1 X20 R6|T1 M6 G43|S900 M3|G0 X90|G49|G0 X60 Z2 C0|{FLAT}", ""),
     # a length that changes before a cycle, with no move between
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43|G13 I9 Z-2 D4|G0 Z9", ""),
     ("any mill", "T4 M6|S900 M3|G0 X0 Y0 Z50|G43.1 Z30|G13 I9 Z-2 D4|G0 Z9", ""),
@@ -228,7 +228,8 @@ CASES = [
     ("mill", f"{LOW}|G10 L1 P4 R2 Z99", ""),
     ("mill", f"{LOW}|G0 Z1|X40|G10 L1 P4 R4|{LOW}|G0 Z1|X80|G10 L1 P4 R5 Z9|{LOW}",
      "length-higher 14"),
-    ("lathe", f"{FLAT}|G10 L1 P1 R3|G0 X60 Z10 C0|{FACE_HOLE}|G10 L1 P1 R9 X4", ""),
+    ("any lathe", f"G10 L1 P1 X4 R6|T1 M6 G43|S900 M3|G0 X60 Z2 C0|{FLAT}|G10 L1 P1 R3|"
+     f"G0 X60 Z10 C0|{FACE_HOLE}|G10 L1 P1 R9 X9", ""),
     # a Z0 that blocks compute each for itself
     ("any mill", "T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5|X40|X40 Z-2|"
      "G13 I3.5 K10 Q2.5 Z-6 D3|G0 Z5", "rapid-into 8"),
@@ -339,8 +340,6 @@ CASES = [
     ("lathe", f"{HEXAGON}|G0 Z5|T2 M6|G0 X70 Z-3|{HOLES.replace('-15', '-3')}|G0 X80",
      "plunge-into-stock 8, rapid-into 22, over-the-edge 22, tool-spindle 22", "40"),
     ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5", "rapid-idle-tool 20"),
-    ("lathe", f"{HEXAGON}|T3 M6|G0 X60 Z-4|X0|X60|Z5",
-     "plunge-into-stock 8, rapid-idle-tool 20", "50"),
     ("mill", f"{CLEARED}|G0 Z5|X200|Z-3|{CLEARED}",
      "plunge-into-stock 6, rapid-into 9, no-stock-met 10",
      "100x100x20"),
@@ -420,7 +419,7 @@ CASES = [
     ("lathe", f"{FLANK}|X-6|X44|G7.1 C0", "beyond-axis 6"),
     # a tap without a hole, into a hole that is not as deep, in place of it
     ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP}", ""),
-    ("lathe", f"G0 Z10|{TAP}|{FACE_HOLE}", "tap-undrilled 6"),
+    ("lathe", f"G0 Z10|{TAP}|{TAP.replace('[0]', '[9]', 1)}|{FACE_HOLE}", "tap-undrilled 6"),
     ("lathe", f"G0 Z10|{FACE_HOLE}|{TAP.replace('[8]', '[9]')}|{TAP}", "tap-undrilled 7"),
     ("lathe", f"G0 X80 Z10|{SIDE_HOLE}|{SIDE_TAP}", ""),
     ("lathe", f"G0 X80 Z10|{SIDE_HOLE}|{SIDE_TAP.replace('[8]', '[9]')}", "tap-undrilled 7"),
@@ -493,13 +492,12 @@ CASES = [
     ("mill", "G13 I9 K40 Q8 Z-2 D4|G0 Z5|G12.2 X0 Y0 Z-8 I2 R15 D0 H1", ""),  # its top
     ("mill", "G12.2 X0 Y0 Z-2 I2 E8 R20 D1 H1|G12.2 X0 Y0 Z-6 I2 R15 D0 H1",
      "core-remains 6, cuts-wall 7"),
-    ("mill", "G12.2 X0 Y0 Z-6 I2 E8 R25 D0 H1|G12.2 X0 Y0 Z-6 I2 R32 D1 H1",
-     "core-remains 7, cuts-wall 7"),
+    ("mill", "G12.2 X0 Y0 Z-6 I2 E8 R25 D0 H1|G0 Z50|T6 M6 G43|S900 M3|G0 X0 Y0 Z1|"
+     "G12.2 X0 Y0 Z-6 I2 E8 R40 D1 H1", "core-remains 11, cuts-wall 11"),
     ("mill", "G12.2 X0 Y0 Z-6 I2 E8 R25 D0 H1|G12.2 X0 Y0 Z-6 I2 R40 D1 H1", "core-remains 7"),
     ("mill", "G13 I6 K9 Q3 Z-8 D4|G13 I6 K14 Q3 Z-4|G0 Z5", ""),  # from below upwards
-    ("yasnac", "Z-4|G12 I45 R28 D10 F400|G12 I50 R40 D10|G0 Z5", "bored-assumed 6"),
     ("mill", f"{CLEARED}|G0 Z5|X60|Z-5|G1 Y40|G0 Z5", "rapid-beside 9"),
-    ("mill", f"{CLEARED}|G0 Z5|X60|Z2|G1 Z-2|Y40|G0 Z-2|Z2", ""),
+    ("mill", f"{CLEARED}|G0 Z5|X60|Z2|G1 Z-2|Y40|G0 Y10|Z2", ""),
     ("mill", f"{CLEARED}|G0 Z5|X60|Z2|G1 Z-2|Y40|G0 Z-5|Z2", "rapid-beside 12"),
     ("lathe", "G0 Z10|o<face_hole_at> call [0] [0] [6] [5] [120] [0] [0] [1]",
      "tap-undrilled 6, feed-per-revolution 6, feed-cut-down 6"),
@@ -546,7 +544,6 @@ CASES = [
     ("lathe", f"G0 Z9|{ROUND.format(18)}", "over-the-edge 6", "40"),
     ("lathe", f"G0 Z5|{POLYGON}", "plunge-into-stock 6, bar-remains 6", "60"),
     ("lathe", f"G0 Z5|{FLATS}", "", "32"),
-    ("lathe", f"G0 Z5|{FLATS}", "plunge-into-stock 6, bar-remains 6", "60"),
     ("lathe", f"{FLANK}|G1 Z-19|G7.1 C0|G0 C0", "rapid-through 11", "40"),
 ]  # fmt: skip
 SAME = ("travel-unplaced", "plain-moves")  # of every program; of moves that are no cut
@@ -728,9 +725,10 @@ SAID = [  # a program, and a part of its report
     *(("mill", P, f"it plunges with {share} % of the cutter into the stock, at X0 Y0", stock)
       for stock, share in (("100x80x20", 100), ("100x80x20@0,0", 25), ("bore 8", 36))),
     ("lathe", NARROW, "of the cutter into the stock, at X39 C6\n", "40"),
+    ("lathe", f"G0 Z5|{FLATS}", "422.852 mm² of the bar remain beyond the contour at Z−4", "60"),
     ("lathe", f"G0 Z5|{POLYGON.replace('600', '600000')}", "line 6: a feed of 600000 mm/min"),
-    ("mill", f"{LOW}|G0 Z1|X9|{LOW}|G0 Z1|X30|{LOW}",
-     "line 9: its cut at X9 Y0 and that of line 6 at X0 Y0"),
+    ("mill", f"{LOW}|G0 Z1|X9|{LOW}|G0 Z1|X12|{LOW}",
+     "line 12: its cut at X12 Y0 and that of line 6 at X0 Y0"),
     ("mill", f"{LOW}|G0 Z1|X80|{LOW}", "\n\nverdict: good, 1 not judged"),
     ("any mill", f"T4 M6 G43 H0|S900 M3|G0 X0 Y0 Z1|{LOW}",
      "no tool length is in force (no G43, H0"),

@@ -198,7 +198,7 @@ def test_a_fillet_of_the_tools_radius_is_cut_though_it_is_rounded(radius):
     for k in range(25):
         contour, centres = with_fillets(0.07 * k, radius)
         made, moved = centre_path(contour, MACHINE.tolerance)
-        assert moved < 0.0015
+        assert 0.0 < moved < 0.0015
         way, wall = as_shapely(made[1:-1]), as_shapely(contour.elements[1:-1])
         assert radius - way.distance(wall) < MACHINE.tolerance
         assert max(way.distance(Point(each.real, each.imag)) for each in centres) < 0.0015

@@ -8,7 +8,7 @@ from shapely.geometry import box
 from g12.tools.material.material import Material, Solid
 
 PERIOD = 40.0
-AGAIN = {"plane": 0.0, "a turn farther": PERIOD}  # by how much a rapid is shifted
+AGAIN = {"plane": 0.0, "other turns": PERIOD}  # by how much cuts are shifted, a rapid back
 
 
 def line(level, shift=0.0):
@@ -35,9 +35,10 @@ def test_a_rapid_along_the_line_of_a_cut(radius, level, move, is_free, surface):
     solid = Solid(box(-100.0, -100.0, 100.0, 100.0), 0.0)
     material = Material([solid], period=PERIOD if AGAIN[surface] else 0.0)
     for index, depth, cutter in cuts:
-        material.cut(index, line(depth), cutter)
-    rapid = line(level, AGAIN[surface])
-    assert (material.touched(rapid, radius, move) is None) == is_free
+        material.cut(index, line(depth, AGAIN[surface]), cutter)
+    rapid = line(level, -AGAIN[surface])
+    for way in (rapid, rapid[::-1]):  # the second is no line of a cut
+        assert (material.touched(way, radius, move) is None) == is_free
     beside = material.touched(np.add(rapid, [0.0, 10.0, 0.0]), radius, 9)
     assert beside.area == pytest.approx(20.0 * 2 * radius + np.pi * radius**2, rel=0.1)
 
