@@ -263,6 +263,7 @@ CASES = [
     ("mill", f"{SHALLOW}|G0 Z1|{RING}", "core-remains 8"),
     ("mill", f"{CLEARED}|G0 Z1|X50|{CLEARED}", ""),
     ("mill", f"{CLEARED}|G0 Z1|X20|{CLEARED}", "cuts-wall 9"),
+    ("mill", f"{P}|G0 Z1|X10|G10 L2 P1 Z-20|G0 Z1|{P}|G0 Z30", "rapid-into 10"),  # far below it
     ("mill", f"{CLEARED}|G0 Z1|X2|{SHALLOW.replace('K20', 'K8')}", "cut-before 9"),
     ("mill", f"{CLEARED}|G0 Z1|{CLEARED}", "cut-before 8"),
     ("mill", f"{SHALLOW}|G0 Z1|{CLEARED}", ""),
