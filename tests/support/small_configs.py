@@ -7,7 +7,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from g12.tools.install import installation, removal
+import pytest
+
+from g12.tools.install import installation, package_copy, removal
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, Python, remaps_in
@@ -143,3 +145,13 @@ def restored(ini: Path) -> Iterator[None]:
 def files_of_package(*names: str) -> dict[str, bytes]:
     """Return files of the real package, for a small one."""
     return {name: (features.ROOT / name).read_bytes() for name in names}
+
+
+def package_of(files: dict[str, bytes]):
+    """Return a fixture: install copies these files, not those of the real package."""
+
+    @pytest.fixture(autouse=True)
+    def small_package(monkeypatch):
+        monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
+
+    return small_package

@@ -3,7 +3,6 @@
 
 import pytest
 
-from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, WARNING
 from g12.tools.install.lathe.rules import lathe_findings
@@ -13,6 +12,7 @@ from support.small_configs import (
     LATHE,
     config_of,
     files_of_package,
+    package_of,
     put_in,
     take_out,
     with_lines,
@@ -22,11 +22,10 @@ from support.small_configs import (
 SCREEN = f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}"
 
 
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    files = {"python/g12/__init__.py": b"", "ngc/g12_skipped_over.ngc": b"(a sub)\n"}
-    files |= files_of_package("python/toplevel.py", "python/remap.py")
-    monkeypatch.setattr(package_copy, "package_files", lambda: files)
+small_package = package_of(
+    {"python/g12/__init__.py": b"", "ngc/g12_skipped_over.ngc": b"(a sub)\n"}
+    | files_of_package("python/toplevel.py", "python/remap.py")
+)
 
 
 def found(folder, text, names=("polar",), var="5161 50.0\n"):

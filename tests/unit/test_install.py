@@ -30,6 +30,7 @@ from support.small_configs import (
     config_of,
     content_of,
     files_of_package,
+    package_of,
     put_in,
     restored,
     take_out,
@@ -43,11 +44,7 @@ PACKAGE = {
     **files_of_package("python/toplevel.py", "python/remap.py"),
 }
 OWN_PYTHON = "[PYTHON]\nPATH_PREPEND = python\nTOPLEVEL = python/toplevel.py\n"
-
-
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    monkeypatch.setattr(package_copy, "package_files", lambda: dict(PACKAGE))
+small_package = package_of(PACKAGE)
 
 
 @pytest.fixture

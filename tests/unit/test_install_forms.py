@@ -3,7 +3,6 @@
 
 import pytest
 
-from g12.tools.install import package_copy
 from g12.tools.install.checking import check_report, lines_of_check
 from g12.tools.install.config import forms
 from g12.tools.install.plan import Refused, make_plan
@@ -13,6 +12,7 @@ from support.small_configs import (
     MILL,
     config_of,
     files_of_package,
+    package_of,
     put_in,
     restored,
     with_lines,
@@ -33,11 +33,10 @@ SUBS = {
 }
 
 
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    files = {name.removeprefix("g12/"): content for name, content in SUBS.items()}
-    package = {"python/g12/__init__.py": b"", **files_of_package(forms.GLADE_FILE), **files}
-    monkeypatch.setattr(package_copy, "package_files", lambda: package)
+small_package = package_of(
+    {"python/g12/__init__.py": b"", **files_of_package(forms.GLADE_FILE)}
+    | {name.removeprefix("g12/"): content for name, content in SUBS.items()}
+)
 
 
 def reported(ini):

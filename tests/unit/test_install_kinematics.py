@@ -3,7 +3,7 @@
 
 import pytest
 
-from g12.tools.install import package_copy, trial
+from g12.tools.install import trial
 from g12.tools.install.config import features
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.plan import Refused, make_plan
@@ -13,6 +13,7 @@ from support.small_configs import (
     config_of,
     content_of,
     files_of_package,
+    package_of,
     put_in,
     restored,
     take_out,
@@ -37,10 +38,11 @@ REFUSED = [  # what is changed of the INI, and what is said
 ]
 
 
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    names = [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
-    monkeypatch.setattr(package_copy, "package_files", lambda: files_of_package(*names))
+small_package = package_of(
+    files_of_package(
+        "configs/kinematics/polar_kinematics.hal", "configs/kinematics/polar_tool_offset.hal"
+    )
+)
 
 
 def config_in(folder, text=LATHE, hal=HAL):

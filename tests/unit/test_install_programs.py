@@ -3,10 +3,9 @@
 
 import pytest
 
-from g12.tools.install import package_copy
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import installed_programs, wrong_filters
-from support.small_configs import LATHE, config_of, put_in, restored, write_config
+from support.small_configs import LATHE, config_of, package_of, put_in, restored, write_config
 
 FILTER = """\
 PROGRAM_EXTENSION = .nc Programs of haas-mill
@@ -14,9 +13,7 @@ nc = python3 g12/python/g12 translate --control haas-mill
 """
 
 
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    monkeypatch.setattr(package_copy, "package_files", lambda: {"python/g12/__init__.py": b""})
+small_package = package_of({"python/g12/__init__.py": b""})
 
 
 def test_a_section_of_its_own(tmp_path):

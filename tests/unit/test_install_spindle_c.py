@@ -4,7 +4,6 @@
 import pytest
 
 from g12.tools.errors import UsageError
-from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.lathe import kinematics_rules
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
@@ -15,6 +14,7 @@ from support.small_configs import TURNING_HAL as HAL
 from support.small_configs import (
     config_of,
     files_of_package,
+    package_of,
     put_in,
     restored,
     write_config,
@@ -47,12 +47,13 @@ MISTAKES = [  # what is changed of an installed machine's INI, what is found
 ]  # fmt: skip
 
 
-@pytest.fixture(autouse=True)
-def small_package(monkeypatch):
-    files = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
-    files += [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
-    files += ["python/toplevel.py", "python/remap.py"]
-    monkeypatch.setattr(package_copy, "package_files", lambda: files_of_package(*files))
+small_package = package_of(
+    files_of_package(
+        *(f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")),
+        *(f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")),
+        *("python/toplevel.py", "python/remap.py"),
+    )
+)
 
 
 def pins_of(folder, text=PINS):
