@@ -411,7 +411,7 @@ def waves(count, radius):
     "parts",
     [
         lambda n: [(waves(n // 25, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)],
-        lambda n: [(waves(n // 25, 25.0 - 0.1 * k), -1.0) for k in range(50)],
+        lambda n: [(waves(n // 10, 25.0 - 0.1 * k), -1.0) for k in range(20)],
         lambda n: [(waves(n, 20.0), -1.0), (waves(n, 19.992), -1.0)],
     ],
 )
