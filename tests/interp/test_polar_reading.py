@@ -6,7 +6,7 @@ from itertools import chain
 import pytest
 
 from g12.tools.preview.tracer import Tracer
-from support.polar_programs import FIRST, START, ends, feed_moves, lines, section, texts
+from support.polar_programs import FIRST, START, cut, ends, feed_moves, lines, section, texts
 from support.sim_machines import SIM, kept_tracer
 
 lathe = kept_tracer("lathe_mm")
@@ -34,10 +34,6 @@ def subs(tmp_path_factory):
     }
     with Tracer(SIM / "lathe_mm.ini", overrides=overrides) as opened:
         yield opened
-
-
-def cut(lathe, *body, **around):
-    return lathe.trace_text(section(*body, **around))
 
 
 # ---------------------------------------------------------------- words, values, parameters

@@ -7,14 +7,10 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support.mode_matrix import remaps
-from support.polar_programs import FIRST, ends, feed_moves, section, tracer
+from support.polar_programs import FIRST, cut, ends, feed_moves, section, tracer
 from support.sim_machines import ROOT, SIM, kept_tracer
 
 lathe = kept_tracer("lathe_mm")
-
-
-def cut(lathe, *body, **around):
-    return lathe.trace_text(section(*body, **around))
 
 
 def test_the_manuals_sample_runs_with_the_machines_own_tools():

@@ -9,17 +9,14 @@ import pytest
 from g12.tools.machine.ini import read_ini
 from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
-from support.foreign_programs import control_of, near, tracer_of
+from support.foreign_programs import control_of, kept_tracer_of, near, tracer_of
 from support.sim_machines import PROGRAMS, SIM
 
 X, Z, C = 0, 2, 5
 PER_MINUTE = {"fanuc-lathe-b": "G94", "okuma-lathe": "G94"}
 
 
-@pytest.fixture(scope="module")
-def tracer():
-    with tracer_of("fanuc-lathe") as opened:
-        yield opened
+tracer = kept_tracer_of("fanuc-lathe")
 
 
 def with_holes(name, **settings):

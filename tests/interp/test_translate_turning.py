@@ -8,7 +8,7 @@ import pytest
 
 from g12.tools.path.part import arc_points
 from g12.tools.translate.program import translate_program
-from support.foreign_programs import assert_same_part, control_of, near, tracer_of
+from support.foreign_programs import assert_same_part, control_of, kept_tracer_of, near
 
 HEAD = {"fanuc-lathe": "G21 G99 G97 S500 M3 F.2\n", "haas-lathe": "G20 G99 G97 S500 M3 F.01\n"}
 GRID = 0.02  # mm
@@ -17,10 +17,7 @@ SLIP = 0.002  # mm, what the grid can miss at a slope
 STEPS = 0.01  # mm between the points of a move
 
 
-@pytest.fixture(scope="module")
-def tracer():
-    with tracer_of("fanuc-lathe") as opened:
-        yield opened
+tracer = kept_tracer_of("fanuc-lathe")
 
 
 def moves_of(tracer, text, control="fanuc-lathe"):

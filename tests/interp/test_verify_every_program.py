@@ -6,8 +6,8 @@ import pytest
 from g12.tools.machine.ini import read_ini
 from g12.tools.verify.proof import prove
 from support.fault_tables import BEFORE, FOLDERS, OTHERWISE, TOOLS
-from support.foreign_programs import BUILDERS_CODES
 from support.foreign_programs import MACHINES as CONTROLS
+from support.foreign_programs import with_builders_codes
 from support.sim_machines import PROGRAMS, SIM
 
 MACHINES = {**FOLDERS, **CONTROLS, "holes": "lathe_mm"}
@@ -22,11 +22,7 @@ def machine_of(program):
     """Return the machine that a program is for; lathes know the builders' codes."""
     folder = MACHINES.get(program.parent.name, program.stem.removesuffix("_cylinder"))
     ini = read_ini(SIM / f"{OTHERWISE.get(program.stem, folder)}_headless.ini")
-    if not folder.startswith("lathe"):
-        return ini
-    codes = [f"M{code} modalgroup=10 ngc=m35" for code in BUILDERS_CODES]
-    remaps = {"REMAP": [*ini.all("RS274NGC", "REMAP"), *codes]}
-    return ini.replaced({"RS274NGC": remaps, "TRAJ": {"SPINDLES": "2"}})
+    return ini.replaced(with_builders_codes(ini)) if folder.startswith("lathe") else ini
 
 
 @pytest.mark.parametrize("program", EVERY, ids=lambda path: f"{path.parent.name}-{path.stem}")

@@ -10,7 +10,7 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import Round
-from support.kinematics import needs_kinematics, on_the_face, place
+from support.kinematics import keeps_its_limits, needs_kinematics, on_the_face, place
 from support.operated_machine import Machine, kept_machine
 from support.polar_programs import (
     C_ACCELERATION,
@@ -306,12 +306,6 @@ def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, in
     lathe.motion_of(program)
     assert not on_the_face(lathe)
     lathe.mdi("M52 P0")
-
-
-def keeps_its_limits(samples):
-    """Check that no joint ever went faster than it can: no jump between the worlds."""
-    assert np.abs(np.diff(samples.axes["X"])).max() * 1000 <= 150 * 1.001
-    assert np.abs(np.diff(samples.axes["C"])).max() * 1000 <= 360 * 1.001
 
 
 def test_a_section_has_its_own_acceleration(lathe):

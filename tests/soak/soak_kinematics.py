@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from soak import SEED, tries
-from support.kinematics import interrupted_by_hand, needs_kinematics
+from support.kinematics import interrupted_by_hand, keeps_its_limits, needs_kinematics
 from support.operated_machine import Machine
 from support.sim_machines import SIM
 
@@ -22,7 +22,6 @@ PROGRAMS = {
                      "M2"],
 }  # fmt: skip
 UP = ["G21 G90", "G0 Z6", "M2"]  # what a program begins with, of whatever the tool stands in
-X_SPEED, C_SPEED = 150, 360
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -86,9 +85,3 @@ def goes_up_only(machine, number, seed):
     samples = machine.samples()
     assert max(np.ptp(samples.axes[axis]) for axis in "XC") <= 1e-9, seed
     assert samples.axes["Z"][-1] == pytest.approx(6, abs=1e-3), seed
-
-
-def keeps_its_limits(samples, seed):
-    """Check that no joint ever went faster than it can: no jump between the worlds."""
-    for axis, most in (("X", X_SPEED), ("C", C_SPEED)):
-        assert np.abs(np.diff(samples.axes[axis])).max() * 1e3 <= most * 1.001, seed

@@ -32,15 +32,27 @@ OPTIONS = json.loads((FOREIGN / "options.json").read_text(encoding="utf-8"))
 
 def tracer_of(control, tools=None):
     """Return a Tracer of the machine that stands for a control's; lathes know builders' codes."""
-    ini = SIM / f"{MACHINES[control]}.ini"
-    overrides = {}
-    if control.endswith("lathe"):
-        codes = [f"M{number} modalgroup=10 ngc=m35" for number in BUILDERS_CODES]
-        overrides = {
-            "RS274NGC": {"REMAP": [*read_ini(ini).all("RS274NGC", "REMAP"), *codes]},
-            "TRAJ": {"SPINDLES": 2},
-        }
+    ini = read_ini(SIM / f"{MACHINES[control]}.ini")
+    overrides = with_builders_codes(ini) if control.endswith("lathe") else {}
     return Tracer(ini, overrides=overrides, tools=tools)
+
+
+def with_builders_codes(ini):
+    """Return the overrides for a lathe that knows the codes of builders."""
+    codes = [f"M{number} modalgroup=10 ngc=m35" for number in BUILDERS_CODES]
+    remaps = [*ini.all("RS274NGC", "REMAP"), *codes]
+    return {"RS274NGC": {"REMAP": remaps}, "TRAJ": {"SPINDLES": "2"}}
+
+
+def kept_tracer_of(control):
+    """Return a fixture: the Tracer of a control's machine, for the tests of a module."""
+
+    @pytest.fixture(scope="module")
+    def tracer():
+        with tracer_of(control) as opened:
+            yield opened
+
+    return tracer
 
 
 def kept_tracers():

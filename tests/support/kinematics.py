@@ -3,6 +3,7 @@
 
 import time
 
+import numpy as np
 import pytest
 
 from g12.tools.install.lathe.kinematics_rules import is_outdated, module_file
@@ -22,6 +23,12 @@ def place(machine):
     """Return X, Y and C of the world in force, as a screen shows them."""
     x, y, _, _, _, c, *_ = machine.stat().position
     return pytest.approx((x, y, c), abs=1e-6)
+
+
+def keeps_its_limits(samples, seed=None):
+    """Check that no joint ever went faster than it can: no jump between the worlds."""
+    for axis, most in (("X", 150), ("C", 360)):
+        assert np.abs(np.diff(samples.axes[axis])).max() * 1e3 <= most * 1.001, seed
 
 
 ENDED = "polar mode: an abort or an error ended it, nothing moves until G13.1 or G12.1"

@@ -29,6 +29,11 @@ def section(
     return [first, start, tool, feed, *before, on, *body, off, *after, "M2"]
 
 
+def cut(lathe, *body, **around):
+    """Return the trace of a program with a section."""
+    return lathe.trace_text(section(*body, **around))
+
+
 def refused(lathe, program):
     """Return text and line of the refusal; nothing of the section may have moved."""
     traced = lathe.trace_text(program)
