@@ -136,6 +136,10 @@ CASES = [
     ("any lathe", f"{ELSEWHERE}|C0|X24 Z-2|G12.1|G1 X20|Z2|G13.1", "rapid-through 7", "40"),
     ("any lathe", f"{ELSEWHERE}|X44|Z-20|X38|G7.1 C20|G1 X36|Z-30|X44|G7.1 C0",
      "rapid-into 8, inside-surface 9", "40"),
+    # in a system that the end of the program leaves
+    ("any lathe", f"G10 L2 P2 X90|G55|T3 M6|S900 M3|G0 X60 Z9|{FACE_HOLE}|M2", "", "40"),
+    ("any lathe", "G10 L2 P2 X90|G55|T3 M6|S900 M3|G0 X44 Z9|Z-9|X38|G7.1 C20|G1 X36|X44|G7.1 C0"
+     "|M2", "rapid-into 8, inside-surface 9", "40"),
     # at the centre
     ("radii", f"{SLOT}|{SLOT}", "rubs 5, rubs 11"),
     ("radii", "G12.1|G1 X-18 F800|Z-1|X-10|G13.1|G0 Z2", ""),

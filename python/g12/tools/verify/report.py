@@ -197,13 +197,13 @@ def _zero_text(proof: Proof, unit: Unit) -> str:
     the program's. X0 must be the spindle's axis.
     """
     zero = proof.subject.zero
-    words = [*zip("XYZ", zero)][Z if proof.sections else 0 :]
+    words = [*zip("XYZ", zero)][Z if proof.subject.part.turning else 0 :]
     text = "positions below are the machine's; the program's zero is at machine {zero:xyz}"
     text += ", its axes turned by {rotation:1}°" if proof.subject.rotation else ""
     is_moved = max(abs(zero)) >= SIZE or proof.subject.rotation
     values = {"zero": words, "rotation": proof.subject.rotation}
     moved = in_words(text, values, unit) if is_moved else ""
-    x0 = x0_text(proof.subject.part, unit) if proof.sections else ""
+    x0 = x0_text(proof.subject.part, unit) if proof.subject.part.turning else ""
     return "; ".join(filter(None, [moved, x0]))
 
 

@@ -232,9 +232,10 @@ def subject_of(
     samples: Samples | None = None,
     commanded: Commanded = NOTHING,
 ) -> Subject:
-    """Return a traced program, and a run of it, about the X0 of its first section on the face."""
+    """Return a traced program, and a run of it, about the X0 of its first cut on a lathe."""
     part = part_of_program(ini, trace, bool(commanded.sections or commanded.holes))
     subject = Subject(program, ini, trace, part, samples, commanded)
-    for first in commanded.on_face[:1]:
-        return subject.about(x0_of(first, trace.moves[first.at]))
-    return subject
+    sections = [*commanded.on_face, *commanded.sections]
+    centres = [x0_of(each, trace.moves[each.at]) for each in sections]
+    centres += [call.zero[0] for call in commanded.holes]
+    return subject.about(centres[0]) if centres else subject

@@ -62,8 +62,8 @@ class Plane(NamedTuple):
 
 
 def x0_of(section: SectionContour, first: Move) -> float:
-    """Return where X0, the spindle's axis, is for a polar section, in machine coordinates."""
-    return first.start[X] - section.start.real
+    """Return where X0, the spindle's axis, is for a section, in machine coordinates."""
+    return first.start[X] - (section.height if section.surface else section.start.real)
 
 
 def plane_of(section: SectionContour, first: Move) -> Plane:
