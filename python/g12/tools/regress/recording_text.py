@@ -237,8 +237,8 @@ class RecordingReader:
         if not words:
             raise TraceTextError("neither a move nor a note")
         kind, ends, centre, turns, plane, rotation, feed, mode = words.groups()
-        if kind == "arc" and centre is None:
-            raise TraceTextError("an arc without its centre")
+        if (kind == "arc") != (centre is not None):
+            raise TraceTextError("an arc has a centre, other moves have none")
         start = self._at
         self._at = self._position(ends)
         self._feed, self._mode = float(feed or self._feed), mode or self._mode
@@ -253,7 +253,7 @@ class RecordingReader:
             plane=int(plane or 17),
             tool=-1,
             tool_offset=(0.0,) * 9,
-            centre=self._position(centre, start)[:3] if kind == "arc" else None,
+            centre=self._position(centre, start)[:3] if centre is not None else None,
             turns=int(turns or 0),
             rotation=float(rotation or 0.0),
         )
