@@ -131,11 +131,7 @@ CENTRES = "line 8: an arc has a centre, other moves have none"
         ("units mm", "units cubits", "lines 2 to 5: not program, machine, linuxcnc, units"),
         ("  feed X1 F9", "  feed XX F9", "line 8: neither a move nor a note"),
         ("  feed X1 F9", "  arc X1 F9", CENTRES),
-        (
-            "  feed X1 F9",
-            "  feed X1 centre X0 turns 1 F9",
-            "line 8: an arc has a centre, other moves",
-        ),
+        ("  feed X1 F9", "  feed X1 centre X0 turns 1 F9", CENTRES),
         ("  feed X1 F9", "<<<<<<< mine", "line 8: neither a line of the program nor its end"),
         ("\nend: M2\n", "", "the last line, end or error, is missing"),
         ("end: M2\n", "end: M2\n\njunk\n", "line 12: something after the end"),
