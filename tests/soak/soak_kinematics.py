@@ -30,7 +30,7 @@ def test_aborts_with_kinematics(name, request):
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
-        for number in tries(request, "aborts with kinematics, and the program again", 50):
+        for number in tries(request, "aborts with kinematics, and the program again", 20):
             seed = f"abort {number} of seed {SEED}"
             machine.open_text(program)
             machine.sample()
@@ -51,7 +51,7 @@ def test_aborts_with_kinematics(name, request):
 
 def test_aborts_and_errors_in_mdi(request):
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
-        for number in tries(request, "aborts and errors of G12.1 in MDI, and the line after", 100):
+        for number in tries(request, "aborts and errors of G12.1 in MDI, and the line after", 20):
             try:
                 interrupted_by_hand(machine, random.Random(f"{SEED} {number}"))
             except AssertionError as error:
