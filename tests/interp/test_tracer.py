@@ -241,6 +241,13 @@ def test_block_is_the_line_of_the_program_however_deep(mill):
     assert [move.line for move in moves] == [1, 3, 4, 4, 0, 6, 2, 3, 4, 8]
 
 
+def test_a_compensated_move_is_that_of_its_own_block(mill):
+    """LinuxCNC emits it while it executes the next one."""
+    blocks = "T1 M6 F100\nG41 G1 X20 Y0\nX40\n(corner)\nY40\nX0\nG40 Y60\nG0 Z5\n"
+    moves = mill.trace_text(blocks).moves
+    assert [move.block for move in moves] == [move.line for move in moves] == [2, 3, 5, 6, 7, 8]
+
+
 def test_the_remainder_of_a_block_is_no_move_of_its_remapped_m_code(mill):
     blocks = (
         "o<own> sub\nG1 X1 F9 M35\no<own> endsub\n\nG1 X2 F9 M35\no<own> call\nG88.7\nG0 X1 M35"

@@ -122,14 +122,15 @@ class Lines:
         self._ends = [match.start() for match in re.finditer(b"\n", text)]
         self._lines = text.split(b"\n")
 
-    def now(self) -> int:
-        """Return the program's line during execution.
+    def now(self, line: int = 0) -> int:
+        """Return the program's line during execution; ``line`` is that of a move, in its own file.
 
-        The interpreter has none for the remainder of a block, after its remapped M code.
+        The interpreter has none for the remainder of a block, after its remapped M code. Under
+        compensation it emits a move while it executes the next block.
         """
         this = interpreter_object()
         if not this.call_level:
-            return self._of_remap(this) if this.remap_level else this.sequence_number
+            return self._of_remap(this) if this.remap_level else line or this.sequence_number
         if this.sub_context[1].call_type == CALL_OF_REMAP:
             own = this.filename == self._program and this.sequence_number  # a remap may set it
             return own or self._of_remap(this)
@@ -426,7 +427,7 @@ class Canon:
         )
         mode = FEED_MODE_CODES[interpreter_object().feed_mode] if feed else ""
         state = (self.plane, self.spindle[0], self.length)
-        path = (kind, self.line, self.lines.now(), start, self.position)
+        path = (kind, self.line, self.lines.now(self.line), start, self.position)
         remap = self.lines.remap()
         how = (is_exact(), goes_by_machine(), self.share)
         self.moves.append((*path, feed, mode, *state, centre, turns, self.rotation, remap, *how))
