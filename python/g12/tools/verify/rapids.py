@@ -9,7 +9,6 @@ cylinder they are those of its unrolled surface. Only cutters with a diameter co
 those that cut sections.
 """
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -46,8 +45,7 @@ def _rapids(workpiece: Workpiece) -> Iterator[Finding]:
     known = [False, *subject.ends_known]
     levels = [(view, subject.lowest(view.part)) for view in workpiece.views]
     low = [(view, lowest <= workpiece.top_in(view) - SAME_LEVEL) for view, lowest in levels]
-    z0 = subject.z0 if subject.commanded.sections or subject.commanded.holes else -math.inf
-    idle = levels[0][1] < max(z0, face.material.top) - SAME_LEVEL
+    idle = levels[0][1] < subject.z0 - SAME_LEVEL
     reported: set[int] = set()  # lines: of one the first rapid through material is enough
     for index in (i for i, move in enumerate(subject.moves) if move.kind == "rapid"):
         begins, ends = known[index : index + 2]
