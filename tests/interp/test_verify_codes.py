@@ -100,6 +100,12 @@ CASES = [
     ("mill", f"{P} X20 G7|G0 Z1|{P} X140|G0 Z1", ""),
     ("mill", f"G7|{EVENT} Z-5 X60|o<circle_mill> call [7] [90] [0] [-5] [2] [-9999] [20] [0] [2] "
      "[5] [-9999] [-9999] [150] [800] [-9999]", ""),
+    # a hole that the program has drilled is not assumed; nor is the next pocket's
+    ("mill", f"G1 Z-5|G0 Z1|Z-2.5|{P}|G0 Z1", ""),
+    ("mill", f"G83 X40 Z-5 R1 Q2|X0|G80|G0 X0 Y0|Z-2.5|{P}|G0 Z1|X80|Z-2.5|{P}|G0 Z1",
+     "rapid-into 14"),
+    ("any mill", f"T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G1 Z-5|G0 Z50|T4 M6 G43|S900 M3|G0 Z1|Z-2.5|{P}",
+     "bored-assumed 10"),  # of a smaller tool
     # where C is
     ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
     ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),

@@ -18,7 +18,7 @@ surface.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -85,12 +85,33 @@ def flat_circles(subject: Subject) -> list[tuple[Block, Target]]:
 
 def approached(subject: Subject) -> Approached:
     """Return the circles in the plane XY, each with how the tool comes down to it."""
-    circles = flat_circles(subject)
-    return [(to, _approach(range(block.at, block.end), subject.moves)) for block, to in circles]
+    moves, drilled = subject.moves, _drilled(subject.moves)
+    return [
+        (target, _approach(range(block.at, block.end), moves, drilled))
+        for block, target in flat_circles(subject)
+    ]
 
 
-def _approach(own: range, moves: Sequence[Move]) -> Approach:
-    """Return how the tool comes down to a cut, in its ``own`` moves or before them."""
+def _drilled(moves: Sequence[Move]) -> dict[tuple[float, ...], int]:
+    """Return the first move that feeds straight down at each position in the plane XY."""
+    found: dict[tuple[float, ...], int] = {}
+    for index, move in enumerate(moves):
+        if move.kind != "rapid" and move.end[Z] < move.start[Z] and not is_sideways(move):
+            found.setdefault(_position(move), index)
+    return found
+
+
+def _position(move: Move) -> tuple[float, ...]:
+    return tuple(round(each, DECIMALS) for each in move.start[:Z])
+
+
+def _approach(
+    own: range, moves: Sequence[Move], drilled: Mapping[tuple[float, ...], int]
+) -> Approach:
+    """Return how the tool comes down to a cut, in its ``own`` moves or before them.
+
+    It is fed down from where a hole there was ``drilled`` before.
+    """
     sideways = [i for i in own if moves[i].kind != "rapid" and is_sideways(moves[i])]
     first = next(iter(sideways), own.stop)
     floor = min((moves[index].end[Z] for index in sideways), default=math.inf)
@@ -99,7 +120,9 @@ def _approach(own: range, moves: Sequence[Move]) -> Approach:
     while begin and not is_sideways(moves[begin - 1]):
         begin -= 1
     down = [i for i in range(begin, own.stop) if moves[i].end[Z] < moves[i].start[Z] - SAME_LEVEL]
-    fed = next((moves[i].start[Z] for i in down if moves[i].kind != "rapid"), None)
+    hole = drilled.get(_position(moves[begin]), own.stop) if begin < own.stop else own.stop
+    feeds = [i for i in (hole, *down) if i < own.stop and moves[i].kind != "rapid"]
+    fed = moves[min(feeds)].start[Z] if feeds else None
     rapid = next((i for i in reversed(down) if i < first and moves[i].kind == "rapid"), None)
     came = max(moves[i].start[Z] for i in range(begin, min(first, len(moves) - 1) + 1))
     return Approach(came, fed, floor, rapid)
@@ -165,9 +188,11 @@ def _is_entered(subject: Subject, material: Material, index: int | None, top: fl
     """Tell whether a rapid goes into material, or below a top; the end of G28 is not known."""
     if index is None or not subject.ends_known[index]:
         return False
-    end = subject.end(index)
-    touch = material.touched(np.array([end]), subject.cutter(index), index)
-    return end[Z] < top - SAME_LEVEL or touch is not None
+    x, y, z = end = subject.end(index)
+    radius = subject.cutter(index)
+    if z < top - SAME_LEVEL and not material.is_cleared(disc((x, y), radius), z, index):
+        return True
+    return material.touched(np.array([end]), radius, index) is not None
 
 
 def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
@@ -178,7 +203,7 @@ def _entries(subject: Subject) -> Iterator[tuple[int | None, float]]:
     for target, (came, _, _, index) in approached(subject):
         yield index, min(target.wall.face, came)
     for section in subject.commanded.on_face:
-        yield _approach(range(section.at, section.at), subject.moves).move, -math.inf
+        yield _approach(range(section.at, section.at), subject.moves, {}).move, -math.inf
 
 
 class CutOnSurface(NamedTuple):
