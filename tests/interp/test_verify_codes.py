@@ -106,6 +106,9 @@ CASES = [
      "rapid-into 14"),
     ("any mill", f"T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G1 Z-5|G0 Z50|T4 M6 G43|S900 M3|G0 Z1|Z-2.5|{P}",
      "bored-assumed 10"),  # of a smaller tool
+    # what G71 makes has no line of its own
+    ("lathe", f"{FLAT}|G0 X80 Z5|T2 M6|o7 sub|G0 X50|G1 Z-9 X60|o7 endsub|"
+     "G71 Q7 X64 Z2 D.3 I2 R.5|G0 Z5", "rapid-idle-tool 19"),
     # where C is
     ("lathe", f"{FLAT}|{FLAT}", "zero-line-turned 13"),
     ("lathe", f"{FLAT}|G0 X60 Z5 (C0)|{FLAT}", "zero-line-turned 14"),

@@ -250,7 +250,8 @@ class Canon:
     # State reported by the interpreter.
 
     def next_line(self, state) -> None:
-        self.line = state.sequence_number
+        line = state.sequence_number
+        self.line = line if line >= 0 else self.lines.now()  # -1 in G70 to G72
         self._convert_feed()
         if self.started:
             self._note_conditions(state)
