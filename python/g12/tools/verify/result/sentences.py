@@ -89,8 +89,8 @@ NOTES = {
         "--stock gives the real stock"
     ),
     "core-remains": (
-        "{area:mm2} of material remain in its middle{more:also}: right only where it is bored "
-        "before or is to stay; --stock gives the real stock"
+        "{area:mm2} of material remain in its middle{more:also}: right only where it is to stay, "
+        "or is bored before (--stock 'bore DIAMETER')"
     ),
     "cuts-wall": (
         "its cut at {at:xyz} and that of line {line} at {other:xyz} go into each other's walls"
