@@ -7,6 +7,8 @@ import re
 import shutil
 import subprocess
 import sys
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -86,6 +88,16 @@ def remap(text):
 def test_what_is_wrong_is_found_and_linuxcnc_agrees(tmp_path, capsys, change, files, expected):
     assert change[0] in GOOD
     assert kinds(write_config(tmp_path, GOOD.replace(*change), **files), capsys) == expected
+
+
+@pytest.mark.parametrize("length", [64, 68])
+def test_a_python_that_fails_is_named_where_linuxcnc_crashes(length, capsys):
+    """It does so in the second program after that, if paths are about that long."""
+    with TemporaryDirectory() as short:
+        folder = Path(short) / ("x" * (length - len(short) - 1))
+        folder.mkdir(exist_ok=True)
+        config = write_config(folder, GOOD.replace(PYTHON, OWN), **remap("from nowhere import x\n"))
+        assert kinds(config, capsys) == ["python-fails"]
 
 
 def test_another_file_in_front_of_the_sub(tmp_path, capsys):
