@@ -11,6 +11,7 @@ SOAKED := tests/soak/soak_*.py tests/interp/test_cycles.py \
 	tests/unit/test_compensation_offset.py tests/unit/test_compensation_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
 WORKERS := $(shell expr 2 \* $$(nproc)) # many wait for real motion, which needs a core in time
+SOAKERS := $(shell expr 4 \* $$(nproc)) # nearly all wait
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
 IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
@@ -57,7 +58,8 @@ bench: setup kinematics
 soak: setup
 	@echo "soak: for about $(MINUTES) minutes on two cores, seed $(SEED)"
 	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) sh -c 'PYTHONPATH=tests:$$PYTHONPATH \
-		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(WORKERS) $(SOAKED)'
+		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(SOAKERS) \
+		--durations=20 $(SOAKED)'
 
 deb:
 	@sh .ci/deb

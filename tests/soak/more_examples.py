@@ -7,6 +7,7 @@ tried is counted, and said at the end.
 
 from collections import Counter
 from functools import wraps
+from itertools import chain
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -21,6 +22,8 @@ TRIED = {  # by file
     "test_compensation_simplify": "contours with short moves",
     "soak_text": "hostile files",
 }
+# tests that wait for real motion while the cores are free, those with the longest runs first
+WAITING = ("soak_spindle_c", "soak_kinematics", "soak_aborts", "test_programs_as_they_run")
 COUNTED = "soak: "  # begins the name of a report's property
 
 
@@ -39,6 +42,16 @@ def pytest_collection_modifyitems(items):
             suppress_health_check=list(HealthCheck),
         )
         item.obj.hypothesis.inner_test = counted(item)
+    items[:] = alternated(items)
+
+
+def alternated(items):
+    """Return tests that wait and tests that compute by turns: each worker begins with both."""
+    waiting = [item for name in WAITING for item in items if name in item.nodeid]
+    computing = [item for item in items if item not in waiting]
+    both = min(len(waiting), len(computing))
+    by_turns = chain.from_iterable(zip(waiting, computing))
+    return [*by_turns, *waiting[both:], *computing[both:]]
 
 
 def counted(item):
