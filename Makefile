@@ -10,7 +10,7 @@ SOAKED := tests/soak/soak_*.py tests/interp/test_cycles.py \
 	tests/unit/test_cylinder.py tests/unit/test_polar_plan.py \
 	tests/unit/test_compensation_offset.py tests/unit/test_compensation_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
-WORKERS := $(shell expr 2 \* $$(nproc)) # many wait for real motion, which needs a core in time
+WORKERS := $(shell expr 3 \* $$(nproc)) # many wait for real motion, which needs a core in time
 SOAKERS := $(shell expr 4 \* $$(nproc)) # nearly all wait
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
