@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from support.contour_geometry import Round, Straight
+from support.contour_geometry import Round, Straight, distance, shape_of
 from support.planned_cuts import add
 from support.random_contours import (
     TOLERANCE,
@@ -71,13 +71,16 @@ def test_any_contour_is_cut_at_the_tools_radius_or_refused(draw):
         own = part.shapes[move.line - 3 : move.line - 1]  # nearly straight ones are cut as one
         off = [abs(shape.distance(points_of(move)) - part.radius) for shape in own]
         at_radius = np.min(off, axis=0).max() <= TOLERANCE
-        assert at_radius or is_cut_elsewhere(own, move.line, made, part.radius)
+        assert at_radius or is_cut_deeper_elsewhere(own, move, made, part.radius)
 
 
-def is_cut_elsewhere(shapes, line, made, radius):
-    """Tell whether moves of lines that are no neighbours cut shapes too, as in a spiral."""
-    others = [move for move in made if abs(move.line - line) > 1]
-    return others and as_shapely(others).distance(as_shapely(shapes)) < radius - TOLERANCE
+def is_cut_deeper_elsewhere(walls, move, made, radius):
+    """Tell whether each point that a move gouges is cut deeper by another portion: a spiral."""
+    others = [shape_of(each.curve) for each in made if abs(each.line - move.line) > 1]
+    points = np.concatenate([points_of(wall) for wall in walls])
+    away = shape_of(move.curve).distance(points)
+    gouged = away < radius - TOLERANCE
+    return gouged.any() and others and (distance(points, others) < away)[gouged].all()
 
 
 # Joints, one at a time: lines in, coordinates of the tool's centre out.
