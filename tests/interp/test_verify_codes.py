@@ -102,7 +102,7 @@ CASES = [
      "[5] [-9999] [-9999] [150] [800] [-9999]", ""),
     # a hole that the program has drilled is not assumed; nor is the next pocket's
     ("mill", f"G1 Z-5|G0 Z1|Z-2.5|{P}|G0 Z1", ""),
-    ("mill", f"G83 X40 Z-5 R1 Q2|X0|G80|G0 X0 Y0|Z-2.5|{P}|G0 Z1|X80|Z-2.5|{P}|G0 Z1",
+    ("mill", f"G83 X0 Z-5 R1 Q2|X40|G80|G0 X0 Y0|Z-2.5|{P}|G0 Z1|X80|Z-2.5|{P}|G0 Z1",
      "rapid-into 14"),
     ("any mill", f"T3 M6 G43|S900 M3|G0 X0 Y0 Z5|G1 Z-5|G0 Z50|T4 M6 G43|S900 M3|G0 Z1|Z-2.5|{P}",
      "bored-assumed 10"),  # of a smaller tool

@@ -120,7 +120,7 @@ def _approach(
     while begin and not is_sideways(moves[begin - 1]):
         begin -= 1
     down = [i for i in range(begin, own.stop) if moves[i].end[Z] < moves[i].start[Z] - SAME_LEVEL]
-    hole = drilled.get(_position(moves[begin]), own.stop) if begin < own.stop else own.stop
+    hole = drilled.get(_position(moves[begin]), own.stop)
     feeds = [i for i in (hole, *down) if i < own.stop and moves[i].kind != "rapid"]
     fed = moves[min(feeds)].start[Z] if feeds else None
     rapid = next((i for i in reversed(down) if i < first and moves[i].kind == "rapid"), None)
