@@ -128,9 +128,9 @@ def zero_line(
     if not before:
         return ZeroLine(commanded)
     last, faces = before[-1], [cut for cut in before if cut.on_face]
-    # G92 C0 gives C its zero where it stands; another work offset does so elsewhere
-    renamed = abs(offset - last.offset) > SAME_ANGLE and _apart(section.c, 0.0) < SAME_ANGLE
-    commanded = commanded or renamed
+    # G92 C0 declares C's present angle its zero; other offsets only change what it is called
+    is_zeroed = abs(offset - last.offset) > SAME_ANGLE and _apart(section.c, 0.0) < SAME_ANGLE
+    commanded = commanded or is_zeroed
     if _apart(moves[last.own.stop].start[C], last.zero) < SAME_ANGLE:
         # from the zero line an increment indexes the part
         commanded = commanded or any(map(lines.words, between))
