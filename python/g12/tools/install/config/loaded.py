@@ -133,9 +133,9 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = python_of(tracer)
             codes = {code.remap.code for code in codes_of(remaps)}
-            # without its Python LinuxCNC may crash in the second program
-            asked = () if python.error else codes
-            owned = frozenset(code for code in asked if is_owned(tracer, code))
+            if python.error:  # then LinuxCNC 2.9 may crash in the second program
+                codes = set()
+            owned = frozenset(code for code in codes if is_owned(tracer, code))
             return Config(text, ini, remaps, version, python, owned, failure, tracer.diameters)
     except TraceFailure as refused:
         return Config(text, ini, remaps, version, failure=failure or str(refused))
