@@ -23,7 +23,7 @@ TRIED = {  # by file
     "soak_text": "hostile files",
 }
 # tests that wait for real motion while the cores are free, those with the longest runs first
-WAITING = ("soak_spindle_c", "soak_kinematics", "soak_aborts", "test_programs_as_they_run")
+WAITING = ("test_programs_as_they_run", "soak_kinematics", "soak_aborts", "soak_spindle_c")
 COUNTED = "soak: "  # begins the name of a report's property
 
 
