@@ -92,7 +92,7 @@ def test_what_is_wrong_is_found_and_linuxcnc_agrees(tmp_path, capsys, change, fi
 
 @pytest.mark.parametrize("length", [64, 68])
 def test_a_python_that_fails_is_named_where_linuxcnc_crashes(length, capsys):
-    """It does so in the second program after that, if paths are about that long."""
+    """2.9.0~pre1 does so in the second program after that, if paths are about that long."""
     with TemporaryDirectory() as short:
         folder = Path(short) / ("x" * (length - len(short) - 1))
         folder.mkdir(exist_ok=True)

@@ -133,7 +133,7 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = python_of(tracer)
             codes = {code.remap.code for code in codes_of(remaps)}
-            if python.error:  # then LinuxCNC 2.9 may crash in the second program
+            if python.error:  # then LinuxCNC 2.9.0~pre1 may crash in the second program
                 codes = set()
             owned = frozenset(code for code in codes if is_owned(tracer, code))
             return Config(text, ini, remaps, version, python, owned, failure, tracer.diameters)
