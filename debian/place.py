@@ -40,7 +40,7 @@ def place_samples(folder: Path) -> None:
             continue
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         text = path.read_text(encoding="utf-8")
-        if path.suffix in (".ini", ".inc"):
+        if path.suffix == ".ini":
             for old, new in MOVED:
                 text = text.replace(old, new)
         (folder / name).write_text(text, encoding="utf-8")

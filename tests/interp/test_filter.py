@@ -44,11 +44,8 @@ def sim(tmp_path_factory):
 
 def mill_with(sim, command):
     """Return the INI of a mill that opens .nc files with a filter's command."""
-    text = (sim / "parts" / "mill_inch.inc").read_text()
-    own = text.replace("[FILTER]\n", f"[FILTER]\nnc = {command}\n")
-    (sim / "parts" / "own.inc").write_text(own)
-    ini = (sim / "mill_inch.ini").read_text().replace("parts/mill_inch.inc", "parts/own.inc")
-    (sim / "own.ini").write_text(ini)
+    text = (sim / "mill_inch.ini").read_text()
+    (sim / "own.ini").write_text(text.replace("[FILTER]\n", f"[FILTER]\nnc = {command}\n"))
     return sim / "own.ini"
 
 

@@ -47,10 +47,9 @@ def lathe(tmp_path_factory):
     @cache
     def installed(control):
         unit = "inch" if control == "haas-lathe" else "mm"
-        for part in machines.glob("parts/lathe_*.inc"):
-            part.write_text(part.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
         ini = machines / f"{control}.ini"
-        ini.write_text((machines / f"lathe_{unit}.ini").read_text())
+        text = (machines / f"lathe_{unit}.ini").read_text()
+        ini.write_text(text.replace("[FILTER]\n", "[OLD_FILTER]\n"))
         assert main.main(["install", str(ini), "--with", "polar", f"programs-{control}"]) == 0
         return Tracer(ini, tools=CUTTERS[unit])
 

@@ -384,7 +384,7 @@ def test_c_and_the_slide_keep_their_limits_at_any_override():
 
 def test_a_switch_that_does_not_come_is_refused_after_the_time_that_the_ini_says():
     """Nothing drives the guard."""
-    own = {"HAL": {"HALFILE": "parts/three_joints.hal"}, "G12": {"POLAR_SWITCH_TIME": "0.5"}}
+    own = {"HAL": {"HALFILE": "three_joints.hal"}, "G12": {"POLAR_SWITCH_TIME": "0.5"}}
     with Machine(SIM / "lathe_mm_kinematics.ini", overrides=own) as machine:
         run = machine.run_text(CIRCLE_NEAR)
         assert "did not change its kinematics within 0.5 s" in run.error.text

@@ -9,10 +9,8 @@ FEATURES = ("polar", "polar-shapes", "programs-mill-on-face")
 
 
 def test_a_mills_program_runs_on_the_face(tmp_path, capsys):
-    machines = copy_of_machines(tmp_path)
-    part = machines / "parts" / "lathe_mm.inc"
-    part.write_text(part.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
-    ini = machines / "lathe_mm.ini"
+    ini = copy_of_machines(tmp_path) / "lathe_mm.ini"
+    ini.write_text(ini.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
     assert main.main(["install", str(ini), "--with", *FEATURES]) == 0
     program = tmp_path / "pocket.nc"
     program.write_text(

@@ -268,24 +268,20 @@ setp drive-pid.enable true
 def plain_lathe(folder):
     """Return the INI of a lathe with a spindle, a C axis that moves nothing, and no package."""
     sim = copy_of_machines(folder)
-    drive = (sim / "parts" / "spindle_drive.hal").read_text().splitlines()
+    drive = (sim / "spindle_drive.hal").read_text().splitlines()
     ours = ("spindle-c-", "sc-", "drive-reached.out", "drive-holds")
     kept = [line for line in drive if not (line.startswith("net") and any(o in line for o in ours))]
-    joints = (sim / "parts" / "spindle_joints.hal").read_text()
+    joints = (sim / "spindle_joints.hal").read_text()
     commanded = "net spindle-cmd => drive-reached.in1\n"
     (sim / "plain.hal").write_text("\n".join([joints, *kept, PLAIN, commanded]))
-    parts = "lathe_spindle_c", "lathe_spindle_c_mm", "lathe_mm"
-    text = "".join((sim / "parts" / f"{part}.inc").read_text() for part in parts)
-    cut = text[: text.index("[SPINDLE_C]")] + text[text.index("[KINS]") :]
-    lines = [
-        line for line in cut.splitlines() if not line.startswith(("HALFILE", "HALCMD", "nc ="))
-    ]
+    text = (sim / "lathe_spindle_c_mm.ini").read_text()
+    machine = text[text.index("[TASK]") : text.index("[SPINDLE_C]")] + text[text.index("[EMCIO]") :]
+    lines = [line for line in machine.splitlines() if not line.startswith(("HALFILE", "HALCMD"))]
     hal = "\n".join(lines).replace("[HAL]", "[HAL]\nHALFILE = plain.hal")
-    python = hal[hal.index("[PYTHON]") : hal.index("[TASK]")]
     ini = sim / "plain.ini"
     screen = "[EMC]\nVERSION = 1.1\n[DISPLAY]\nDISPLAY = axis\nGEOMETRY = CXZ!\n"
     interpreter = "[RS274NGC]\nPARAMETER_FILE = plain.var\n"
-    ini.write_text(screen + interpreter + hal.replace(python, "") + "\n")
+    ini.write_text(screen + interpreter + hal + "\n")
     return ini
 
 
