@@ -4,6 +4,7 @@
 import argparse
 import importlib
 import os
+import re
 import subprocess
 import sys
 
@@ -44,6 +45,32 @@ def test_a_machine_of_the_demo_loads_from_there(package, name):
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.count("\n") > 20
+
+
+LINK = re.compile(r'(?:href|src)="(?!https?:)([^"#]*)(?:#([^"]*))?"')
+
+
+def targets_of(page, package):
+    """Yield each link of a page as it is written, its file and its anchor."""
+    for target, anchor in LINK.findall(page.read_text(encoding="utf-8")):
+        installed = target.removeprefix("/usr/share/linuxcnc-g12/")
+        file = page if not target else (page.parent / target).resolve()
+        yield target, file if installed == target else package / installed, anchor
+
+
+def test_every_link_of_the_pages_in_html_leads_somewhere(package, monkeypatch, tmp_path):
+    monkeypatch.syspath_prepend(str(ROOT / "debian"))
+    importlib.import_module("html_pages").write(ROOT, tmp_path)
+    links = [
+        (page.name, target, file, anchor)
+        for page in tmp_path.rglob("*.html")
+        for target, file, anchor in targets_of(page, package)
+    ]
+    assert len(links) > 100
+    assert [link for link in links if not link[2].exists()] == []
+    assert [
+        link for link in links if link[3] and f'id="{link[3]}"' not in link[2].read_text()
+    ] == []
 
 
 def texts_of(parser):
