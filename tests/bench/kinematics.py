@@ -51,6 +51,7 @@ def figures():
         for feed in FEEDS:
             yield circle(face, segments, feed)
             yield slot(face, segments, feed)
+        yield circle_after_plunge(face)
         yield deviation_on_face(face)
         yield switch(face)
         for name in ("slot", "circles"):
@@ -87,6 +88,15 @@ def circle(face, segments, feed):
 def circle_seconds(lathe, feed):
     """Return the time of the circle."""
     return seconds_in(lathe.run_text(circle_at(feed)), (4,))
+
+
+def circle_after_plunge(face):
+    """Compare the time of a circle between a plunge and a retract with the least."""
+    head = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G1 Z-1 F3000"]
+    run = face.run_text([*head, "G2 X30 C0 I-10 J0", "G1 Z2", "G13.1", "M2"])
+    ratio = seconds_in(run, (5,)) / least(CIRCLE, 3000)
+    what = "polar with kinematics: that circle between a plunge and a retract, F3000"
+    return Figure(what, ratio, OF_LEAST[3000], "against least time")
 
 
 def circle_at(feed):

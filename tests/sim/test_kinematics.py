@@ -109,6 +109,14 @@ def speed_in_an_arc(lathe, radius, feed):
     return np.median(run.samples.velocity[run.samples.kind == ROUND])
 
 
+def test_a_circle_between_a_plunge_and_a_retract_runs_at_its_feed(lathe):
+    """To blend them, LinuxCNC would halve its acceleration: 44 mm/s."""
+    around = ["G12.1", "G1 X30 F6000", "G1 Z-1 F3000", "G2 X30 C0 I-10 J0", "G1 Z2", "G13.1", "M2"]
+    run = lathe.run_text([*START, *around])
+    assert run.error is None
+    assert np.median(run.samples.velocity[run.samples.kind == ROUND]) == pytest.approx(50, rel=1e-3)
+
+
 def test_g12_1_with_offsets_inches_and_diameters(lathe):
     lathe.mdi("G10 L2 P1 X40 Y-7 Z3 C20")
     try:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour, Plunge
 from g12.geometry.curve import angle_of
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceSwitch, flows_into, in_face, positions_along
+from g12.polar.face import FaceSwitch, blending_halves, in_face, positions_along
 from g12.polar.plan import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
@@ -20,7 +20,7 @@ SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
 
 
 @pytest.mark.parametrize(
-    ("following", "flows"),
+    ("following", "halved"),
     [
         (line((20, 10), (0, 10)), True),
         (line((20, 10), (0, 10.1)), False),
@@ -30,12 +30,18 @@ SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
         (arc((20, 0), 10, pi / 2, 1), True),
         (arc((20, 20), 10, -pi / 2, -1), True),
         (arc((20, 20), 10, -pi / 2, 1), False),
-        (Plunge(1, 100.0, 0.0, -1.0), False),
+        (Plunge(1, 100.0, 0.0, -1.0), True),
     ],
 )
-def test_an_arc_that_flows_into_what_follows(following, flows):
-    assert flows_into(arc((20, 0), 10, 0, pi / 2), following) is flows
-    assert not flows_into(line((0, 10), (20, 10)), following)
+def test_an_arc_whose_acceleration_blending_would_halve(following, halved):
+    assert blending_halves(arc((20, 0), 10, 0, pi / 2), following) is halved
+
+
+def test_a_plunge_and_a_line_are_blended_by_an_arc_a_plunge_and_an_arc_are_not():
+    plunge, straight = Plunge(1, 100.0, 0.0, -1.0), line((0, 10), (20, 10))
+    assert not blending_halves(straight, plunge)
+    assert not blending_halves(plunge, straight)
+    assert blending_halves(plunge, arc((20, 0), 10, 0, pi / 2))
 
 
 @settings(max_examples=200)

@@ -36,13 +36,22 @@ class FaceMove(NamedTuple):
     segments: list[tuple[float, float, float]]
 
 
-def flows_into(move: object, following: object) -> bool:
-    """Return whether an arc continues tangentially: nothing stops or is blended there."""
-    if not isinstance(move, PlaneMove) or not isinstance(following, PlaneMove):
-        return False
-    turned = move.curve.direction(1.0).conjugate() * following.curve.direction(0.0)
-    same = turned.real > 0.0 and abs(turned.imag) <= SAME_DIRECTION
-    return same and isinstance(move.curve, Arc)
+def blending_halves(move: PlaneMove | Plunge, following: PlaneMove | Plunge) -> bool:
+    """Return whether LinuxCNC would halve an arc's acceleration to blend the two moves.
+
+    It does so where it can put no arc between them: where an arc continues tangentially, and where
+    one of the moves is an arc, and they are not in one plane.
+    """
+    if isinstance(move, PlaneMove) and isinstance(following, PlaneMove):
+        turned = move.curve.direction(1.0).conjugate() * following.curve.direction(0.0)
+        if turned.real > 0.0 and abs(turned.imag) <= SAME_DIRECTION:
+            return isinstance(move.curve, Arc)
+    is_flat = move.z0 == move.z1 and following.z0 == following.z1
+    return not is_flat and (is_arc(move) or is_arc(following))
+
+
+def is_arc(move: PlaneMove | Plunge) -> bool:
+    return isinstance(move, PlaneMove) and isinstance(move.curve, Arc)
 
 
 def in_face(move: PlaneMove | Plunge, angle: float) -> PlaneMove | Plunge:

@@ -28,7 +28,7 @@ from g12.host.program_lines import error_text
 from g12.moves.feed import Segment
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceMove, FaceSwitch, flows_into
+from g12.polar.face import FaceMove, FaceSwitch, blending_halves
 from g12.section.block_rules import G1
 from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes, decimal
@@ -295,8 +295,7 @@ class SectionOutput:
         interp.sequence_number = step.line
         self.path.on_face()
         ends = isinstance(following, FaceSwitch)
-        if ends or (isinstance(following, FaceMove) and flows_into(move, following.move)):
-            # a tangent arc needs no blending, for which LinuxCNC halves the acceleration
+        if ends or (isinstance(following, FaceMove) and blending_halves(move, following.move)):
             self.path.set(EXACT_PATH)
         ending = self.path.ending(False, exact_stop, block_ends)
         if ending:
