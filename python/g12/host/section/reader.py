@@ -198,7 +198,7 @@ class SectionReader:
     def move(self, line: TextLine, block: SectionBlock) -> None:
         """Add the block's motion and compensation, and queue the stop after it."""
         if line.exact_stop:
-            self.exact_lines.add(self.program.line)
+            self.exact_lines.add(self.program.shown_line)
         if block.moves:
             self._separate()
         if block.g[GGroup.COMPENSATION] != NO_CODE:
