@@ -1,9 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The result of the planner of any cycle."""
 
+from __future__ import annotations
+
 from typing import NamedTuple
 
 from g12.request.travel import CycleExtent
+
+
+class EventPlanes(NamedTuple):
+    """The circle mill's modal reference planes W and O; None where no event has commanded one."""
+
+    first: float | None = None
+    second: float | None = None
+
+    def scaled(self, factor: float) -> EventPlanes:
+        """Return the planes in another unit."""
+        return EventPlanes(*(None if plane is None else plane * factor for plane in self))
 
 
 class CyclePlan(NamedTuple):
@@ -11,7 +24,7 @@ class CyclePlan(NamedTuple):
 
     Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as is
     ``other_cutter``: D is not the loaded tool. ``commanded_radius`` is that of the cutter that a
-    Haas D names.
+    Haas D names, ``commanded_planes`` are those of later circle mill events.
     """
 
     locals: dict[str, float]
@@ -19,3 +32,4 @@ class CyclePlan(NamedTuple):
     message: str | None = None
     other_cutter: str | None = None
     commanded_radius: float | None = None
+    commanded_planes: EventPlanes | None = None

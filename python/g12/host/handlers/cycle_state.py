@@ -11,6 +11,8 @@ import itertools
 
 from interpreter import MODE_INCREMENTAL
 
+from g12.cycles.plan import EventPlanes
+from g12.host.commanded import commanded_of, place_of_block
 from g12.host.interp import (
     INVERSE_TIME,
     PER_REVOLUTION,
@@ -21,7 +23,7 @@ from g12.host.interp import (
     words_in,
 )
 from g12.host.machine import MACHINE
-from g12.host.messages import code_of_block, main_program
+from g12.host.messages import code_of_block
 from g12.host.modes import (
     INCH_UNITS,
     diameter_mode,
@@ -128,21 +130,23 @@ def remember_radius(interp: Interp, radius: float) -> None:
     state_of(interp).radius_commanded = True
 
 
-def first_plane(interp: Interp) -> float | None:
-    """Return the circle mill's first reference plane as last commanded by this program.
+def event_planes(interp: Interp) -> EventPlanes:
+    """Return the circle mill's reference planes as last commanded by this program.
 
     A plane of another program, or of the text before an edit, would send the tool to a height that
     this program does not contain.
     """
-    plane = state_of(interp).first_plane
-    if plane is None or plane[1] != main_program(interp):
-        return None
-    return plane[0] / millimetres_per_unit(interp)
+    commanded = commanded_of(interp)
+    place = commanded.planes_place
+    if place is None or not place.reaches(place_of_block(interp)):
+        return EventPlanes()
+    return commanded.planes.scaled(1 / millimetres_per_unit(interp))
 
 
-def remember_first_plane(interp: Interp, height: float) -> None:
-    plane = height * millimetres_per_unit(interp), main_program(interp)
-    state_of(interp).first_plane = plane
+def remember_planes(interp: Interp, planes: EventPlanes) -> None:
+    commanded = commanded_of(interp)
+    commanded.planes = planes.scaled(millimetres_per_unit(interp))
+    commanded.planes_place = place_of_block(interp)
 
 
 def snapshot(interp: Interp) -> Context:
