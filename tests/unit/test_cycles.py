@@ -164,7 +164,7 @@ BAD_MODES = [
      "T3 in the spindle has the negative diameter -0.25 in the tool table"),
     ("haas", dict(spindle_tool=None),
      "D is missing, none was commanded before and no tool is loaded"),
-    ("haas", dict(last_radius=0.8),
+    ("haas", dict(last_cutter=Tool(0, 0.8)),
      "I0.75 must be greater than the tool radius 0.8 (the D last commanded)"),
     ("pocket", dict(spindle_tool=None), "no tool is loaded: its diameter sets the path"),
     ("pocket", dict(spindle_tool=Tool(8, 0.0)), f"{DIAMETER} 0"),
@@ -244,12 +244,12 @@ def test_modes_that_can():
 
 @pytest.mark.parametrize(
     ("words", "found", "radius", "commanded"),
-    [("I.75", dict(last_radius=0.2), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
+    [("I.75", dict(last_cutter=Tool(0, 0.2)), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
 )
 def test_the_cutter_is_the_block_s_then_the_last_commanded(words, found, radius, commanded):
     pocket = plan("haas", f"{words} Z-1", **found)
     assert pocket.locals["first_radius"] == pytest.approx(radius)
-    assert pocket.commanded_radius == commanded
+    assert (pocket.commanded_cutter and pocket.commanded_cutter.radius) == commanded
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from g12.request.context import Tool
 from g12.request.travel import CycleExtent
 
 
@@ -22,14 +23,16 @@ class EventPlanes(NamedTuple):
 class CyclePlan(NamedTuple):
     """A checked cycle: ``locals`` are the named locals of its sub, which its .ngc file explains.
 
-    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as is
-    ``other_cutter``: D is not the loaded tool. ``commanded_radius`` is that of the cutter that a
-    Haas D names, ``commanded_planes`` are those of later circle mill events.
+    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as are
+    ``other_cutter``: D is not the loaded tool, and ``kept_cutter``: without D another one counts
+    than the program shows. ``commanded_cutter`` is the one that a Haas D names,
+    ``commanded_planes`` are those of later circle mill events.
     """
 
     locals: dict[str, float]
     extent: CycleExtent
     message: str | None = None
     other_cutter: str | None = None
-    commanded_radius: float | None = None
+    commanded_cutter: Tool | None = None
     commanded_planes: EventPlanes | None = None
+    kept_cutter: str | None = None

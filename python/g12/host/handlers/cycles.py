@@ -38,8 +38,10 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     tool = words.context.spindle_tool
     if plan.other_cutter and tool:
         messages.message_once(interp, tool.number, plan.other_cutter)
-    if plan.commanded_radius is not None:
-        cycle_state.remember_radius(interp, plan.commanded_radius)
+    if plan.commanded_cutter:
+        cycle_state.remember_cutter(interp, plan.commanded_cutter)
+    if plan.kept_cutter:
+        messages.message_once(interp, plan.kept_cutter, plan.kept_cutter)
     if plan.commanded_planes:
         cycle_state.remember_planes(interp, plan.commanded_planes)
     if plan.message:
