@@ -8,6 +8,7 @@ also reads texts that are in no file.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -39,6 +40,8 @@ MM_OF_UNIT = {  # with their lengths in mm
 }
 KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in LinuxCNC's order
 HANDLERS = ("prolog", "epilog", "python")
+M_FILES = tuple(f"M{code}" for code in range(100, 200))  # names of the user's own commands
+M_FILES_FOLDER, MOST_M_FOLDERS = "nc_files", 5  # LinuxCNC's default; of USER_M_PATH
 CODE_PATTERN = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
 
 
@@ -166,6 +169,21 @@ def number_in(find: Find, section: str, key: str, default: float) -> float:
 
 def remap_lines(find_all: FindAll) -> list[Remap]:
     return [remap_from_value(value) for value in find_all("RS274NGC", "REMAP")]
+
+
+def m_codes_of(find: Find, remaps: Iterable[Remap], directory: Path = Path()) -> frozenset[int]:
+    """Return the numbers of the M codes that the machine has besides LinuxCNC's.
+
+    They are those of REMAP lines, and of the executable files that `emcTaskInit` (emctask.cc) finds
+    in folders relative to ``directory``.
+    """
+    numbers = (remap.number for remap in remaps)
+    remapped = {tenths // 10 for letter, tenths in numbers if letter == "M"}
+    names = (find("RS274NGC", "USER_M_PATH") or "").split(":")[:MOST_M_FOLDERS]
+    names.insert(0, find("DISPLAY", "PROGRAM_PREFIX") or M_FILES_FOLDER)
+    folders = [directory / os.path.expanduser(name) for name in names if name]
+    files = (folder / name for name in M_FILES for folder in folders)
+    return frozenset(remapped | {int(file.name[1:]) for file in files if os.access(file, os.X_OK)})
 
 
 def code_of_prolog(remaps: Iterable[Remap], prolog: str) -> str:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,6 +20,7 @@ from g12.ini_sections import entries_of, with_included
 from g12.lengths import is_inch
 
 INI_SECTION = "G12"
+CLAMP_CODES = range(3, 10)  # of LinuxCNC's own M codes, those that may serve a clamp
 M_CODE = re.compile(r"M\d{1,3}")
 TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002  # defaults of POLAR_TOLERANCE
 
@@ -103,6 +104,19 @@ class Settings:
         usual = TOLERANCE_INCH if is_inch(millimetres) else TOLERANCE_MM / millimetres
         return self.polar_tolerance or usual
 
+    def unknown_clamp_code(self, m_codes: Container[int]) -> str:
+        """Return which code of the clamp the machine does not know, "" if it knows all of them.
+
+        ``m_codes`` are those that it has besides LinuxCNC's.
+        """
+        for key in ("c_clamp", "c_clamp_shapes"):
+            for code in getattr(self, key):
+                if code not in m_codes and code not in CLAMP_CODES:
+                    cure = "a REMAP line" if code < 100 else f"an executable file M{code}"
+                    where = f"[{INI_SECTION}] {key.upper()}"
+                    return f"{where}: M{code} is no code of this machine: {cure}?"
+        return ""
+
 
 TABLE: dict[str, ValueRule] = {
     each.name.upper(): each.metadata["rule"] for each in fields(Settings)
@@ -128,6 +142,9 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
     settings = Settings(**values)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
+    if settings.c_clamp_shapes and not settings.c_clamp:
+        needed = "needs C_CLAMP, whose second code opens the clamp"
+        raise Refusal(f"[{INI_SECTION}] C_CLAMP_SHAPES {needed}")
     return settings
 
 

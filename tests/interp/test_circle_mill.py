@@ -63,25 +63,41 @@ def test_parameters_and_globals_are_left_alone(inch):
 # ---------------------------------------------------------------- modal entries
 
 
-def test_w_is_modal_and_o_is_not(inch):
-    traced = cut(
-        inch,
-        "G13.2 X0 Y0 Z-.1 I.1 E.5 R.5 H2",
-        "G13.2 X2 Y0 Z-.1 R.5 H2",
-        call(g=7, x=4, y=0, z=-0.1, r=0.5, c=2),
-        "G13.2 X6 Y0 Z-.1 I.2 R.5 H2",
-        "G13.2 X8 Y0 Z-.1 R.5 H2",
-    )
-    returns = [
+def returns(traced):
+    """Return the height of each rapid back to where the event started."""
+    return [
         round(move.start[2] / INCH, 6)
         for move in cut_geometry.moving(traced.moves)[1:]
         if (move.end[0] / INCH, move.end[1] / INCH) == (-1, -1) != move.start[:2]
         and move.start[2] == move.end[2]
     ]
-    assert returns == [0.5, 0.1, 0.1, 0.2, 0.2]
 
 
-def test_w_follows_the_units(inch, metric):
+def test_w_and_o_are_modal(inch):
+    traced = cut(
+        inch,
+        "G13.2 X0 Y0 Z-.1 I.1 R.5 H2",
+        "G13.2 X0 Y0 Z-.1 I.2 R.5 H2",
+        "G13.2 X0 Y0 Z-.1 I.1 E.5 R.5 H2",
+        "G13.2 X2 Y0 Z-.1 R.5 H2",
+        call(g=7, x=4, y=0, z=-0.1, r=0.5, c=2),
+        "G13.2 X6 Y0 Z-.1 I.2 R.5 H2",
+        call(g=7, x=4, y=0, z=-0.1, r=0.5, c=2, o=0.6),
+        "G13.2 X8 Y0 Z-.1 R.5 H2",
+    )
+    assert returns(traced) == [0.1, 0.2, 0.5, 0.5, 0.5, 0.5, 0.6, 0.6]
+
+
+def test_a_program_that_runs_again_returns_at_the_same_heights(inch):
+    """A repeated block begins as a second run does: the second plane below it is not in force."""
+    events = ["G13.2 X0 Y0 Z-.1 I.2 R.5 H2", "G13.2 X2 Y0 Z-.1 I.1 E.15 R.5 H2"]
+    sub = ["o<events> sub", *events, "o<events> endsub"]
+    for body, before in ((events, []), (["o<events> call"], sub)):
+        traced = cut(inch, *before, "o1 repeat [2]", *body, "o1 endrepeat")
+        assert returns(traced) == [0.2, 0.15, 0.2, 0.15]
+
+
+def test_planes_follow_the_units(inch, metric):
     for tracer in (inch, metric):
         traced = cut(tracer, "G13.2 X0 Y0 Z-.1 I.1 R.5 H2", "G21", "F500", "G13.2 X0Y0 Z-2 R12 H2")
         assert traced.moves[-1].end[2] == pytest.approx(2.54)

@@ -98,6 +98,49 @@ def test_neither_a_refused_block_nor_one_without_d_stores_one(inch):
     assert traced.error.text.startswith("G12 line 5: D is missing")
 
 
+BEFORE = "the D of what ran before"
+NONE_ABOVE = "G13: no D above this block in the program: "
+LOADED = f"{NONE_ABOVE}the loaded tool T2 counts, diameter 0.5, or {BEFORE}. Give D"
+
+
+@pytest.mark.parametrize(
+    ("blocks", "told"),
+    [
+        (["T2 M6"], [LOADED]),
+        (["T2 M6", "G13 I.6 Z-.1"], [LOADED]),
+        (["T2 M6", "(G41)", "; G42"], [LOADED]),
+        (["T2 M6", "G13 I.6 Z-.1", "G13 I.6 Z-.1 D2"], [LOADED]),
+        (["T2 M6", "G13 I.6 Z-.1 D2"], []),
+        (["T2 M6", "G13 I.6 Z-.1 D0"], []),
+        (["T2 M6", "G41", "G40"], []),
+        (["T2 M6", "N5 (on) g 42.1 D.5", "G40"], []),
+        (["T2 M6", "o1 repeat [2]", "G13 I.6 Z-.1 D2", "o1 endrepeat"], []),
+        (["T2 M6", "o<s> sub", "G13 I.6 Z-.1 D2", "o<s> endsub", "o<s> call"], []),
+    ],
+)
+def test_a_cutter_that_depends_on_what_ran_before_is_reported_once(inch, blocks, told):
+    traced = cut(inch, *blocks, "G0 X0 Y0", "G13 I.75 Z-.1", "G13 I.75 Z-.1")
+    assert [message.text.strip() for message in traced.messages] == told
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ("G10 L1 P2 R.24",
+         ["G13: D2 has the diameter 0.48 in the tool table now, but counts as it was commanded, "
+          "with 0.5. Give D2 again"]),
+        ("G10 L1 P2 R.25", []),
+        ("G10 L1 P1 R.2", []),
+    ],
+)  # fmt: skip
+def test_a_line_of_the_table_that_has_changed_since_d_is_reported_once(inch, change, told):
+    traced = cut(inch, "T2 M6", "G13 I.6 Z-.1 D2", change, *["G13 I.75 Z-.1"] * 2)
+    assert [message.text.strip() for message in traced.messages] == told
+    assert cut_geometry.radii(traced.moves)[-1] / INCH == pytest.approx(0.5)
+    again = cut(inch, "T2 M6", "G13 I.6 Z-.1 D2", change, "G13 I.75 Z-.1 D2")
+    assert again.messages == []
+
+
 # ---------------------------------------------------------------- helix and plunge
 
 

@@ -110,21 +110,40 @@ def test_sections_and_shapes_are_cut_with_a_light_drag(tmp_path, name):
     assert drag == cuts[0] and off in (cuts[-1] + 1, cuts[-1] + 2) and cuts
 
 
+A_REMAP = "a REMAP line?"
+
+
+@pytest.mark.parametrize("name", ["lathe_mm", "lathe_mm_kinematics"])
+@pytest.mark.parametrize("block", ["G12.1", call("face_holes")])
 @pytest.mark.parametrize(
-    ("settings", "block", "why"),
+    ("settings", "code", "cure"),
     [
-        ({"C_CLAMP": "M110 M11"}, call("face_holes"),
-         "face_holes line 6: [G12] C_CLAMP: M11 is no code of this machine: a REMAP line?"),
-        ({"C_CLAMP": "M110 M111", "C_CLAMP_SHAPES": "M12"}, "G12.1",
-         "G12.1 line 6: [G12] C_CLAMP: M12 is no code of this machine: a REMAP line?"),
-        ({"C_CLAMP_SHAPES": "M112"}, "G12.1",
-         "G12.1 line 6: [G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp"),
+        ({"C_CLAMP": "M10 M14"}, "C_CLAMP: M14", A_REMAP),
+        ({"C_CLAMP": "M14 M11"}, "C_CLAMP: M14", A_REMAP),
+        ({"C_CLAMP_SHAPES": "M14"}, "C_CLAMP_SHAPES: M14", A_REMAP),
+        ({"C_CLAMP": "M10 M111"}, "C_CLAMP: M111", "an executable file M111?"),
     ],
 )  # fmt: skip
-def test_a_clamp_whose_codes_are_unknown_is_refused(settings, block, why):
-    with Tracer(SIM / "lathe_mm.ini", overrides={"G12": settings}) as lathe:
+def test_a_clamp_of_which_one_code_is_unknown_is_refused(
+    tmp_path, name, block, settings, code, cure
+):
+    overrides = with_clamp(name, tmp_path, **{"C_CLAMP_SHAPES": "M8", **settings})
+    (tmp_path / "M111").touch(mode=0o644)
+    overrides["RS274NGC"]["USER_M_PATH"] = str(tmp_path)
+    with Tracer(SIM / f"{name}.ini", overrides=overrides) as lathe:
         traced = lathe.trace_text(program(block, "G1 X3", "G13.1"))
-    assert traced.error.text == why and len(traced.moves) == 1
+    what = "G12.1" if block == "G12.1" else "face_holes"
+    assert traced.error.text == f"{what} line 6: [G12] {code} is no code of this machine: {cure}"
+    assert len(traced.moves) == 1
+
+
+def test_a_clamp_may_have_a_users_own_commands(tmp_path):
+    overrides = with_clamp("lathe_mm", tmp_path, C_CLAMP="M110 M111")
+    for code in ("M110", "M111"):
+        (tmp_path / code).touch(mode=0o755)
+    overrides["RS274NGC"]["USER_M_PATH"] = f"nowhere:{tmp_path}"
+    with Tracer(SIM / "lathe_mm.ini", overrides=overrides, tools={1: 6.0}) as lathe:
+        assert drilled(lathe.trace_text(program(call("face_holes"))))
 
 
 def test_a_call_that_is_too_short_has_zeros_at_its_end(lathe):

@@ -12,6 +12,9 @@ from support.sim_machines import SIM, kept_tracer
 lathe = kept_tracer("lathe_mm")
 
 
+SIXTH = "\n" * 5  # lines before a file's sixth, where the first line of `section` is
+
+
 @pytest.fixture(scope="module")
 def subs(tmp_path_factory):
     """Open a lathe with subs and remapped codes in files of their own."""
@@ -21,6 +24,8 @@ def subs(tmp_path_factory):
         "outer": "o<outer> sub\no<flat> call [#1] [1]\nU1\no<outer> endsub\n",
         "round": "o<round> sub\nG12.1\no<flat> call [11] [2]\nG13.1\no<round> endsub\nM2\n",
         "m410": "o<m410> sub\nG1 X#<p>\nH1\no<m410> endsub\n",
+        "exact": f"o<exact> sub{SIXTH}G9 G1 X14\nX13\no<exact> endsub\n",
+        "smooth": f"o<smooth> sub{SIXTH}G1 X12\nX11\no<smooth> endsub\n",
         "200": "O200\nG1 X15\nM99\n",
     }
     for name, text in files.items():
@@ -237,6 +242,19 @@ def test_a_section_in_a_sub_of_another_file(subs):
     traced = subs.trace_text([FIRST, START, "F100", "o<round> call", "C0", "M2"])
     assert ends(traced)[:2] == [(11, 0), (11, 4)]
     assert traced.moves[-1].line == 5
+
+
+@pytest.mark.parametrize(
+    ("body", "stops"),
+    [
+        (["X16", "o<exact> call", "X12"], [14, 12]),  # X16 is in line 6 too
+        (["G9 X16", "o<smooth> call", "X10"], [16, 10]),
+        (["X16", "o<exact> call", "o<smooth> call"], [14, 11]),
+    ],
+)
+def test_g9_stops_its_own_line_and_none_of_the_same_number(subs, body, stops):
+    traced = cut(subs, f"G1 {body[0]}", *body[1:])
+    assert [round(move.end[0], 6) for move in feed_moves(traced) if move.exact] == stops
 
 
 # ---------------------------------------------------------------- comments, files

@@ -141,14 +141,6 @@ def test_a_shift_of_x_that_is_cancelled_and_those_of_other_axes_are_taken(lathe,
     assert lathe.trace_text(section("G1 X12", before=before)).error is None
 
 
-def test_no_negative_diameter_is_compensated():
-    with Tracer(SIM / "lathe_mm.ini", tools={1: 6.0, 3: -6.0}) as lathe:
-        traced = lathe.trace_text(section("G1 X15", "G41 X10", "C3", before=["T3 M6"]))
-    why = "G41: the loaded tool has the negative diameter -6 in the tool table"
-    assert traced.error.text == f"G12.1 line 8: {why}"
-    assert not [move for move in traced.moves if move.line > 6]
-
-
 @pytest.mark.parametrize("cycle", ["G17 G81 X20 Z4 R5", "G17 G73 X20 Z4 R5 Q1", "G38.3 Z4"])
 def test_bare_words_of_a_code_that_is_no_contour(lathe, cycle):
     traced = lathe.trace_text(section("X15", before=[cycle]))

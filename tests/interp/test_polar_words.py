@@ -2,12 +2,15 @@
 """G12.1 on the stock interpreter: what the words of a section mean, and the state after it."""
 
 import math
+from itertools import chain
 
+import numpy as np
 import pytest
+from shapely.geometry import LineString, Point, Polygon
 
 from g12.tools.preview.tracer import Tracer
 from support.mode_matrix import remaps
-from support.polar_programs import FIRST, cut, ends, feed_moves, section, tracer
+from support.polar_programs import FIRST, Z, cut, ends, feed_moves, in_plane, section, texts, tracer
 from support.sim_machines import ROOT, SIM, kept_tracer
 
 lathe = kept_tracer("lathe_mm")
@@ -115,6 +118,64 @@ def test_every_other_mode_is_as_before(lathe, modes):
     found = lathe.trace_text(blocks[: blocks.index("G12.1")])
     assert left.error is None, left.error
     assert left.modes == found.modes
+
+
+# ---------------------------------------------------------------- size correction
+
+CENTRE = [(24, 0), (12, -12), (-15, -6), (-9, 14), (12, 12), (24, 0)]  # clockwise
+TABLE = {1: 0.0, 2: 0.4, 3: -0.4}  # diameters: as programmed, smaller, larger
+SIDES = {"G41": 1, "G42": -1}
+
+
+def centre_path(code, levels=(-1,), tool=1):
+    """Return a program that mills the tool centre's path CENTRE with leads from outside."""
+    around = [f"X{x} C{c}" for x, c in CENTRE]
+    body = [
+        [f"{code} X28 C0", f"Z{z}", *around, "X28", "G40 X35 C0.5", "Z5", "C0", "X34"]
+        for z in levels
+    ]
+    return section("G1 X34", *chain.from_iterable(body), start="G0 X35 Z5 C0", tool=f"T{tool} M6")
+
+
+def plane_path(traced, level):
+    """Return the tool's path in the plane at a Z, of moves from the programmed path's first on."""
+    points = []
+    for move in feed_moves(traced):
+        if round(move.start[Z], 6) == round(move.end[Z], 6) == level:
+            between = np.linspace(move.start, move.end, 20)
+            points += [in_plane(position)[:2] for position in between]
+    return LineString(points)
+
+
+@pytest.mark.parametrize(
+    ("code", "tool"), [("G41", 1), ("G42", 1), ("G41", 2), ("G41", 3), ("G42", 3)]
+)
+def test_a_negative_diameter_corrects_the_size_to_the_other_side(code, tool):
+    with Tracer(SIM / "lathe_mm.ini", tools=TABLE) as lathe:
+        traced = lathe.trace_text(centre_path(code, (-1, -2), tool))
+    corrected = Polygon(CENTRE).buffer(SIDES[code] * TABLE[tool] / 2, 64).exterior
+    leads = Point(30, 0).buffer(7)
+    part = corrected.difference(leads)
+    for level in (-1, -2):
+        path = plane_path(traced, level).difference(leads)
+        assert path.buffer(0.006).covers(part) and part.buffer(0.006).covers(path)
+    told = [
+        "G12.1: the loaded tool has the negative diameter -0.4 in the tool table: "
+        "G41 offsets the path by 0.2 to the right, G42 to the left"
+    ]
+    assert [text for text in texts(traced) if "C has" not in text] == (told if tool == 3 else [])
+
+
+def test_the_diameter_of_the_message_is_in_program_units():
+    program = section("G1 G41 X.6", "C.1", "G40 X.8", before=["G20", "F4"], tool="T3 M6")
+    with Tracer(SIM / "lathe_mm.ini", tools={3: -2.54}) as lathe:
+        (text,) = texts(lathe.trace_text(program))
+    assert "diameter -0.1 in the tool table: G41 offsets the path by 0.05 to the right" in text
+
+
+def test_g40_needs_no_tool(lathe):
+    program = [line for line in section("G40", "G1 X12") if line != "T1 M6"]
+    assert ends(lathe.trace_text(program)) == [(12, 0)]
 
 
 # ---------------------------------------------------------------- machines

@@ -90,7 +90,10 @@ def test_a_clamp_that_is_right_has_no_finding(tmp_path):
 
 
 def test_a_clamp_that_no_trace_shows_is_named_as_not_judged(tmp_path):
-    ini = read_ini(SIM / "lathe_mm_headless.ini").replaced({"G12": {"C_CLAMP": "M110 M111"}})
+    for code in ("M110", "M111"):
+        (tmp_path / code).touch(mode=0o755)
+    own = {"G12": {"C_CLAMP": "M110 M111"}, "RS274NGC": {"USER_M_PATH": str(tmp_path)}}
+    ini = read_ini(SIM / "lathe_mm_headless.ini").replaced(own)
     path = written(tmp_path, FACE)
     (found,) = (each for each in prove(path, ini, tools={1: 6.0}).judged if each.line)
     assert (found.code, found.line, found.is_not_judged) == ("clamp-unseen", 6, True)

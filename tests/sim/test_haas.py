@@ -126,6 +126,34 @@ def test_an_operator_message_does_not_stop_the_cut(machine):
     ]
 
 
+def test_a_d_of_the_program_before_is_reported_by_every_program_that_lacks_one(machine):
+    with_d, without, both = (
+        [FIRST, "T0 M6", *blocks, "G0 Z2", "M2"]
+        for blocks in (["G13 I9 Z-1 D{}"], ["G13 I9 Z-1"], ["G13 I9 Z-1", "G13 I9 Z-1 D1"])
+    )
+
+    def told(program, tool=0):
+        run = machine.run_text([line.format(tool) for line in program])
+        assert run.error is None
+        return [message.text for message in run.messages]
+
+    text = (
+        "G13: no D above this block in the program: the D of what ran before counts, "
+        "diameter {}. Give D"
+    )
+    assert told(with_d, 2) == []
+    assert told(without) == [text.format(10)]
+    assert told(with_d, 1) == []
+    assert told(both) == [text.format(6)]
+    machine.open_text(both)
+    machine.mdi("G13 I9 Z1 D2 F8000")
+    machine.mdi("G13 I9 Z1")
+    assert machine.messages() == []  # MDI has its own D
+    machine.start()
+    machine.wait_idle()
+    assert [message.text for message in machine.messages()] == [text.format(10)]
+
+
 def test_d_with_a_random_tool_changer():
     """The loaded tool has no place in the table any more but the spindle's."""
     changer = {**BRISK, "EMCIO": {"RANDOM_TOOLCHANGER": 1}}

@@ -20,7 +20,8 @@ MM = Context(
     compensated=False,
     offset_pending=False,
     spindle_tool=None,
-    last_radius=None,
+    last_cutter=None,
+    d_is_earlier=lambda: False,
     tool_in_table={1: Tool(1, 6.0), 2: Tool(2, 10.0), 3: Tool(3, -2.0), 4: Tool(4, 0.0)}.get,
 )
 INCH = MM._replace(

@@ -30,7 +30,7 @@ class Drawn(NamedTuple):
 
 def away(drawn):
     """Return the vector from the contour to the tool's side, long enough for a ramp."""
-    return (1.3 * drawn.radius + 0.2) * (1j if drawn.side == 41 else -1j)
+    return (1.3 * abs(drawn.radius) + 0.2) * (1j if drawn.side == 41 else -1j)
 
 
 def contour_of(drawn, depth=-1.0):

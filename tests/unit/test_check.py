@@ -106,6 +106,8 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "mill.ini:8: 'mine' is not a Python callable function"),
     (GOOD + "[G12]\nCLEARING = squares\n", {}, "setting",
      "[G12] CLEARING = squares: must be rings or spiral"),
+    (GOOD + "[G12]\nC_CLAMP = M8 M9\nC_CLAMP_SHAPES = M110\n", {"files": {"nc_files__M110": ""}},
+     "setting", "[G12] C_CLAMP_SHAPES: M110 is no code of this machine: an executable file M110?"),
     *((GOOD + line, {}, "value", says) for line, says in (
         ("[AXIS_X]\nMAX_VELOCITY = abc\n", "[AXIS_X] MAX_VELOCITY = abc: must be a number"),
         ("[AXIS_Y]\nMIN_LIMIT = abc\n", "[AXIS_Y] MIN_LIMIT = abc: must be a number"),

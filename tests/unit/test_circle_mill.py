@@ -9,6 +9,7 @@ import itertools
 import pytest
 
 from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, plan_code
+from g12.cycles.plan import EventPlanes
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
 from g12.request.context import Tool
 from g12.request.words import Words
@@ -16,12 +17,13 @@ from support.planner_context import INCH, MM, reported, words_of
 
 CODE = "X1 Y2 Z-.5 R1.5 I.1 H2"
 CALL = "X1 Y2 Z-.5 R1.5 W.1 C2"
+NONE = EventPlanes()
 FEEDS = ("plunge_feed", "feed", "finish_feed")
 
 
-def event(words="", found=INCH, pocket=True):
+def event(words="", found=INCH, pocket=True, planes=NONE):
     code = "G13.2" if pocket else "G12.2"
-    return plan_code(Words(code, words_of(CODE, words), found), None, pocket)
+    return plan_code(Words(code, words_of(CODE, words), found), planes, pocket)
 
 
 def code(*arguments, **options):
@@ -29,7 +31,7 @@ def code(*arguments, **options):
 
 
 def call(words="", found=INCH):
-    return plan_call(Words("circle_mill", words_of(CALL, words), found), None).locals
+    return plan_call(Words("circle_mill", words_of(CALL, words), found), NONE).locals
 
 
 def taken(numbers, *names):
@@ -111,6 +113,31 @@ def test_g91_counts_xy_from_the_tool_and_z_from_w():
     numbers = code("Z-.6 E.5", INCH._replace(incremental=True, x=5.0, y=-1.0, z=0.7))
     assert taken(numbers, "x", "y", "first_plane", "second_plane") == (6.0, 1.0, 0.1, 0.5)
     assert numbers["final_z"] == pytest.approx(-0.5)
+
+
+@pytest.mark.parametrize(
+    ("words", "earlier", "planes", "commanded"),
+    [
+        ("", NONE, (0.1, 0.1), (0.1, None)),
+        ("E.5", NONE, (0.1, 0.5), (0.1, 0.5)),
+        ("", EventPlanes(0.3, 0.7), (0.1, 0.7), (0.1, 0.7)),
+        ("I.4", EventPlanes(0.3, None), (0.4, 0.4), (0.4, None)),
+        ("E.6", EventPlanes(0.3, 0.7), (0.1, 0.6), (0.1, 0.6)),
+    ],
+)
+def test_both_planes_are_modal_and_o_is_w_only_where_none_was_given(
+    words, earlier, planes, commanded
+):
+    plan = event(words, planes=earlier)
+    assert taken(plan.locals, "first_plane", "second_plane") == planes
+    assert plan.commanded_planes == commanded
+
+
+def test_an_earlier_o_below_w_is_refused_as_such():
+    assert reported(event, "I.8", planes=EventPlanes(0.3, 0.7)) == (
+        "G13.2: E0.7 must not be below the first reference plane I0.8:"
+        " it is that of an earlier event, give a new E"
+    )
 
 
 def test_feeds():

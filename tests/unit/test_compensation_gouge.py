@@ -98,6 +98,30 @@ def test_leads_from_the_other_side_of_a_closed_contour_suggest_the_other_code():
     assert text.endswith("both lines 4 and 9: beside one of them it cuts into the other. G41?")
 
 
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_size_correction_to_the_other_side_has_its_leads_across_the_contour(side):
+    x = 30 if side == LEFT else 2  # outside, inside
+    led = lines(x + 2j, *BOSS, x - 2j)
+    for radius in (0.0, 0.2, -0.2, -2.0):
+        assert cut(led, side, radius) == ("", [])
+
+
+def test_a_size_correction_is_still_refused_where_the_contour_meets_itself():
+    dumbbell = [20 + 5j, 20 - 5j, 1 - 5j, 1 - 0.1j, -1 - 0.1j, -1 - 5j, -20 - 5j, -20 + 5j, -1 + 5j]
+    closed_one = [20 + 0j, *dumbbell[1:], -1 + 0.1j, 1 + 0.1j, 1 + 5j, 20 + 5j, 20 + 0j]
+    led = lines(30 + 2j, *closed_one, 30 - 2j)
+    assert cut(led, LEFT, -0.05) == ("", [])
+    assert "the tool of radius 0.3 cannot follow both lines" in cut(led, LEFT, -0.3)[0]
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_refusal_names_the_code_of_the_program_also_with_a_negative_diameter(side):
+    contour = Contour(20.0, 0.0)
+    contour.compensation(side, -1.0, line=1)
+    contour.line(10.0, 0.0, line=1, feed=100.0)
+    assert refusal(contour) == f"G12.1 line 1: G{side} needs a block of the contour after its G1"
+
+
 def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
     slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
             *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip

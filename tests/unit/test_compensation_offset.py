@@ -37,11 +37,12 @@ def along_part(contour):
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side):
+@pytest.mark.parametrize("sign", [1, -1])  # of the diameter in the tool table
+def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side, sign):
     count = 0
     for seed in range(200):
         part = drawn(random.Random(seed))
-        part = part and part._replace(side=side)
+        part = part and part._replace(side=side, radius=sign * part.radius)
         try:
             made = part and along_part(contour_of(part))
         except Refusal:

@@ -14,12 +14,14 @@ from g12.cycles import mitsubishi, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
 from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
+from g12.cycles.plan import EventPlanes
 from g12.errors import Refusal
 from g12.request.context import Tool
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 from support.planner_context import INCH, MM, reported, words_of
 
+NONE = EventPlanes()
 TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
 HAAS = INCH._replace(z=0.1, spindle_tool=TABLE[1], tool_in_table=TABLE.get)
 STANDING = MM._replace(x=1.0, y=2.0, z=3.0)
@@ -27,9 +29,9 @@ PLANNERS = {  # code, planner, state before the block, words that a row does not
     "haas": ("G12", plan_pocket, HAAS, ""),
     "yasnac": ("G12", yasnac.plan_circle, MM, ""),
     "mitsubishi": ("G13", mitsubishi.plan_circle, STANDING, ""),
-    "pocket": ("G13.2", partial(plan_code, plane=None, pocket=True), INCH, "Y2 Z-.5 R1.5 I.1 H2"),
-    "perimeter": ("G12.2", partial(plan_code, plane=None, pocket=False), INCH, "Z-.5 R1.5 I.1 H2"),
-    "call": ("circle_mill", partial(plan_call, plane=None), INCH, "Z-.5 R1.5 W.1 C2"),
+    "pocket": ("G13.2", partial(plan_code, planes=NONE, pocket=True), INCH, "Y2 Z-.5 R1.5 I.1 H2"),
+    "perimeter": ("G12.2", partial(plan_code, planes=NONE, pocket=False), INCH, "Z-.5 R1.5 I.1 H2"),
+    "call": ("circle_mill", partial(plan_call, planes=NONE), INCH, "Z-.5 R1.5 W.1 C2"),
 }
 
 
@@ -162,7 +164,7 @@ BAD_MODES = [
      "T3 in the spindle has the negative diameter -0.25 in the tool table"),
     ("haas", dict(spindle_tool=None),
      "D is missing, none was commanded before and no tool is loaded"),
-    ("haas", dict(last_radius=0.8),
+    ("haas", dict(last_cutter=Tool(0, 0.8)),
      "I0.75 must be greater than the tool radius 0.8 (the D last commanded)"),
     ("pocket", dict(spindle_tool=None), "no tool is loaded: its diameter sets the path"),
     ("pocket", dict(spindle_tool=Tool(8, 0.0)), f"{DIAMETER} 0"),
@@ -242,12 +244,12 @@ def test_modes_that_can():
 
 @pytest.mark.parametrize(
     ("words", "found", "radius", "commanded"),
-    [("I.75", dict(last_radius=0.2), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
+    [("I.75", dict(last_cutter=Tool(0, 0.2)), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
 )
 def test_the_cutter_is_the_block_s_then_the_last_commanded(words, found, radius, commanded):
     pocket = plan("haas", f"{words} Z-1", **found)
     assert pocket.locals["first_radius"] == pytest.approx(radius)
-    assert pocket.commanded_radius == commanded
+    assert (pocket.commanded_cutter and pocket.commanded_cutter.radius) == commanded
 
 
 @pytest.mark.parametrize(

@@ -33,14 +33,15 @@ def test_one_event_is_one_call():
     )
 
 
-def test_w_and_f_are_carried_from_event_to_event():
+def test_w_o_and_f_are_carried_from_event_to_event():
     first, second, third = calls(
         "N1(4)X0Y0Z-1W.1R1C2F20P5O.5$", "N2(4)X5Y0Z/-1R1C2$", "N3(4)X9Y0Z/-1W.2R1C2F30$"
     )
     assert (first[4], first[13]) == ("0.1", "20")
     assert (second[3], second[4], second[13]) == ("-0.9", "0.1", "20")
     assert (third[3], third[4], third[13]) == ("-0.8", "0.2", "30")
-    assert second[5] == second[12] == "-9999"
+    assert second[5] == third[5] == "0.5" and second[12] == "-9999"
+    assert calls("N1(4)X0Y0Z-1W.1R1C2F20$")[0][5] == "-9999"
 
 
 def test_empty_lines_blanks_and_lower_case_do_not_matter():

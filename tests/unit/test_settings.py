@@ -44,6 +44,9 @@ def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
     assert settings_from_lines(["[G12]", text]).tolerance(mm) == tolerance
 
 
+NEEDS_CLAMP = "needs C_CLAMP, whose second code opens the clamp"
+
+
 @pytest.mark.parametrize(
     ("key", "value", "message"),
     [
@@ -53,6 +56,7 @@ def test_the_tolerance_is_in_machine_units(text, mm, tolerance):
         ("POLAR_TOLERANCE", "1_0", "[G12] POLAR_TOLERANCE = 1_0: must be a number from 0.00001"),
         ("C_CLAMP_SHAPES", "M1 M2", "[G12] C_CLAMP_SHAPES = M1 M2: must be an M code such as M12"),
         ("C_CLAMP", "10 11", "[G12] C_CLAMP = 10 11: must be two M codes such as M10 M11"),
+        ("C_CLAMP_SHAPES", "M12", f"[G12] C_CLAMP_SHAPES {NEEDS_CLAMP}"),
         ("POLAR_G0", "feed", "[G12] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0"),
     ],
 )

@@ -111,9 +111,10 @@ class Contour:
     ``radius_tolerance`` is how far an arc's radii at start and end may differ. ``beside`` is the
     tool's distance from the programmed start along the second axis; the first G1 removes it.
 
-    ``side`` is the compensation in force: 40, 41 or 42. ``start`` is the machine's position: by
-    default on a face, at its zero line. ``notes`` are warnings for the operator about a contour
-    that is cut.
+    ``side`` is the compensation in force: 40, 41 or 42. ``mirrored``: the tool of a G41 is on the
+    right, as its radius is below 0, and that of a G42 on the left. ``start`` is the machine's
+    position: by default on a face, at its zero line. ``notes`` are warnings for the operator about
+    a contour that is cut.
     """
 
     def __init__(
@@ -134,7 +135,7 @@ class Contour:
         self.diameter, self.radius_tolerance = diameter, radius_tolerance
         self.elements: list[PathElement] = []
         self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
-        self.side = 40
+        self.side, self.mirrored = 40, False
         self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
@@ -202,6 +203,7 @@ class Contour:
         """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
 
         Call it before the :meth:`line` of the same block. ``radius`` is the tool's, and may be 0.
+        Below 0 it is a size correction: the path is offset by it to the other side.
         """
         self._check_waiting()
         if side == self.side:
@@ -210,7 +212,8 @@ class Contour:
             self.refuse(
                 line, f"G{side}: cancel G{self.side} of line {self._switched_on} with G40 first"
             )
-        self._radius = radius if side != 40 else abs(self._offset)
+        self._radius = abs(radius) if side != 40 else abs(self._offset)
+        self.mirrored = radius < 0.0 if side != 40 else self.mirrored
         self._offset = {40: 0.0, 41: radius, 42: -radius}[side]
         self._switched_on = line
         self._switch = line

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import chain, groupby
+from math import inf
 from typing import NamedTuple, NoReturn
 
 from g12.compensation.compensated import (
@@ -73,8 +74,7 @@ def check_gouges(contour: Contour, cuts: Sequence[PathOfMove], tolerance: float)
 class _OwnWalls:
     def __init__(self, contour: Contour, own: CompensatedContour) -> None:
         self._contour, self._own = contour, own
-        # At the ends of an open contour there may be no material: its ramps may cut there.
-        self._sweep = Sweep([*own.passes, *(own.ramps if own.closing.closed else ())])
+        self._sweep = Sweep(_passes_that_cut(contour, own))
         self._repeating: Pass | None = None  # the one found last that repeats a wall's own pass
         self._has_leads = False
 
@@ -87,7 +87,8 @@ class _OwnWalls:
                 last.line,
                 "cross: taken for the leads of a contour that closes there",
             )
-        for index, points in groupby(own.points(), key=lambda point: point.move_index):
+        points_of_walls = (point for point in own.points() if not self._is_at_seam(point))
+        for index, points in groupby(points_of_walls, key=lambda point: point.move_index):
             gouges = [gouge for point in points for gouge in self._gouges(point)]
             worst = min(gouges, key=lambda gouge: (gouge.lead, gouge.ramp), default=None)
             line = own.moves[index].line
@@ -97,6 +98,14 @@ class _OwnWalls:
                 self._note(line, worst.line, "cut into each other: one is taken for a lead")
         if self._repeating or self._has_leads:  # otherwise what crosses is not machined
             self._check_crossings()
+
+    def _is_at_seam(self, point: WallPoint) -> bool:
+        """Return whether a size correction's leads, from its other side, have to pass a point."""
+        own = self._own
+        if not (self._contour.mirrored and own.closing.closed):
+            return False
+        seam = own.point_at(0.0), own.point_at(inf)
+        return min(abs(point.point - end) for end in seam) < 2.0 * own.radius
 
     def _refuse(self, one: int, other: int) -> NoReturn:
         """Refuse two lines; where one leads to or from a closed contour the side may be wrong."""
@@ -176,6 +185,17 @@ class _OwnWalls:
             if min(before, after) < -deep and max(before, after) > deep:
                 return True
         return False
+
+
+def _passes_that_cut(contour: Contour, own: CompensatedContour) -> list[Pass]:
+    """Return the passes that may gouge the contour's walls.
+
+    At the ends of an open contour there may be no material: its ramps may cut there. With a size
+    correction to the other side the leads come from there, as without one, across the contour.
+    """
+    if contour.mirrored:
+        return [each for each in own.passes if each.move_index in own.walls]
+    return [*own.passes, *(own.ramps if own.closing.closed else ())]
 
 
 def signature(contour: CompensatedContour) -> tuple[float | tuple[int, ...], ...]:

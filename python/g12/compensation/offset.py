@@ -81,7 +81,7 @@ def _with_other_side(
         _centred(trial, others, tolerance)
     except Refusal:
         return refusal
-    codes = sorted({_code(move) for move in others if move.offset})
+    codes = sorted({_code(contour, move) for move in others if move.offset})
     return Refusal(f"{refusal.message}. {' and '.join(codes)}?")
 
 
@@ -93,7 +93,8 @@ def _centred(
     last = steps[-1]
     if last.ramp:
         contour.refuse(
-            last.move.line, f"{_code(last.move)} needs a block of the contour after its G1"
+            last.move.line,
+            f"{_code(contour, last.move)} needs a block of the contour after its G1",
         )
     joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
     joints.append(_Joint(last.parallel.end, last.parallel.end))
@@ -128,7 +129,8 @@ def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Jo
     if a is not None and a.ramp and not b.compensated:
         contour.refuse(
             b.move.line,
-            f"G40 follows {_code(a.move)} of line {a.move.line} with nothing between them to cut",
+            f"G40 follows {_code(contour, a.move)} of line {a.move.line}"
+            " with nothing between them to cut",
         )
     if a is not None and a.compensated and b.compensated:
         return _corner(contour, a, b, tolerance)
@@ -180,8 +182,8 @@ def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
     )
 
 
-def _code(move: PlaneMove) -> str:
-    return "G41" if move.offset > 0.0 else "G42"
+def _code(contour: Contour, move: PlaneMove) -> str:
+    return "G41" if (move.offset > 0.0) != contour.mirrored else "G42"
 
 
 def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:

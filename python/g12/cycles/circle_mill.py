@@ -23,7 +23,8 @@ The plunge point is the centre of a pocket, the -Y point of a perimeter.
 Rules, in the order of the checks. Of a call: V and F above 0, `check_modes`, G 0 or 7, L not 0; of
 a code: `check_modes`, every word known, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R
 required, R above 0; D from 0 to 3, C required, from 0 to 2, in a pocket the pairs that put the
-tool inside; no finish with C0; W known from here or an earlier event, O not below W; Z required;
+tool inside; no finish with C0; W known from here or an earlier event; O, the last one given, not
+below W; Z required;
 K, J, P above 0; a tool with a diameter in the spindle; R with room for it; J in pockets only, and
 not too small; the deepest rough level below W; not too many circles; L not too small.
 
@@ -32,7 +33,7 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 
 from typing import NamedTuple
 
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import number
 from g12.request.common import (
     CLOCKWISE,
@@ -81,13 +82,13 @@ CALL_LETTERS = EntryLetters("W", "O", "C", "L")
 class EventEntries(NamedTuple):
     """An event as its front end read it; entries that both share are still among the words.
 
-    ``plane`` is the first reference plane last commanded (None: none was), ``finish`` the
-    finish dimension L (0: no finish), ``bottom`` whether it is for the bottom as well.
+    ``planes`` are the reference planes as last commanded, ``finish`` is the finish dimension L (0:
+    no finish), ``bottom`` whether it is for the bottom as well.
     """
 
     words: Words
     letters: EntryLetters
-    plane: float | None
+    planes: EventPlanes
     pocket: bool
     finish: float
     bottom: bool
@@ -105,19 +106,19 @@ class EventCircle(NamedTuple):
     finish_arc: int
 
 
-def plan_code(words: Words, plane: float | None, pocket: bool) -> CyclePlan:
+def plan_code(words: Words, planes: EventPlanes, pocket: bool) -> CyclePlan:
     """Return the event of a code block (G12.2, or G13.2: ``pocket``), or raise `Refusal`.
 
-    ``plane`` is the first reference plane last commanded, None if there is none.
+    ``planes`` are the reference planes as last commanded.
     """
     check_modes(words)
     words.check_known(EVENT_WORDS)
     finish, bottom = finish_of_code(words)
     feed = words.context.feed
-    return plan_event(EventEntries(words, CODE_LETTERS, plane, pocket, finish, bottom, feed))
+    return plan_event(EventEntries(words, CODE_LETTERS, planes, pocket, finish, bottom, feed))
 
 
-def plan_call(words: Words, plane: float | None) -> CyclePlan:
+def plan_call(words: Words, planes: EventPlanes) -> CyclePlan:
     """Return the event of one ``o<circle_mill> call``, or raise `Refusal`."""
     finish_feed = finish_feed_of_call(words)
     feed = words.take_positive("F") or words.context.feed
@@ -128,7 +129,8 @@ def plan_call(words: Words, plane: float | None) -> CyclePlan:
         raise words.refuse_word("G", cycle, "must be 0 (perimeter) or 7 (pocket)")
     finish, bottom = finish_of_call(words)
     pocket, finish_feed = cycle == POCKET_CYCLE, finish_feed or feed
-    return plan_event(EventEntries(words, CALL_LETTERS, plane, pocket, finish, bottom, finish_feed))
+    entries = EventEntries(words, CALL_LETTERS, planes, pocket, finish, bottom, finish_feed)
+    return plan_event(entries)
 
 
 def entries_by_letter(values: list[float]) -> dict[str, float]:
@@ -165,7 +167,8 @@ def finish_of_call(words: Words) -> tuple[float, bool]:
 def plan_event(entries: EventEntries) -> CyclePlan:
     words, context = entries.words, entries.words.context
     circle = circle_of(entries)
-    first_plane, second_plane = planes_of(entries)
+    first_plane, commanded_second = planes_of(entries)
+    second_plane = first_plane if commanded_second is None else commanded_second
     depth = words.require("Z", "the final depth")
     peck = words.take_positive("K")
     width = words.take_positive("J")
@@ -195,6 +198,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
         position | roughing | depths | side | feeds,
         CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
         uncut_material(words, roughing["roughing_width"], tool),
+        commanded_planes=EventPlanes(first_plane, commanded_second),
     )
 
 
@@ -228,22 +232,22 @@ def circle_of(entries: EventEntries) -> EventCircle:
     return EventCircle(x, y, radius, side, rough_arc, finish_arc)
 
 
-def planes_of(entries: EventEntries) -> tuple[float, float]:
-    """Return the reference planes W, modal, and O, which is W unless the block has it."""
-    words, letters = entries.words, entries.letters
-    first, second = words.take(letters.first_plane), words.take(letters.second_plane)
-    if first is None:
-        first = entries.plane
+def planes_of(entries: EventEntries) -> tuple[float, float | None]:
+    """Return the reference planes W and O, both modal; no O (None) was ever commanded."""
+    words, letters, earlier = entries.words, entries.letters, entries.planes
+    first, given = words.take(letters.first_plane), words.take(letters.second_plane)
+    first = earlier.first if first is None else first
+    second = earlier.second if given is None else given
     if first is None:
         raise words.refuse(
             f"{letters.first_plane} is missing: the first reference plane,"
             " which no earlier event has commanded"
         )
-    if second is None:
-        second = first
-    if second < first - words.context.rounding:
+    if second is not None and second < first - words.context.rounding:
         plane = f"{letters.first_plane}{number(first)}"
         rule = f"must not be below the first reference plane {plane}"
+        if given is None:
+            rule += f": it is that of an earlier event, give a new {letters.second_plane}"
         raise words.refuse_word(letters.second_plane, second, rule)
     return first, second
 

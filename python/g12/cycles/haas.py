@@ -46,7 +46,7 @@ def plan_pocket(
     words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
-    context, other = words.context, other_cutter(words, words.context.last_radius)
+    context, other = words.context, other_cutter(words, words.context.last_cutter)
     check_modes(words)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
@@ -82,8 +82,31 @@ def plan_pocket(
     message = upward(words, depth)
     message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
-    radius = cutter.radius if with_d else None
-    return CyclePlan(numbers | links | down, extent, message, other, radius)
+    commanded = cutter if with_d else None
+    kept = None if with_d else kept_cutter(words, cutter)
+    return CyclePlan(numbers | links | down, extent, message, other, commanded, kept_cutter=kept)
+
+
+def kept_cutter(words: Words, cutter: Tool) -> str | None:
+    """Return the operator message of a block without D whose cutter the program does not show.
+
+    It may be that of an older line of the tool table, or depend on what ran before.
+    """
+    context, before = words.context, "the D of what ran before"
+    size = context.tool_size(2 * cutter.radius)
+    named = context.tool_in_table(cutter.number) if cutter.number else None
+    if named and abs(named.radius - cutter.radius) > context.rounding:
+        now = context.tool_size(2 * named.radius)
+        return (
+            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
+            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
+        )
+    if not context.d_is_earlier():
+        return None
+    counts = f"{before} counts, diameter {size}"
+    if context.last_cutter is None:
+        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
+    return f"{words.code}: no D above this block in the program: {counts}. Give D"
 
 
 def links_outward(
@@ -105,8 +128,8 @@ def choose_cutter(words: Words) -> tuple[Tool, str]:
     context, tool = words.context, commanded_tool(words)
     if tool is not None:
         return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
-    if context.last_radius is not None:
-        return Tool(0, context.last_radius), "the D last commanded"
+    if context.last_cutter is not None:
+        return context.last_cutter, "the D last commanded"
     if context.spindle_tool is None:
         raise words.refuse("D is missing, none was commanded before and no tool is loaded")
     source = f"T{context.spindle_tool.number} in the spindle"

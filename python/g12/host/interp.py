@@ -31,19 +31,15 @@ class PackageState:
     """The package's state of one interpreter, stored on the interpreter object.
 
     ``modes`` are those that a cycle has to restore, ``feed`` the F before a shape, ``path`` the
-    path control and ``spindle`` the number of the spindle in use before holes. ``radius_commanded``
-    distinguishes a D of radius 0 from no D at all, which the interpreter's own last compensation
-    radius does not. ``first_plane`` is the circle mill's modal reference plane in mm, with the
-    program that commanded it and its time of change. ``shown`` are the messages that are shown once
-    for each program. ``source`` is the file of the last section. ``modes_before_face`` is the block
-    that restores them, ``by_hand`` the G12.1 in MDI, ``accelerations`` those of X and Y in the INI.
+    path control and ``spindle`` the number of the spindle in use before holes. ``shown`` are the
+    messages that are shown once for each program. ``source`` is the file of the last section.
+    ``modes_before_face`` is the block that restores them, ``by_hand`` the G12.1 in MDI,
+    ``accelerations`` those of X and Y in the INI.
     """
 
     def __init__(self) -> None:
         self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
         self.feed, self.path, self.spindle = 0.0, "", 0
-        self.radius_commanded = False
-        self.first_plane: tuple[float, tuple[str, int] | None] | None = None
         self.shown: set[object] = set()
         self.texts: dict[str, str] = {}
         self.source: Any = None

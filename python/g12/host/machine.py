@@ -18,6 +18,7 @@ from g12.machine_ini import (
     code_of_prolog,
     coordinates_of,
     face_of,
+    m_codes_of,
     ranges_of,
     remap_lines,
 )
@@ -64,6 +65,11 @@ class RunningMachine:
     @functools.cached_property
     def remaps(self) -> dict[str, Remap]:
         return {remap.code: remap for remap in remap_lines(self._ini.findall)}
+
+    @functools.cached_property
+    def m_codes(self) -> frozenset[int]:
+        """The numbers of the M codes that the machine has besides LinuxCNC's."""
+        return m_codes_of(self._ini.find, self.remaps.values())
 
     @functools.cached_property
     def coordinates(self) -> set[str]:

@@ -49,7 +49,10 @@ def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
 
 
 class LineOfFile(int):
-    """The number of a line in another file than the section's: ``3 of flat.ngc``."""
+    """The number of a line in another file than the section's: ``3 of flat.ngc``.
+
+    It is equal to no line of another file.
+    """
 
     file: str
 
@@ -57,6 +60,15 @@ class LineOfFile(int):
         number = super().__new__(cls, line)
         number.file = file
         return number
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, LineOfFile) and (int(self), self.file) == (int(other), other.file)
+
+    def __ne__(self, other: object) -> bool:  # that of int would compare the numbers alone
+        return not self == other
+
+    def __hash__(self) -> int:
+        return hash((int(self), self.file))
 
     def __format__(self, spec: str) -> str:
         """Return the number and the file's name, shortened to leave room for the rule."""

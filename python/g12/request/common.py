@@ -82,18 +82,19 @@ def loaded_tool(words: Words) -> Tool:
     return tool
 
 
-def other_cutter(words: Words, last_radius: float | None = None) -> str | None:
+def other_cutter(words: Words, last: Tool | None = None) -> str | None:
     """Return the operator message where D is not the loaded tool by more than wear, or None.
 
-    The cycle uses D: the loaded tool may be the mistake. Without D ``last_radius`` counts. There is
-    no comparison without a tool, or with one without a diameter.
+    The cycle uses D: the loaded tool may be the mistake. Without D the ``last`` one counts. There
+    is no comparison without a tool, or with one without a diameter.
     """
     d_word, context = words.value("D"), words.context
     named = context.tool_in_table(round(d_word)) if d_word else None
-    radius = named.radius if named else last_radius if d_word is None else None
+    counting = named or (last if d_word is None else None)
     loaded = context.spindle_tool
-    if not radius or loaded is None or loaded.radius <= 0:
+    if not counting or not counting.radius or loaded is None or loaded.radius <= 0:
         return None
+    radius = counting.radius
     if abs(radius - loaded.radius) <= WEAR * loaded.radius:
         return None
     source = f"D{named.number}" if named else "the D last commanded"

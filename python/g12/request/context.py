@@ -23,10 +23,11 @@ class Context(NamedTuple):
 
     Position is in the active work coordinate system, tool offset applied, X as a radius.
     ``speed`` is the commanded spindle speed in rpm. ``offset_pending``: G40 came after the last
-    move, and the tool is still offset from the programmed point by its radius. ``last_radius`` is
-    the cutter radius of the last D commanded (None: none ever was), ``tool_in_table(n)`` gives tool
-    n or None. ``unit`` is the program's where the machine has another, "mm" or "in": for sizes of
-    the tool table in messages.
+    move, and the tool is still offset from the programmed point by its radius. ``last_cutter`` is
+    that of the last D commanded (None: none ever was), tool 0 where its number is not known;
+    ``d_is_earlier()`` tells whether this run of the program has not commanded it.
+    ``tool_in_table(n)`` gives tool n or None. ``unit`` is the program's where the machine has
+    another, "mm" or "in": for sizes of the tool table in messages.
     """
 
     inch: bool
@@ -42,7 +43,8 @@ class Context(NamedTuple):
     compensated: bool
     offset_pending: bool
     spindle_tool: Tool | None
-    last_radius: float | None
+    last_cutter: Tool | None
+    d_is_earlier: Callable[[], bool]
     tool_in_table: Callable[[int], Tool | None]
     unit: str = ""
 

@@ -3,7 +3,7 @@
 
 An event is one line: ``N1800(4)G7X1.5Y2.Z-.5W.1O.5R1.5D0C2K.2J.3L.02P5F20V15$``, that is block
 number, event type, entries, end mark. A ``/`` after a letter marks an incremental entry. Each
-becomes one ``o<circle_mill> call``; W and F are modal and carried from event to event. A control
+becomes one ``o<circle_mill> call``; W, O and F are modal and carried from event to event. A control
 with auxiliary axes W and C writes I for W and H for C.
 
 Rules: every line is empty or an event of type 4; no entry twice, by either of its letters; X, Y,
@@ -36,7 +36,8 @@ ENTRY = re.compile(
 CIRCLE_MILL = "4"
 OTHER_LETTERS = {"I": "W", "H": "C"}  # of a control with auxiliary axes W and C
 REQUIRED = "XYZRC"
-MODAL = "WF"
+MODAL = "WOF"
+NEEDED = "WF"  # of them, in the first event
 INCREMENTAL = "XYZL"
 POSITIVE = "RKJPFV"
 ALLOWED_VALUES = {
@@ -119,7 +120,7 @@ def entries_of_event(text: str) -> dict[str, WrittenEntry]:
 def broken_rules(entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
     """Yield the rules that an event's entries break."""
     yield from (f"{letter} is missing" for letter in REQUIRED if letter not in entries)
-    missing = (letter for letter in MODAL if letter not in entries)
+    missing = (letter for letter in NEEDED if letter not in entries)
     yield from (f"{letter} is missing, and no event before has it" for letter in missing)
     for letter, entry in entries.items():
         yield from broken_by_entry(letter, entry)

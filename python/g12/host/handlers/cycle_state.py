@@ -11,6 +11,8 @@ import itertools
 
 from interpreter import MODE_INCREMENTAL
 
+from g12.cycles.plan import EventPlanes
+from g12.host.commanded import commanded_of, compensates_above, place_of_block
 from g12.host.interp import (
     INVERSE_TIME,
     PER_REVOLUTION,
@@ -21,7 +23,7 @@ from g12.host.interp import (
     words_in,
 )
 from g12.host.machine import MACHINE
-from g12.host.messages import code_of_block, main_program
+from g12.host.messages import code_of_block
 from g12.host.modes import (
     INCH_UNITS,
     diameter_mode,
@@ -32,7 +34,7 @@ from g12.host.modes import (
     tool_in_spindle,
     tool_of_entry,
 )
-from g12.lengths import converts
+from g12.lengths import ROUNDING_MM, converts
 from g12.request.context import Context, Tool
 from g12.request.travel import CycleExtent, MachineFrame, check_travel
 from g12.request.words import Words
@@ -112,37 +114,49 @@ def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     return None
 
 
-def last_radius(interp: Interp) -> float | None:
-    """Return the cutter radius of the last D commanded, by a cycle or by G41/G42.
+def last_cutter(interp: Interp) -> Tool | None:
+    """Return the cutter of the last D commanded, by a cycle or by G41/G42: tool 0.
 
     The interpreter's compensation radius remains after G40 and is converted by G20/G21. The cycles
     store their D there too: one register, as on the control.
     """
-    state, radius = state_of(interp), interp.cutter_comp_radius
-    state.radius_commanded = state.radius_commanded or radius > 0
-    return radius if state.radius_commanded else None
+    commanded, unit = commanded_of(interp), millimetres_per_unit(interp)
+    cutter, radius = commanded.cutter, interp.cutter_comp_radius * unit
+    if cutter is None and radius <= 0.0:
+        return None
+    if cutter is None or abs(cutter.radius - radius) > ROUNDING_MM:
+        cutter = commanded.cutter = Tool(0, radius)
+    return Tool(cutter.number, interp.cutter_comp_radius)
 
 
-def remember_radius(interp: Interp, radius: float) -> None:
-    interp.cutter_comp_radius = radius
-    state_of(interp).radius_commanded = True
+def remember_cutter(interp: Interp, cutter: Tool) -> None:
+    interp.cutter_comp_radius = cutter.radius
+    in_mm = cutter._replace(radius=cutter.radius * millimetres_per_unit(interp))
+    commanded_of(interp).remember_cutter(in_mm, place_of_block(interp))
 
 
-def first_plane(interp: Interp) -> float | None:
-    """Return the circle mill's first reference plane as last commanded by this program.
+def d_is_earlier(interp: Interp) -> bool:
+    """Return whether the D last commanded, if any, is not this run's."""
+    place = place_of_block(interp)
+    return not commanded_of(interp).gives_d(place) and not compensates_above(place)
+
+
+def event_planes(interp: Interp) -> EventPlanes:
+    """Return the circle mill's reference planes as last commanded by this program.
 
     A plane of another program, or of the text before an edit, would send the tool to a height that
     this program does not contain.
     """
-    plane = state_of(interp).first_plane
-    if plane is None or plane[1] != main_program(interp):
-        return None
-    return plane[0] / millimetres_per_unit(interp)
+    commanded = commanded_of(interp)
+    place = commanded.planes_place
+    if place is None or not place.reaches(place_of_block(interp)):
+        return EventPlanes()
+    return commanded.planes.scaled(1 / millimetres_per_unit(interp))
 
 
-def remember_first_plane(interp: Interp, height: float) -> None:
-    plane = height * millimetres_per_unit(interp), main_program(interp)
-    state_of(interp).first_plane = plane
+def remember_planes(interp: Interp, planes: EventPlanes) -> None:
+    in_mm = planes.scaled(millimetres_per_unit(interp))
+    commanded_of(interp).remember_planes(in_mm, place_of_block(interp))
 
 
 def snapshot(interp: Interp) -> Context:
@@ -160,7 +174,8 @@ def snapshot(interp: Interp) -> Context:
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
         spindle_tool=tool_in_spindle(interp),
-        last_radius=last_radius(interp),
+        last_cutter=last_cutter(interp),
+        d_is_earlier=functools.partial(d_is_earlier, interp),
         tool_in_table=functools.partial(tool_in_table, interp),
         unit=other_unit(interp),
     )

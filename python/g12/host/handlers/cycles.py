@@ -38,8 +38,12 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     tool = words.context.spindle_tool
     if plan.other_cutter and tool:
         messages.message_once(interp, tool.number, plan.other_cutter)
-    if plan.commanded_radius is not None:
-        cycle_state.remember_radius(interp, plan.commanded_radius)
+    if plan.commanded_cutter:
+        cycle_state.remember_cutter(interp, plan.commanded_cutter)
+    if plan.kept_cutter:
+        messages.message_once(interp, plan.kept_cutter, plan.kept_cutter)
+    if plan.commanded_planes:
+        cycle_state.remember_planes(interp, plan.commanded_planes)
     if plan.message:
         messages.message(plan.message)
     return INTERP_OK
@@ -73,17 +77,15 @@ def prepare_mitsubishi(interp: Interp, arc: int) -> int:
 
 def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     """Check the event of a code block, or of the call if the code is in o<circle_mill>."""
-    words, plane = cycle_state.words_of_block(interp), cycle_state.first_plane(interp)
+    words, planes = cycle_state.words_of_block(interp), cycle_state.event_planes(interp)
     entries = cycle_state.entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))
     if entries is None:
-        plan = circle_mill.plan_code(words, plane, pocket)
+        plan = circle_mill.plan_code(words, planes, pocket)
     else:
         words.check_known("no words inside o<circle_mill>")
         words = Words("circle_mill", circle_mill.entries_by_letter(entries), words.context)
-        plan = circle_mill.plan_call(words, plane)
-    status = hand_over(interp, words, plan)
-    cycle_state.remember_first_plane(interp, plan.locals["first_plane"])
-    return status
+        plan = circle_mill.plan_call(words, planes)
+    return hand_over(interp, words, plan)
 
 
 def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:

@@ -17,7 +17,7 @@ from g12.host.handlers.polar import polar_section_setup
 from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.section.kind import check_ini, clamp_codes
+from g12.host.section.kind import check_clamp, check_ini
 from g12.host.section.output import STOP_HERE, path_control
 from g12.host.section.start import is_alone, start_of_section
 from g12.moves.setup import SectionSetup
@@ -85,7 +85,8 @@ def shape_locals(
 def hole_locals(
     interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
 ) -> dict[str, float]:
-    close, opens = clamp_codes(entries.refuse, MACHINE.settings.c_clamp) or (0, 0)
+    check_clamp(entries.refuse)
+    close, opens = MACHINE.settings.c_clamp or (0, 0)
     machine, (_, planner) = hole_machine(interp, start, setup), HOLE_CALLS[entries.code]
     plan = planner(entries, machine)
     stay_in_travel(entries, plan.extent, setup)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Generic, NamedTuple
 
 import emccanon
@@ -29,7 +29,6 @@ from g12.section.codes import SectionCodes
 from g12.section.line import line_named, with_line
 from g12.section.start import SectionStart
 
-UNREMAPPED_M_CODES = (*range(3, 10), *range(100, 200))  # those of LinuxCNC and of M1xx files
 TYPED = 1  # call level of a block outside any sub
 REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
 NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
@@ -101,14 +100,11 @@ def report_turns(interp: Interp, turned: float) -> None:
         messages.message_once(interp, "turns", text)
 
 
-def clamp_codes(refuse: Callable[[str], Refusal], codes: Sequence[int]) -> Sequence[int]:
-    """Return M codes of C's clamp; refuse those that this LinuxCNC cannot know."""
-    for code in codes:
-        if f"M{code}" not in MACHINE.remaps and code not in UNREMAPPED_M_CODES:
-            raise refuse(f"[G12] C_CLAMP: M{code} is no code of this machine: a REMAP line?")
-    if codes and not MACHINE.settings.c_clamp:
-        raise refuse("[G12] C_CLAMP_SHAPES needs C_CLAMP, whose second code opens the clamp")
-    return codes
+def check_clamp(refuse: Callable[[str], Refusal]) -> None:
+    """Refuse codes of C's clamp that LinuxCNC would not know when it comes to them."""
+    unknown = MACHINE.settings.unknown_clamp_code(MACHINE.m_codes)
+    if unknown:
+        raise refuse(unknown)
 
 
 def _section(
@@ -119,7 +115,7 @@ def _section(
     if face_in_force(interp):
         raise start.location.refuse("the face is on already, by hand: G13.1 first")
     setup = kind.setup(start)
-    drag = clamp_codes(start.location.refuse, MACHINE.settings.c_clamp_shapes)
+    check_clamp(start.location.refuse)
     output = SectionOutput(interp, start, setup, absolute=MODE_ABSOLUTE, canon=emccanon)
     return Section(
         kind.codes(start.location.code),
@@ -128,5 +124,5 @@ def _section(
         frame,
         SectionReader(interp, start, setup.words, program),
         output,
-        first="".join(f"M{code}" for code in drag),
+        first="".join(f"M{code}" for code in MACHINE.settings.c_clamp_shapes),
     )

@@ -18,6 +18,7 @@ from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.errors import number
+from g12.host import messages
 from g12.host.interp import (
     PER_MINUTE,
     PER_REVOLUTION,
@@ -37,6 +38,7 @@ from g12.section.start import SectionStart, WordRules
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 SECTION_MOTIONS = (block_rules.G0, block_rules.G1, block_rules.G2, block_rules.G3)
+WITHOUT_COMPENSATION = 40
 MOST_FEED = 1e9  # program units per minute
 
 SECTION_WORDS, PLAIN_LETTERS = "XCZIJRKFSPQLE", "XCZIJR"
@@ -198,7 +200,7 @@ class SectionReader:
     def move(self, line: TextLine, block: SectionBlock) -> None:
         """Add the block's motion and compensation, and queue the stop after it."""
         if line.exact_stop:
-            self.exact_lines.add(self.program.line)
+            self.exact_lines.add(self.program.shown_line)
         if block.moves:
             self._separate()
         if block.g[GGroup.COMPENSATION] != NO_CODE:
@@ -309,17 +311,28 @@ class SectionReader:
         return feed
 
     def _compensate(self, side: int) -> None:
+        radius = 0.0 if side == WITHOUT_COMPENSATION else self._tool_radius(side)
+        self.contour.compensation(side, radius, line=self.program.shown_line)
+
+    def _tool_radius(self, side: int) -> float:
+        """Return the loaded tool's radius; below 0 it is a correction to the other side."""
         radius = self.start.tool_radius
         if radius is None:
             raise self.location.refuse(
                 f"G{side} needs a tool in the spindle: its radius is compensated"
             )
-        if radius < 0:
-            diameter = number(2 * radius)
-            raise self.location.refuse(
-                f"G{side}: the loaded tool has the negative diameter {diameter} in the tool table"
-            )
-        self.contour.compensation(side, radius, line=self.program.shown_line)
+        if radius < 0.0:
+            self._report_other_side(radius)
+        return radius
+
+    def _report_other_side(self, radius: float) -> None:
+        """Show the operator, once a program, that a size correction is beyond the contour."""
+        text = (
+            f"{self.start.location.code}: the loaded tool has the negative diameter "
+            f"{number(2 * radius)} in the tool table: G41 offsets the path by {number(-radius)} "
+            "to the right, G42 to the left"
+        )
+        messages.message_once(self.interp, text, text)
 
     def _state_code(self, code: int) -> None:
         """Execute M70 to M73: here for the section's modes, between the moves for the machine's."""

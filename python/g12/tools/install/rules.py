@@ -11,7 +11,7 @@ from pathlib import Path
 
 from g12.errors import LONGEST_BLOCK, Refusal
 from g12.ini_sections import INCLUDE, entries_of, key_and_value
-from g12.machine_ini import remap_from_value
+from g12.machine_ini import m_codes_of, remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
@@ -322,10 +322,14 @@ def handlers_hidden(config: Config) -> Iterator[ConfigFinding]:
 def wrong_values(config: Config) -> Iterator[ConfigFinding]:
     """Find settings that are a start-up error, and values that the other commands refuse."""
     try:
-        settings_from_lines(config.ini.lines)
+        settings = settings_from_lines(config.ini.lines)
+        remaps = (remap for _, remap in config.remaps)
+        codes = m_codes_of(config.ini.get, remaps, config.ini.directory)
+        wrong = settings.unknown_clamp_code(codes)
     except Refusal as refusal:
-        cure = f"correct the line in [{INI_SECTION}]: {SETTINGS_PAGE}"
-        yield problem("setting", refusal.message, cure)
+        wrong = refusal.message
+    if wrong:
+        yield problem("setting", wrong, f"correct the line in [{INI_SECTION}]: {SETTINGS_PAGE}")
     try:
         limits_of(config.ini)
     except IniError as refused:

@@ -5,20 +5,16 @@ A control says ``clamp C``, ``C axis on`` and ``M3 $live``; the INI defines the 
 them. A machine without a clamp, or whose C is always an axis, needs none.
 """
 
-import os
-import re
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-from g12.machine_ini import Remap, remap_lines
+from g12.machine_ini import Remap, m_codes_of, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
 
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
-USER_M_CODE = re.compile(r"M(1[0-9]{2})")
 REFUSE_LIVE_TOOL = (
     "refuse: it is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's spindle that "
     "drives the tool (install --with programs-… sets it)"
@@ -35,6 +31,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
     holes: dict[str, Any] = {"clamp": " ".join(clamp)} if clamp else {}
     holes |= {"spindle": int(live)} if live else {}
     of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}
+    m_codes = m_codes_of(ini.get, remaps, ini.directory)
     polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))
     cylinder = _code_of(remaps, "cylinder_mode", "G")
     return replace(
@@ -44,7 +41,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
             **control.tables,
             **{n: {**control.tables.get(n, {}), **t} for n, t in of_machine.items()},
         },
-        machine_codes=_machine_codes(ini, remaps),
+        machine_codes=frozenset(f"M{code}" for code in m_codes),
         live_spindle=live,
         polar_codes=polar if all(polar) else control.polar_codes,
         cylinder_code=(cylinder, settings.cylinder_word) if cylinder else control.cylinder_code,
@@ -77,18 +74,3 @@ def _meaning_here(meaning: str, own_codes: dict[str, str], live: str) -> str:
     first = live == "0"
     texts = {"$live": "" if first else f"${live}", "$all": "" if first else "$-1"}
     return " ".join(filter(None, (texts.get(text, text) for text in meaning.split())))
-
-
-def _machine_codes(ini: Ini, remaps: Sequence[Remap]) -> frozenset[str]:
-    """Return the machine's M codes besides LinuxCNC's: REMAP lines and M1xx files."""
-    numbers = (remap.number for remap in remaps)
-    remapped = {f"M{tenths // 10}" for letter, tenths in numbers if letter == "M"}
-    names = [ini.get("DISPLAY", "PROGRAM_PREFIX"), ini.get("RS274NGC", "USER_M_PATH")]
-    paths = [path for name in names if name for path in name.split(":")]
-    folders = [ini.directory / os.path.expanduser(path) for path in paths]
-    files = [file for folder in folders if folder.is_dir() for file in folder.iterdir()]
-    return frozenset(remapped | {file.name for file in files if _is_code(file)})
-
-
-def _is_code(file: Path) -> bool:
-    return bool(USER_M_CODE.fullmatch(file.name)) and os.access(file, os.X_OK)

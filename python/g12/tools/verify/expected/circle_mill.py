@@ -38,9 +38,10 @@ class EventWords(CircleWords):
     feed: float | None
 
     @classmethod
-    def of(cls, view: BlockInMm, entries: Entries, plane: float, cutter: float) -> Self:
-        """Return the event of a block; ``plane`` is W in program coordinates."""
-        level, base = view.position("z"), 0.0 if view.absolute else plane
+    def of(cls, view: BlockInMm, entries: Entries, cutter: float) -> Self:
+        """Return the event of a block; W and O, which are modal, are among its entries."""
+        level, plane = view.position("z"), entries["W"]
+        base = 0.0 if view.absolute else plane
         levels = {"W": plane - level, "Z": entries["Z"] + base - level}
         levels |= {"O": entries["O"] - level} if "O" in entries else {}
         return cls(

@@ -55,8 +55,12 @@ def contour_path(
 ) -> list[ContourStep]:
     """Return the path of the tool's centre along elements; it begins at a height.
 
-    ``radius`` is the tool's, ``tolerance`` is POLAR_TOLERANCE; all in mm.
+    ``radius`` is the tool's, ``tolerance`` is POLAR_TOLERANCE; all in mm. A radius below 0 corrects
+    the size to the other side.
     """
+    if radius < 0.0:
+        elements = [replace(each, side=-each.side) for each in elements]
+        radius = -radius
     if not radius or not any(each.side for each in elements):
         return list(as_programmed(elements, height))
     elements = list(without_short(elements, SHORT * tolerance))

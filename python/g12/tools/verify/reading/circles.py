@@ -138,7 +138,7 @@ class CircleReader:
     offset: float | None = None  # radius of the D last commanded, mm
     number: int | None = None  # the tool that it named
     diameters: Mapping[int, float] = field(default_factory=dict)  # in the block
-    plane: float = 0.0  # W last commanded, mm in program coordinates
+    planes: Mapping[str, float] = field(default_factory=dict)  # W and O last commanded, mm
 
     def targets(self, blocks: Sequence[Block]) -> Iterator[tuple[Block, Target]]:
         """Yield each block that cuts a circle, and its target."""
@@ -174,8 +174,8 @@ class CircleReader:
         if cycle.dialect == EVENT:
             is_pocket = cycle.handler == POCKET_HANDLER
             entries = entries_of_code(view, is_pocket) if cycle.handler else entries_of_call(view)
-            self.plane = entries.get("W", self.plane)
-            return EventWords.of(view, entries, self.plane, offset)
+            self.planes = {**self.planes, **{k: v for k, v in entries.items() if k in "WO"}}
+            return EventWords.of(view, {**self.planes, **entries}, offset)
         actual = next((move.turns for move in own if move.kind == "arc"), 1)
         return WORDS[cycle.dialect].of(view, cycle.turn or actual, offset, self.ini)
 

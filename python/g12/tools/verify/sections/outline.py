@@ -134,7 +134,7 @@ def vectors(points: Sequence[complex] | np.ndarray) -> list[tuple[float, float]]
 
 def judge_side(section: SectionContour, tool: float) -> Iterator[Finding]:
     """Yield each compensation that takes the tool (a radius) to the side it does not come from."""
-    stretches = stretches_of(section) if tool else []
+    stretches = stretches_of(section) if tool > 0.0 else []
     for before, stretch in zip(stretches, stretches[1:]):
         if before[-1].ramp and before[-1].side and not stretch[0].ramp:
             outline = Outline(stretch)
