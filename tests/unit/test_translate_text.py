@@ -79,7 +79,12 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "G81 X1. Z-.5 R.1 Q.1 P500 F8.", ["G81 X1. Z-.5 R.1 F8. (Q.1)(P0.5)"]),
     (HAAS, "G81 X1. Z-.5 R.1 P500 Q.1 F8.", ["G81 X1. Z-.5 R.1 F8. (P0.5)(Q.1)"]),
     (HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.",
-     ["G0 X1. (A0.: no A here)(B0: no B here)", "(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]),
+     ["G0 X1. (A0.)(B0)", "(A0.)", "G1 Y1. F5. (A0)"]),
+    (HAAS, "G28 A0.\nG53 A0.\nG91 G28 A0.\nG90 G92 A0.\nG52 A0.\nG10 L2 P1 A0.\nG154 P1 A0", [
+        "G49 (G28)(A0.)", "(G53)(A0.)", "G91 G49 (G28)(A0.)", "G90 (G92)(A0.)", "(G52)(A0.)",
+        "(G10 L2 P1)(A0.)",
+    ]),
+    (HAAS, "G81 X0 Y0 Z-1. R.1 A0. F5.\nG80 A0.", ["G81 X0 Y0 Z-1. R.1 F5. (A0.)", "G80 (A0.)"]),
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103", ["(G187 P1 E.01)", "(G103 P1)", "(G103)"]),
     (FANUC, "G5.1 Q1\nG8 P1\nG5.1 Q0", ["(G5.1 Q1)", "(G8 P1)", "(G5.1 Q0)"]),
@@ -309,8 +314,8 @@ LAST = [  # control, text, how the sentence about its last line begins
     (LATHE, "G21 G10.9 X0\nG90 X9. Z1. F9.", "a turning cycle where X words are radii"),
     (control_of("doosan-lathe"), "S9 M3 P13", "P13: no spindle of the machine: there are P11, P12"),
     *((HAAS, f"G0 F5.\n{block}", f"{block[-3:]}: this control's machine has the axes XYZ")
-      for block in ("G28 A0.", "G53 A0.", "G91 G28 A0.", "G92 A0.", "#1=0\nG0 A#1",
-                    "G81 X0 Z-1. R.1\nA0.")),
+      for block in ("#1=0\nG0 A#1", "G81 X0 Z-1. R.1\nA0.", "G10 L2 P1 X1. A5.",
+                    "G10 L20 P1 X1. A5.", "G52 X1. A5.", "G154 P1 X1. A5.")),
     # C beside a slide
     *((LATHE, f"G21 G98 G0 X50. Z5.\n{text}", start) for text, start in [
         ("G1 X40. C30. F100.", "C beside a slide at a feed: its time depends"),
@@ -526,7 +531,7 @@ def test_a_position_of_g28_that_was_never_set_is_reported(machine_of, tmp_path):
 
 def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     text = "G21\nM51\nG5.3 Y3.\nM52 M14\nG0 X1\nM30\n"
-    missing = translate_program(text, replace(OKUMA, machine_codes=frozenset(("M14",)))).missing
+    missing = translate_program(text, OKUMA).missing
     choices = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
     assert [line for line in missing if line[0] != "["] == [
         'axes = "XZCY"', 'decimals = "least" # or "whole"', f'"G5.3" = {choices}',
@@ -535,6 +540,8 @@ def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     own = tmp_path / "own.toml"
     own.write_text('based_on = "okuma-lathe"\n' + "\n".join(missing).replace("…", "comment"))
     assert translate_program(text.replace("X1", "X1."), read_control(str(own))).missing == []
+    here = translate_program(text, replace(OKUMA, machine_codes=frozenset())).missing
+    assert f"M14 = {choices}" in here and 'axes = "XZCY"' not in here  # the INI says its axes
 
 
 # ---------------------------------------------------------------- the order of programs
