@@ -134,6 +134,15 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G1 X45.\nG28 U0 W0", "G1 X45\nG53 G0 X0 Z0\nG1"),
     ("fanuc-lathe", "G1 X45.\nG30 U2. W1.", "G1 X45\nG0 X47 Z6\nG53 X0 Z0\nG1"),
     ("fanuc-lathe", "T0101\nT0100", "T1 M6 M3\nG49"),
+    # T0102: tool 1 with the length and the radius of offset 2, in cycles as well
+    ("fanuc-lathe", "T0102\nG0 X80. Z20.\nG1 G42 X40. Z10.\nZ-20.\nG40 X80.",
+     "T1 M6 G43 H2 M3\nG0 X80 Z20\nG1 G42 D2 X40 Z10\nZ-20\nG40 X80"),
+    ("fanuc-lathe", "T0102\nG0 X80. Z20.\nG70 P1 Q2\nN1 G0 G42 X40. Z10.\nN2 G1 Z-20.\nG0 X90.",
+     "T1 M6 G43 H2 M3\nG0 X80 Z20\nG42 D2 X40 Z10\nG1 Z-20\nG40 G0 X80\nZ20\nX90"),
+    ("fanuc-lathe", "T0102\nG0 X100. Z20.\nG1 G42 X80.\nG71 U20. R1.\nG71 P1 Q2\nN1 G0 X40.\n"
+     "N2 G1 Z-20.\nG1 X60. Z10.\nZ-20.\nG40 X80.",
+     "T1 M6 G43 H2 M3\nG0 X100 Z20\nG1 G42 D2 X80\nG40\nG0 X40\nG1 Z-20\nG0 X80\nZ20\n"
+     "G42 D2\nG1 X60 Z10\nZ-20\nG40 X80"),
     ("fanuc-lathe", "G50 S900\nG96 S100 M3\nX45.\nG97 S50 M5\nX46.",
      "(G50)\nG96 D900 S100 M3\nX45\nG97 S50 M5\nX46"),
     ("fanuc-lathe", "G50 X10. Z0\nX20.\nG50 X60. Z5.", "G0 X60\nG92 X60 Z5"),

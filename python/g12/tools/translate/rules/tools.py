@@ -7,6 +7,7 @@ from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.rules.polar import SECTION_NAMES
 from g12.tools.translate.rules.spindle import SPINDLE_M_CODES
 
 COMPENSATION_ON = frozenset(("G41", "G42"))
@@ -17,6 +18,8 @@ USES_D = COMPENSATION_ON | PLAIN_POCKETS
 def tool_and_offsets(draft: Draft) -> None:
     if draft.control.is_lathe:
         _turret_word(draft)
+        if COMPENSATION_ON.intersection(draft.codes()) and not draft.word("D"):
+            draft.words += offsets_radius(draft)
     else:
         _length_offset(draft)
         _radius_offset(draft)
@@ -46,7 +49,27 @@ def _turret_word(draft: Draft) -> None:
         why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
         draft.words += map(word_of, filter(None, [draft.sure("spindle", why)]))
     draft.comments += [word.text] if loaded else []
-    draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
+    length = str(offset) if offset >= 0 else UNKNOWN
+    if draft.start.compensation != "G40" and draft.state.length != length:
+        raise NotTranslated(f"{word.text} changes the radius of G41 or G42: write G40 before it")
+    draft.change(tool=str(tool) if tool else draft.state.tool, length=length)
+
+
+def offsets_radius(draft: Draft) -> list[ForeignWord]:
+    """Return the D word by which G41 or G42 of a lathe takes the radius of the offset in force."""
+    why = "G41 and G42 take the radius of T's offset"
+    offset, tool = draft.sure("length", why), draft.sure("tool", why)
+    if offset in (UNKNOWN, tool):
+        return []
+    if offset == "0":
+        raise NotTranslated("G41 or G42, and T says no offset whose radius it takes: as T0101")
+    if draft.state.polar != "off":
+        raise NotTranslated(
+            f"G41 or G42 {SECTION_NAMES[draft.state.polar]} takes the loaded tool's radius, not "
+            f"that of offset {offset}: give the tool offset {offset}'s values in the tool table, "
+            "and write T with one number for both, as T0101"
+        )
+    return [word_of(f"D{offset}")]
 
 
 def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
