@@ -388,6 +388,23 @@ def test_every_refused_block_is_named_with_its_reason():
     )
 
 
+@pytest.mark.parametrize("refused", ["G1 G9.9 X40. F9.", "G1 X?"])
+def test_a_refused_block_sets_its_modes(refused):
+    text = f"G98 G0 X60. Z2. C0\nG12.1\n{refused}\nX30. Y5.\nG13.1\nM30\n"
+    result = translate_program(text, LATHE)
+    assert [block.line for block in result.refused] == [3]
+    assert not any(line.startswith(("rapid", "axes")) for line in result.missing)
+
+
+def test_no_setting_is_proposed_for_a_rapid_of_a_block_before():
+    text = "G98 G0 X60. Z2. C0\nG12.1\nX30. C5.\nG13.1\nM30\n"
+    result = translate_program(text, LATHE)
+    assert result.refused[0].sentence == (
+        "G0 in polar mode: write G1 with a high feed, or G1 if this is a cut: no G1 is before it"
+    )
+    assert result.missing == []
+
+
 @pytest.mark.parametrize(
     "blocks",
     [

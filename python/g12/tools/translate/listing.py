@@ -76,7 +76,9 @@ def missing_lines(
     tables: dict[str, list[str]] = {"": []}
     words = [w for block in blocks for w in block.words if w.kind == "number"]
     letters = {control.value("words", w.letter, w.letter) for w in words}
-    axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - set(control.axes)))
+    has_section = {"polar on", "cylinder"} & {control.meanings.get(w.code) for w in words}
+    known = {*control.axes, *("Y" if has_section else "")}  # where Y is C
+    axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - known))
     if axes and not control.onto and not control.on_machine:
         tables[""].append(f'axes = "{control.axes}{axes}"')
     for table, line in settings:

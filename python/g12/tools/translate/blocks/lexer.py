@@ -35,6 +35,7 @@ CORNERS = (",A", ",C", ",R")  # words of direct drawing
 LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
+MOTION = re.compile(r"G0*([0-3])(?![0-9.])")  # of a block that cannot be read
 LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
@@ -176,8 +177,9 @@ def blocks_of(
         try:
             blocks = _parsed(line, part)
         except NotTranslated as problem:
-            sentence = str(problem).replace(OWN, "")
-            blocks = [ForeignBlock(line, problem=f"{sentence}; {REMARKS}" if number else sentence)]
+            sentence = str(problem).replace(OWN, "") + (f"; {REMARKS}" if number else "")
+            motion = tuple(ForeignWord("G", code) for code in MOTION.findall(part))
+            blocks = [ForeignBlock(line, words=motion, problem=sentence)]
         if number == 0:  # a stop has them as its message
             at = next((at for at, block in enumerate(blocks) if block.kind == "stop"), 0)
             blocks[at] = blocks[at]._replace(comments=blocks[at].comments + comments)

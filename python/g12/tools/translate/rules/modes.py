@@ -16,6 +16,7 @@ from g12.tools.translate.rules.reference import cancel_length
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 BLOCK_LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 MACHINES_OWN = REFERENCES | {"G53"}
+SECTION_ENDS = {"polar on": "on", "polar off": "off"}
 ORIGIN_MEANINGS = ("offset by program", "speed limit or origin")
 
 
@@ -37,6 +38,17 @@ def follow_modes(draft: Draft) -> None:
     if modes:
         draft.change(**modes)
     _follow_surface_speed(draft)
+
+
+def keep_modes(draft: Draft) -> None:
+    """Follow the modes of a refused block, or the next ones would be refused for another's."""
+    for word in draft.block.words:
+        meaning = draft.control.meanings.get(word.code, "")
+        code = word.code if meaning == "same" else meaning
+        if code in GROUP_OF:
+            draft.change(**{GROUP_OF[code]: code})
+        elif meaning in SECTION_ENDS:
+            draft.change(polar=SECTION_ENDS[meaning])
 
 
 def _follow_surface_speed(draft: Draft) -> None:

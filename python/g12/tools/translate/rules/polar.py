@@ -170,12 +170,10 @@ def rapid(draft: Draft) -> None:
     if rule == "keep" or not _is_rapid(draft):
         return
     if rule == "refuse":
-        where = SECTION_NAMES[draft.state.polar]
-        raise NotSaid(
-            f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
-            "polar",
-            'rapid = "feed"',
-        )
+        sentence = f"G0 {SECTION_NAMES[draft.state.polar]}: write G1 with a high feed"
+        if "G0" not in draft.codes():
+            raise NotTranslated(f"{sentence}, or G1 if this is a cut: no G1 is before it")
+        raise NotSaid(f'{sentence}, or say rapid = "feed" in [polar]', "polar", 'rapid = "feed"')
     feed = feed_of_rapids(draft)
     draft.take_codes({"G0"})
     draft.take("F")  # of later blocks
