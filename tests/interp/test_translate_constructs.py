@@ -48,6 +48,9 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
+    *((control, f"G81 Z.5 R.9 {none}0\nX2.\nG91 X.5 {none}2\nG80 G90",
+       "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0")
+      for control in ("fanuc-mill", "mitsubishi-mill") for none in "KL"),
     ("haas-mill", "#1=2.\nWHILE[#1LT4]DO1\nG81 X#1 Z.5 R.9\n#1=#1+1.\nEND1\nG80",
      "G81 X2 Z.5 R.9\nX3\nG80\nG0"),
     ("haas-mill", "G81 Z.5 R.9 L0\nM98 P5\nG83 Z.6 R.9 Q.2 L0\nM98 P5\nM30\nO5\nX2.\nX3.\nG80\nM99",
@@ -88,6 +91,7 @@ CONSTRUCTS = [
      "T2 M6\nG41 D2 G1 X2\nY3\nG40 X4"),
     ("haas-mill", "T2 M6\nG41 D0 G1 X2.\nY3.\nG40 X4.", "T2 M6\nG1 X2\nY3\nX4"),
     ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 H0", "T1 M6\nG43 H2 Z2\nG49"),
+    ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 Z1.5", "T1 M6\nG43 H2 Z2\nG43 H2 Z1.5"),
     # dwell, offsets
     ("haas-mill", "G4 P250\nG4 P1.5", "G4 P.25\nG4 P1.5"),
     ("haas-mill", "G10 L2 P0 X.5\nX1.\nG10 L2 P0 X0", "G52 X.5\nX1\nG52 X0"),

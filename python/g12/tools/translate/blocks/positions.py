@@ -66,7 +66,7 @@ def _is_drilling(draft: Draft) -> bool:
 
 
 def _follow_drilling(draft: Draft) -> None:
-    again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
+    again = draft.letters() & set(draft.control.value("subprograms", "cycle_repeat", "L"))
     words = [w for w in draft.axis_words() if w.letter in "XY"]
     moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}
     lost = draft.state.distance == "G91" and again and not set(draft.meanings) & PATTERNS

@@ -106,7 +106,10 @@ def _length_offset(draft: Draft) -> None:
     if word and "G43" not in codes:
         raise NotTranslated("H without G43 in its block: write G43 before it")
     if "G43" in codes and not word:
-        raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
+        word = ForeignWord("H", draft.sure("length", "G43 without H takes the last one"))
+        if word.value in (UNKNOWN, "0"):
+            raise NotTranslated("G43 without H, and no H before it: LinuxCNC would take T's length")
+        draft.words.append(word)
     if not word:
         return
     if word.is_zero:
