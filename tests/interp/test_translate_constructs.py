@@ -70,6 +70,16 @@ CONSTRUCTS = [
      "G52 X0 Y0\nG0 X-1 Y1\nG1 X-1 Y2\nG0 X3"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
+    # G41 before the first move in the plane: it waits for that
+    ("haas-mill", "T1 M6\nG0 Y1.5\nG41 D1\nG0 Z.5\nG1 X2.\nY3.\nG40 X4.",
+     "T1 M6\nG0 Y1.5\nZ.5\nG41 D1 G1 X2\nY3\nG40 X4"),
+    ("fanuc-mill", "T1 M6\nG1 G42 D1 Z.5\nZ.4\nX2.\nY3.\nG40 X4.",
+     "T1 M6\nG1 Z.5\nZ.4\nG42 D1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG0 X1. Y1.\nG1 G41 D1 X1. Y1.\nX2.\nY3.\nG40 X4.",
+     "T1 M6\nG0 X1 Y1\nG41 D1 G1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nM98 P5\nG40 X4.\nM30\nO5\nX2.\nY3.\nM99",
+     "T1 M6\nG1 Z.5\nG41 D1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nG40 Z.4\nX2.", "T1 M6\nG1 Z.5\nZ.4\nX2"),
     # G41 that is on already, surely or from a loop's last round
     ("haas-mill", "T1 M6\nG41 D1 G1 X2.\nY3.\nG41 X3.\nG40 X4.",
      "T1 M6\nG41 D1 G1 X2\nY3\nX3\nG40 X4"),

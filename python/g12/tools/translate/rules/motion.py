@@ -110,7 +110,7 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
 
 
 PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point
-SETTLED = ("", UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
+SETTLED = ("", UNKNOWN, UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
 
 
 def is_plain(draft: Draft) -> bool:
@@ -122,7 +122,8 @@ def is_plain(draft: Draft) -> bool:
     own = (state.own_motion, state.own_distance, state.own_feed)
     letters = {word.letter for word in words}
     if (
-        (control.onto, state.turning_cycle, state.cycle, state.polar, *own) != SETTLED
+        (control.onto, state.turning_cycle, state.cycle, state.delayed, state.polar, *own)
+        != SETTLED
         or len(letters) < len(words)
         or not all(word.kind == "number" and PLAIN.fullmatch(word.text) for word in words)
         or not letters.isdisjoint(AXIS_NUMBERS.keys() - set(control.axes))

@@ -3,13 +3,15 @@
 
 import re
 
-from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.positions import is_unmoved
 from g12.tools.translate.rules.polar import SECTION_NAMES
 from g12.tools.translate.rules.spindle import SPINDLE_M_CODES
 
+PLANES = {"G18": "XZ", "G19": "YZ"}
 COMPENSATION_ON = frozenset(("G41", "G42"))
 PLAIN_POCKETS = frozenset(("G12", "G13"))
 USES_D = COMPENSATION_ON | PLAIN_POCKETS
@@ -22,6 +24,7 @@ def tool_and_offsets(draft: Draft) -> None:
             draft.words += offsets_radius(draft)
     else:
         _length_offset(draft)
+        _wait_for_the_plane(draft)
         _radius_offset(draft)
         if word := draft.word("T"):
             draft.change(next_tool=word.value.lstrip("0") or "0")
@@ -119,6 +122,34 @@ def _length_offset(draft: Draft) -> None:
     draft.change(length=word.value.lstrip("0") or "0")
 
 
+def _wait_for_the_plane(draft: Draft) -> None:
+    """Write G41 and G42 with the next move in the plane: LinuxCNC refuses a Z move before it."""
+    codes, own = draft.codes(), COMPENSATION_ON.intersection(draft.codes())
+    if draft.control.onto or not (own or draft.state.delayed):
+        return
+    plane = PLANES.get(draft.state.plane, "XY")
+    moves = any(w.letter in plane and not is_unmoved(draft, w.letter) for w in draft.axis_words())
+    if own and not moves and (draft.axis_words() or _next_move_is_beside(draft, plane)):
+        draft.change(delayed=draft.take_codes(own)[0])
+        draft.comments.append(f"{draft.state.delayed} with the next move")
+    elif own or "G40" in codes:
+        draft.change(delayed=UNKNOWN)
+    elif moves and CONSUMERS.isdisjoint(codes):
+        draft.put_first(draft.sure("delayed", "G41 or G42 is before this move"))
+        draft.change(delayed=UNKNOWN)
+
+
+def _next_move_is_beside(draft: Draft, plane: str) -> bool:
+    """Whether the next move of the program is not in its plane."""
+    for index, block in draft.program:
+        letters = {word.letter for word in block.words}
+        if index > draft.index and (block.kind != "words" or letters & {*plane, *"OPQ"}):
+            return False
+        if index > draft.index and letters & AXIS_NUMBERS.keys():
+            return True
+    return False
+
+
 def _radius_offset(draft: Draft) -> None:
     """Keep D for the codes that use it, store it for those without."""
     codes = draft.codes()
@@ -142,7 +173,7 @@ def _compensated_again(draft: Draft) -> None:
     """
     on = next((word for word in draft.words if word.code[:3] in COMPENSATION_ON), None)
     before = draft.start
-    if not on or before.polar != "off" or draft.control.onto:
+    if not on or before.polar != "off" or before.delayed or draft.control.onto:
         return
     if before.compensation not in (on.code[:3], UNSURE):
         return
