@@ -16,6 +16,7 @@ from support.foreign_programs import (
     control_of,
     kept_tracers,
     near,
+    path_of,
     tracer_of,
     translation,
 )
@@ -166,6 +167,23 @@ def test_angles_of_offsets_are_degrees_in_every_unit(tmp_path, machine, unit, fo
     with Tracer(ini) as tracer:
         expected = tracer.trace_text(f"{head}{own}\nM30\n", alone=True)
         assert_same_part(tracer.trace_text(result.text, alone=True), expected)
+
+
+@pytest.mark.parametrize(
+    ("control", "words", "own"),
+    [
+        ("fanuc-mill", "X10. Y5. (TO THE PART)", "G0 X10 Y5"),
+        ("fanuc-lathe", "U10. Z5.", "G0 X10 Z5"),
+    ],
+)
+def test_words_before_any_g0_run_as_g0_and_say_so(tracers, control, words, own):
+    result = translate_program(f"G21\nN1 {words}\nZ1.\nM30\n", control_of(control))
+    traced = tracers(control).trace_text(result.text, alone=True)
+    start = "G7 G18 G90 G95" if "lathe" in control else "G17 G90 G94"
+    expected = tracers(control).trace_text(f"{start} G21\n{own}\nZ1\nM30\n", alone=True)
+    assert path_of(traced) == path_of(expected)
+    (message,) = traced.messages
+    assert message.text.strip() == "line 2: no G0 or G1 before it, it runs as G0"
 
 
 def test_an_offset_that_the_program_sets_to_0_is_set(tracers, tmp_path):

@@ -87,6 +87,8 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "G81 X0 Y0 Z-1. R.1 A0. F5.\nG80 A0.", ["G81 X0 Y0 Z-1. R.1 F5. (A0.)", "G80 (A0.)"]),
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103", ["(G187 P1 E.01)", "(G103 P1)", "(G103)"]),
+    (FANUC, "G21 G90|N1 X1. (A)\nY1.",
+     ["(MSG, line 3: no G0 or G1 before it, it runs as G0)", "N1 G0 X1. (A) (line 3)", "Y1."]),
     (FANUC, "G5.1 Q1\nG8 P1\nG5.1 Q0", ["(G5.1 Q1)", "(G8 P1)", "(G5.1 Q0)"]),
     (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "M19\nG0 X1. M19 R90.\nM19 P45",
@@ -246,6 +248,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G4", "G4 needs its time as P, once"),
     (HAAS, "G4 P-1", "P-1: a time below 0"),
     (FANUC, "G4 P1.5", "P1.5: milliseconds have no decimal point"),
+    (FANUC, "G21 G90|X1. F60.", "no G0 or G1 is before these words: write G1 if they cut"),
     (FANUC, "G4 X5", "X5 has no decimal point: thousandths or seconds?"),
     (HAAS, "G30 P3 Z0", "G30 P3: LinuxCNC has two reference points"),
     (HAAS, "G91 G53 Z0", "G53 under G91"),
@@ -562,7 +565,7 @@ def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     ]  # fmt: skip
     own = tmp_path / "own.toml"
     own.write_text('based_on = "okuma-lathe"\n' + "\n".join(missing).replace("…", "comment"))
-    assert translate_program(text.replace("X1", "X1."), read_control(str(own))).missing == []
+    assert translate_program(text.replace("X1", "X1."), read_control(str(own))).refused == []
     here = translate_program(text, replace(OKUMA, machine_codes=frozenset())).missing
     assert f"M14 = {choices}" in here and 'axes = "XZCY"' not in here  # the INI says its axes
 

@@ -63,16 +63,23 @@ def _take_motion(draft: Draft, motion: str) -> None:
 def _bare_words(draft: Draft) -> None:
     state = draft.state
     if state.motion == UNKNOWN:
-        raise NotTranslated(
-            "words without G0 or G1, and none before them: which of them holds at the start is a "
-            "setting of the control"
-        )
+        _assume_rapid(draft)
+        return
     if state.own_motion == AS_PROGRAMMED:
         return
     if state.motion == UNSURE:
         raise NotSure("words without G0 or G1, which is not the same on every way here", "motion")
     draft.put_first(state.motion)
     draft.change(own_motion=AS_PROGRAMMED)
+
+
+def _assume_rapid(draft: Draft) -> None:
+    """Write G0, in which the control powers up, with a message; what may be a cut must say it."""
+    if "F" in draft.letters() or draft.state.polar != "off":
+        raise NotTranslated("no G0 or G1 is before these words: write G1 if they cut, else G0")
+    draft.before.append(f"(MSG, line {draft.block.line}: no G0 or G1 before it, it runs as G0)")
+    draft.put_first("G0")
+    draft.change(motion="G0")
 
 
 def distance_mode(draft: Draft) -> None:
