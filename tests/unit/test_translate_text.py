@@ -72,6 +72,9 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, f"G0 X1. ({'A' * 300})",
      ["G0 X1.", f"({'A' * 200}) (line 3)", f"({'A' * 100}) (line 3)"]),
     (HAAS, "G0 X2.; rapid to the part", ["G0 X2. (rapid to the part)"]),
+    # ; where its lines show that it begins remarks: they cannot be words
+    (HAAS, "; T2 ENDMILL (X)\n;G1 Z-1. F5.\nG0 X1.; Z5.5.5 (Y)\n;; ---",
+     ["(X)(T2 ENDMILL)", "(G1 Z-1. F5.)", "G0 X1. (Y)(Z5.5.5)", "(---)"]),
     (HAAS, "G0 X2. ; 2 mm above Z0; ---", ["G0 X2. (2 mm above Z0)(---)"]),
     (HAAS, "M30\nO5\nG47 X1.\nM99",
      ["M30", "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)"]),
@@ -237,6 +240,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G1 X1. ,C.1 F5.", ",C.1: a corner that is broken or rounded by a word"),
     (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
     (LATHE, "G10.9 X2.", "G10.9 needs X0, radii, or X1, diameters, and no other axis"),
+    (HAAS, "; T2 ENDMILL\nG0 X1.; Y1.", "Y1. is a block or a remark: lines of ; are remarks here"),
     (HAAS, "G0 X1.)", ") without its opening bracket before it"),
     (HAAS, "G0 X1. {a", "a comment is not closed: } is missing"),
     (HAAS, "H1", "H without G43"),

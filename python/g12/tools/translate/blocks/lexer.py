@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -57,6 +57,7 @@ ALL_PLANES = frozenset(("G17", "G18", "G19"))
 
 
 REMARKS = "if what is after ; is a remark there, say remarks = true in a control of your own"
+BLOCKS, LINES, ALL = range(3)  # what ; begins: blocks; remarks, as its lines show; remarks always
 
 
 @lru_cache(maxsize=1024)
@@ -158,12 +159,12 @@ def source_lines(text: str) -> list[str]:
 
 
 def blocks_of(
-    line: int, text: str, remarks: bool = False, variables: Mapping[int, str] = MappingProxyType({})
+    line: int, text: str, remarks: int = BLOCKS, variables: Mapping[int, str] = MappingProxyType({})
 ) -> Iterator[ForeignBlock]:
     """Yield the blocks of one line, at least one.
 
-    With ``remarks`` what is after ``;`` is a remark, else it is the next block. ``variables``
-    has what is written for variables of the control's own.
+    ``remarks`` is what ``;`` begins in the program, one of BLOCKS, LINES and ALL. ``variables`` has
+    what is written for variables of the control's own.
     """
     comments: tuple[str, ...] = ()
     try:
@@ -186,11 +187,33 @@ def blocks_of(
         yield from blocks
 
 
-def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
+def remarks_of(rows: Iterable[str]) -> int:
+    """Return LINES where a line of a program begins with ``;`` and cannot be words, else BLOCKS."""
+    begun = (row.lstrip() for row in rows)
+    remarks = (row[1:].strip() for row in begun if row.startswith(";"))
+    return LINES if any(text and not _can_be_words(text) for text in remarks) else BLOCKS
+
+
+def _can_be_words(text: str) -> bool:
+    try:
+        parts, _ = _without_comments(text, ALL)
+        return bool(MAYBE_WORDS.match(text)) and bool(_parsed(0, parts[0]))
+    except NotTranslated:
+        return False
+
+
+def _without_comments(text: str, remarks: int) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
     code, comments = _split_comments(text) if BRACKET.search(text) else (text, [])
     code, *rest = code.split(";")
-    blocks = [] if remarks else [part for part in rest if MAYBE_WORDS.match(part)]
+    blocks = [] if remarks == ALL else [part for part in rest if MAYBE_WORDS.match(part)]
+    if remarks == LINES:
+        blocks = [part for part in blocks if code.strip() and _can_be_words(part)]
+    if blocks and remarks == LINES:
+        raise NotTranslated(
+            f"{excerpt(blocks[0].strip())} is a block or a remark: lines of ; are remarks here; "
+            f"write a block on a line of its own; {REMARKS}"
+        )
     comments += [part.strip() for part in rest if part.strip() and part not in blocks]
     code = "".join(";".join([code, *blocks]).upper().split()).translate(OTHER_CHARACTERS)
     parts = [part for part in code.split(";") if part] or [""]
