@@ -198,6 +198,9 @@ PROGRAMS = [  # control, a whole program, its lines
         "/ o<unset_2> endif (line 3)",
         "/ G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013 (line 3)", "M99 (line 4)",
     ]),
+    (OKUMA, "$PART1.MIN%\nG0 X50.\nM2\n", [
+        f"{' '.join(OKUMA.start)} ($PART1.MIN%)", "G0 X50.", "M2",
+    ]),
     (HAAS, "\ufeff%\nG0 X0\nM30\n", [f"{' '.join(HAAS.start)} (%)", "G0 X0", "M30"]),
 ]  # fmt: skip
 
@@ -311,6 +314,12 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "GOTO5", "there is no N5 in this program"),
     (HAAS, "N5 X1.\nGOTO5", "the program never ends"),
     (HAAS, "M97 P100", "N100 is not in this program: M97 calls a block of it"),
+    (OKUMA, "OSAMPLE", "OSAMPLE is a name: of O and up to four letters and digits here, or"),
+    (OKUMA, "G95 G1 X40. F0,2", "0,2 has a decimal comma: write a point"),
+    (OKUMA, "N1 VC1=5", "VC1= sets a variable of the control's own: set it on the machine"),
+    (OKUMA, "VZOFZ=5", "VZOFZ= sets a variable of the control's own"),
+    (OKUMA, "X=VC12", "VC12 is a variable of the control's own: write its value"),
+    (OKUMA, "IF[VC1 EQ 5]GOTO5", "VC1 is a variable of the control's own: write its value"),
     (OKUMA, "CALL OSUB1", "O6345645 (OSUB1) is not in this file"),
     (OKUMA, "CALL OSUBX1", "CALLOSUBX1: only a program and Q"),
     (FANUC, "G0 X0|G1 X1. F60", "F60 has no decimal point: what it is then depends on G20"),

@@ -32,10 +32,11 @@ MAYBE_WORDS = re.compile(
     r"\s*[/#%:]|\s*(?:[A-Z]\s*[-+.0-9#[=]|IF|WHILE|GOTO|DO|END|RTS|CALL)", re.I
 )
 CORNERS = (",A", ",C", ",R")  # words of direct drawing
-LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
+OWN_NAME = "(?:VC[0-9]+|V[A-Z]{3,}[0-9]*)"  # of an Okuma
 MOTION = re.compile(r"G0*([0-3])(?![0-9.])")  # of a block that cannot be read
+HEADER = re.compile(r"\$.*%")  # of a file of an Okuma
 LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
@@ -53,6 +54,21 @@ BRACKET = re.compile("[(){}]")
 OTHER_CHARACTERS = str.maketrans("\N{MINUS SIGN}", "-", "\ufeff\u200b\0")
 DIGITS_AND_LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
+OTHER_TEXTS = {
+    re.compile(r"^\$.*"): "begins the program of one of two channels: translate one channel's "
+    "blocks, in a file of its own",
+    re.compile("^[A-Z_][A-Z0-9_]*:"): "is a label, which these controls do not have: take out the "
+    "colon",
+    re.compile(
+        "^O[A-Z][A-Z0-9]{4,}$"
+    ): "is a name: of O and up to four letters and digits here, or a number, as O1",
+    re.compile("[0-9],[0-9]+"): "has a decimal comma: write a point",
+    re.compile(rf"(?<![A-Z]){OWN_NAME}="): "sets a variable of the control's own: set it on the "
+    "machine, and take this out",
+    re.compile(
+        rf"(?<=[=[]){OWN_NAME}(?!\[)"
+    ): "is a variable of the control's own: write its value",
+}
 ALL_PLANES = frozenset(("G17", "G18", "G19"))
 
 
@@ -251,11 +267,12 @@ def printable(comment: str) -> str:
 
 def _parsed(line: int, text: str) -> list[ForeignBlock]:
     """Return the block of a text, and with a condition those that it rules and its end."""
+    if HEADER.fullmatch(text):
+        return [ForeignBlock(line, comments=(text,))]
     if text.startswith("%"):
         return [ForeignBlock(line, "tape", label=printable(text[1:]))]
     if text.startswith(":"):
         text = f"O{text[1:]}"
-    _refuse_other_texts(text)
     skip = SKIP.match(text)
     if skip:
         if skip[1] not in ("", "1"):
@@ -264,6 +281,7 @@ def _parsed(line: int, text: str) -> list[ForeignBlock]:
     if PLAIN_WORDS.fullmatch(text):
         words = tuple(_plain_word(*pair) for pair in PLAIN_WORD.findall(text))
         return [ForeignBlock(line, words=words)]
+    _refuse_other_texts(text)
     return _statement(line, text)
 
 
@@ -272,16 +290,9 @@ def _skipped(line: int, text: str) -> list[ForeignBlock]:
 
 
 def _refuse_other_texts(text: str) -> None:
-    if text.startswith("$"):
-        raise NotTranslated(
-            f"{excerpt(text)} begins the program of one of two channels: translate one channel's "
-            "blocks, in a file of its own"
-        )
-    label = LABEL.match(text)
-    if label:
-        raise NotTranslated(
-            f"{excerpt(label[0])} is a label, which these controls do not have: take out the colon"
-        )
+    for pattern, rule in OTHER_TEXTS.items():
+        if found := pattern.search(text):
+            raise NotTranslated(f"{excerpt(found[0])} {rule}")
 
 
 def _statement(line: int, text: str) -> list[ForeignBlock]:
