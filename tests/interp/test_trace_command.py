@@ -10,9 +10,10 @@ import time
 import pytest
 
 from g12.tools.commands import main
+from g12.tools.system import COMMAND
 from support.processes import living, until
 from support.sim_machines import ROOT, SIM
-from support.small_configs import LATHE, with_lines, write_config
+from support.small_configs import LATHE, MILL, with_lines, write_config
 
 INI = SIM / "mill_mm.ini"
 
@@ -52,6 +53,54 @@ def test_a_var_file_gives_the_work_offsets_to_start_with(reported, tmp_path):
         for words in ([], ["--var", str(stored)])
     ]
     assert ends == [["X1", "X2"], ["X11", "X22"]]
+
+
+@pytest.mark.parametrize(
+    ("in_force", "flag", "notes"),
+    [
+        (
+            1,
+            "",
+            ["a G92 or G52 from before is in force at the start, and shifts everything by X2 Z-5"],
+        ),
+        (0, "", []),
+        (1, "DISABLE_G92_PERSISTENCE = 1", []),
+    ],
+)
+@pytest.mark.parametrize("name", ["trace", "plot"])
+def test_an_offset_of_g92_from_before_is_said(reported, tmp_path, name, in_force, flag, notes):
+    stored, ini = tmp_path / "shop.var", write_config(tmp_path, with_lines(MILL, "RS274NGC", flag))
+    stored.write_text(f"5210\t{in_force}\n5211\t2\n5213\t-5.0\n5220\t1\n")
+    picture = ["-o", str(tmp_path / "part.png")] if name == "plot" else []
+    text = "G21 G90 F100\nG0 X1 Z0\nG1 Z2\nM2\n"
+    code, lines, _ = reported(name, text, "--var", str(stored), *picture, ini=ini)
+    said = [line for line in lines if "G92" in line]
+    assert (code, [line.partition("note")[2].lstrip(": ") for line in said]) == (
+        0, [f"{note} (machine units): G92.1 ends it" for note in notes],
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("ini", "block", "error"),
+    [
+        ("mill_mm", "G68 X0 Y0 R30", "Unknown g code used: G68, a code of haas-mill, fanuc-mill, "
+         "yasnac-mill and others"),
+        ("mill_mm", "G0 X1 G54.1 P1", "Unknown g code used: G54.1, a code of fanuc-mill, "
+         "yasnac-mill, mitsubishi-mill"),
+        ("lathe_mm", "G112", "G-code out of range: G112, a code of haas-lathe, fanuc-lathe, "
+         "fanuc-lathe-b and others"),
+        ("mill_mm", "G0 X1 (G68)\nG68.1", "Unknown g code used: G68.1"),
+    ],
+)  # fmt: skip
+@pytest.mark.parametrize("name", ["trace", "verify", "plot"])
+def test_a_code_of_another_control_is_named_with_that(reported, tmp_path, name, ini, block, error):
+    picture = ["-o", str(tmp_path / "part.png")] if name == "plot" else []
+    text = f"G0 X1\n{block}\nM2\n"
+    code, _, errors = reported(name, text, *picture, ini=SIM / f"{ini}.ini")
+    line = 2 + block.count("\n")
+    translated = f": {COMMAND} translate --control NAME makes a LinuxCNC program of it"
+    knows = translated if "a code of" in error else ""
+    assert (code, errors) == (2, f"g12 {name}: PROGRAM:{line}: {error}{knows}\n")
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,9 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
+    *((control, f"G81 Z.5 R.9 {none}0\nX2.\nG91 X.5 {none}2\nG80 G90",
+       "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0")
+      for control in ("fanuc-mill", "mitsubishi-mill") for none in "KL"),
     ("haas-mill", "#1=2.\nWHILE[#1LT4]DO1\nG81 X#1 Z.5 R.9\n#1=#1+1.\nEND1\nG80",
      "G81 X2 Z.5 R.9\nX3\nG80\nG0"),
     ("haas-mill", "G81 Z.5 R.9 L0\nM98 P5\nG83 Z.6 R.9 Q.2 L0\nM98 P5\nM30\nO5\nX2.\nX3.\nG80\nM99",
@@ -67,6 +70,16 @@ CONSTRUCTS = [
      "G52 X0 Y0\nG0 X-1 Y1\nG1 X-1 Y2\nG0 X3"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
+    # G41 before the first move in the plane: it waits for that
+    ("haas-mill", "T1 M6\nG0 Y1.5\nG41 D1\nG0 Z.5\nG1 X2.\nY3.\nG40 X4.",
+     "T1 M6\nG0 Y1.5\nZ.5\nG41 D1 G1 X2\nY3\nG40 X4"),
+    ("fanuc-mill", "T1 M6\nG1 G42 D1 Z.5\nZ.4\nX2.\nY3.\nG40 X4.",
+     "T1 M6\nG1 Z.5\nZ.4\nG42 D1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG0 X1. Y1.\nG1 G41 D1 X1. Y1.\nX2.\nY3.\nG40 X4.",
+     "T1 M6\nG0 X1 Y1\nG41 D1 G1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nM98 P5\nG40 X4.\nM30\nO5\nX2.\nY3.\nM99",
+     "T1 M6\nG1 Z.5\nG41 D1 X2\nY3\nG40 X4"),
+    ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nG40 Z.4\nX2.", "T1 M6\nG1 Z.5\nZ.4\nX2"),
     # G41 that is on already, surely or from a loop's last round
     ("haas-mill", "T1 M6\nG41 D1 G1 X2.\nY3.\nG41 X3.\nG40 X4.",
      "T1 M6\nG41 D1 G1 X2\nY3\nX3\nG40 X4"),
@@ -88,6 +101,7 @@ CONSTRUCTS = [
      "T2 M6\nG41 D2 G1 X2\nY3\nG40 X4"),
     ("haas-mill", "T2 M6\nG41 D0 G1 X2.\nY3.\nG40 X4.", "T2 M6\nG1 X2\nY3\nX4"),
     ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 H0", "T1 M6\nG43 H2 Z2\nG49"),
+    ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 Z1.5", "T1 M6\nG43 H2 Z2\nG43 H2 Z1.5"),
     # dwell, offsets
     ("haas-mill", "G4 P250\nG4 P1.5", "G4 P.25\nG4 P1.5"),
     ("haas-mill", "G10 L2 P0 X.5\nX1.\nG10 L2 P0 X0", "G52 X.5\nX1\nG52 X0"),
@@ -134,6 +148,15 @@ CONSTRUCTS = [
     ("fanuc-lathe", "G1 X45.\nG28 U0 W0", "G1 X45\nG53 G0 X0 Z0\nG1"),
     ("fanuc-lathe", "G1 X45.\nG30 U2. W1.", "G1 X45\nG0 X47 Z6\nG53 X0 Z0\nG1"),
     ("fanuc-lathe", "T0101\nT0100", "T1 M6 M3\nG49"),
+    # T0102: tool 1 with the length and the radius of offset 2, in cycles as well
+    ("fanuc-lathe", "T0102\nG0 X80. Z20.\nG1 G42 X40. Z10.\nZ-20.\nG40 X80.",
+     "T1 M6 G43 H2 M3\nG0 X80 Z20\nG1 G42 D2 X40 Z10\nZ-20\nG40 X80"),
+    ("fanuc-lathe", "T0102\nG0 X80. Z20.\nG70 P1 Q2\nN1 G0 G42 X40. Z10.\nN2 G1 Z-20.\nG0 X90.",
+     "T1 M6 G43 H2 M3\nG0 X80 Z20\nG42 D2 X40 Z10\nG1 Z-20\nG40 G0 X80\nZ20\nX90"),
+    ("fanuc-lathe", "T0102\nG0 X100. Z20.\nG1 G42 X80.\nG71 U20. R1.\nG71 P1 Q2\nN1 G0 X40.\n"
+     "N2 G1 Z-20.\nG1 X60. Z10.\nZ-20.\nG40 X80.",
+     "T1 M6 G43 H2 M3\nG0 X100 Z20\nG1 G42 D2 X80\nG40\nG0 X40\nG1 Z-20\nG0 X80\nZ20\n"
+     "G42 D2\nG1 X60 Z10\nZ-20\nG40 X80"),
     ("fanuc-lathe", "G50 S900\nG96 S100 M3\nX45.\nG97 S50 M5\nX46.",
      "(G50)\nG96 D900 S100 M3\nX45\nG97 S50 M5\nX46"),
     ("fanuc-lathe", "G50 X10. Z0\nX20.\nG50 X60. Z5.", "G0 X60\nG92 X60 Z5"),

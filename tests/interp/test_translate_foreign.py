@@ -4,14 +4,19 @@
 import pytest
 
 from g12.tools.errors import ProgramError
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
+from g12.tools.translate.on_machine import on_machine
+from g12.tools.translate.program import translate_program
 from support.foreign_programs import (
     FOREIGN,
     MACHINES,
     OPTIONS,
     assert_same_part,
+    control_of,
     kept_tracers,
     near,
+    path_of,
     tracer_of,
     translation,
 )
@@ -132,6 +137,63 @@ def test_offsets_by_number_do_not_depend_on_units(unit, code, scale, tmp_path):
     with Tracer(SIM / f"{unit}.ini") as tracer:
         traced = tracer.trace_text(translation(path, "haas-mill"))
     assert traced.moves[-1].end[:2] == near((3 * scale, scale))
+
+
+FOUR_AXES = {"TRAJ": {"COORDINATES": "X Y Z A"}}
+ON_FOUR = "G20 G90 G54 G0 X1. A1.\n"
+
+
+@pytest.mark.parametrize(
+    ("foreign", "own"),
+    [
+        ("G10 L2 P1 A5.\nA1.", "A6"),
+        ("G10 L2 P1 A5.\nG10 L2 P1 G91 X.5 A2.\nG90 X1. A1.", "X1.5 A8"),
+        ("G52 A5.\nA1.\nG10 L2 P0 G91 X.5 A2.\nG90 X1. A1.", "A6\nX1.5 A8"),
+        ("G92 A5.\nA6.", "A2"),
+        ("G10 L20 P3 X.5 A90.\nG154 P3 X1. A1.", "X1.5 A91"),
+        ("G10 L20 P3 A90.\nG91 G10 L20 P3 X.5 A5.\nG90 G112 X1. A1.", "X1.5 A96"),
+        ("G10 L20 P3 A1.\nG112\nG10 L20 P3 X.5 A90.\nX1. A1.", "X1.5 A91"),
+        ("G10 L2 P1 A5.\nG68 X0 Y0 R90.\nG0 X2. Y0 A1.\nG69", "X0 Y2 A6"),
+    ],
+)
+@pytest.mark.parametrize("unit", ["G20", "G21"])
+@pytest.mark.parametrize("machine", ["mill_inch", "mill_mm"])
+def test_angles_of_offsets_are_degrees_in_every_unit(tmp_path, machine, unit, foreign, own):
+    ini = read_ini(SIM / f"{machine}.ini").replaced(FOUR_AXES)
+    control = on_machine(control_of("haas-mill"), ini)
+    head = ON_FOUR.replace("G20", unit)
+    result = translate_program(f"{head}{foreign}\nM30\n", control)
+    assert result.refused == []
+    with Tracer(ini) as tracer:
+        expected = tracer.trace_text(f"{head}{own}\nM30\n", alone=True)
+        assert_same_part(tracer.trace_text(result.text, alone=True), expected)
+
+
+@pytest.mark.parametrize(
+    ("control", "words", "own"),
+    [
+        ("fanuc-mill", "X10. Y5. (TO THE PART)", "G0 X10 Y5"),
+        ("fanuc-lathe", "U10. Z5.", "G0 X10 Z5"),
+    ],
+)
+def test_words_before_any_g0_run_as_g0_and_say_so(tracers, control, words, own):
+    result = translate_program(f"G21\nN1 {words}\nZ1.\nM30\n", control_of(control))
+    traced = tracers(control).trace_text(result.text, alone=True)
+    start = "G7 G18 G90 G95" if "lathe" in control else "G17 G90 G94"
+    expected = tracers(control).trace_text(f"{start} G21\n{own}\nZ1\nM30\n", alone=True)
+    assert path_of(traced) == path_of(expected)
+    (message,) = traced.messages
+    assert message.text.strip() == "line 2: no G0 or G1 before it, it runs as G0"
+
+
+def test_an_offset_that_the_program_sets_to_0_is_set(tracers, tmp_path):
+    path = tmp_path / "offsets.nc"
+    sub = "O5\nG10 L20 P3 X0. Y0. Z0.\nM99\n"
+    path.write_text(f"G20 G0 X0\n/G4 P0\nM98 P5\nG154 P3 X1.\nM30\n{sub}")
+    assert tracers("haas-mill").trace_text(translation(path, "haas-mill")).messages == []
+    path.write_text("G20 G0 X0\n/G10 L20 P3 X0.\nG154 P3 X1.\nM30\n")
+    messages = tracers("haas-mill").trace_text(translation(path, "haas-mill")).messages
+    assert len(messages) == 1
 
 
 @pytest.mark.parametrize(("value", "said"), [(0.0, ["G154 P2 was never set"]), (5.0, [])])

@@ -13,6 +13,7 @@ import pytest
 from g12.tools.commands import main, run
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Error
+from g12.tools.system import COMMAND
 from support.sim_machines import ROOT, SIM
 
 
@@ -54,6 +55,25 @@ def g12_run(tmp_path, capsys):
             [],
             "running part.ngc in real time\n"
             "g12 run: PROGRAM:2: Bad character 'c' used: this INI's machine has axes X Y Z\n",
+        ),
+        (
+            "lathe_mm",
+            "G21 G90\nG112\nM2\n",
+            2,
+            [],
+            "running part.ngc in real time\n"
+            "g12 run: PROGRAM:2: G-code out of range: G112, a code of haas-lathe, fanuc-lathe, "
+            f"fanuc-lathe-b and others: {COMMAND} translate --control NAME makes a LinuxCNC "
+            "program of it\n",
+        ),
+        (
+            "lathe_mm",
+            "G21 G90\nM154\nM2\n",
+            2,
+            [],
+            "running part.ngc in real time, 0.0 s without acceleration\n"
+            "g12 run: PROGRAM: Unknown m code used: M154, a code of haas-lathe: "
+            f"{COMMAND} translate --control NAME makes a LinuxCNC program of it\n",
         ),
     ],
 )

@@ -72,6 +72,9 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, f"G0 X1. ({'A' * 300})",
      ["G0 X1.", f"({'A' * 200}) (line 3)", f"({'A' * 100}) (line 3)"]),
     (HAAS, "G0 X2.; rapid to the part", ["G0 X2. (rapid to the part)"]),
+    # ; where its lines show that it begins remarks: they cannot be words
+    (HAAS, "; T2 ENDMILL (X)\n;G1 Z-1. F5.\nG0 X1.; Z5.5.5 (Y)\n;; ---",
+     ["(X)(T2 ENDMILL)", "(G1 Z-1. F5.)", "G0 X1. (Y)(Z5.5.5)", "(---)"]),
     (HAAS, "G0 X2. ; 2 mm above Z0; ---", ["G0 X2. (2 mm above Z0)(---)"]),
     (HAAS, "M30\nO5\nG47 X1.\nM99",
      ["M30", "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)"]),
@@ -79,9 +82,16 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "G81 X1. Z-.5 R.1 Q.1 P500 F8.", ["G81 X1. Z-.5 R.1 F8. (Q.1)(P0.5)"]),
     (HAAS, "G81 X1. Z-.5 R.1 P500 Q.1 F8.", ["G81 X1. Z-.5 R.1 F8. (P0.5)(Q.1)"]),
     (HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.",
-     ["G0 X1. (A0.: no A here)(B0: no B here)", "(A0.: no A here)", "G1 Y1. F5. (A0: no A here)"]),
+     ["G0 X1. (A0.)(B0)", "(A0.)", "G1 Y1. F5. (A0)"]),
+    (HAAS, "G28 A0.\nG53 A0.\nG91 G28 A0.\nG90 G92 A0.\nG52 A0.\nG10 L2 P1 A0.\nG154 P1 A0", [
+        "G49 (G28)(A0.)", "(G53)(A0.)", "G91 G49 (G28)(A0.)", "G90 (G92)(A0.)", "(G52)(A0.)",
+        "(G10 L2 P1)(A0.)",
+    ]),
+    (HAAS, "G81 X0 Y0 Z-1. R.1 A0. F5.\nG80 A0.", ["G81 X0 Y0 Z-1. R.1 F5. (A0.)", "G80 (A0.)"]),
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103", ["(G187 P1 E.01)", "(G103 P1)", "(G103)"]),
+    (FANUC, "G21 G90|N1 X1. (A)\nY1.",
+     ["(MSG, line 3: no G0 or G1 before it, it runs as G0)", "N1 G0 X1. (A) (line 3)", "Y1."]),
     (FANUC, "G5.1 Q1\nG8 P1\nG5.1 Q0", ["(G5.1 Q1)", "(G8 P1)", "(G5.1 Q0)"]),
     (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "M19\nG0 X1. M19 R90.\nM19 P45",
@@ -188,6 +198,9 @@ PROGRAMS = [  # control, a whole program, its lines
         "/ o<unset_2> endif (line 3)",
         "/ G10 L2 P9 R0 G59.3 #5381=#4011 #5382=#4012 #5383=#4013 (line 3)", "M99 (line 4)",
     ]),
+    (OKUMA, "$PART1.MIN%\nG0 X50.\nM2\n", [
+        f"{' '.join(OKUMA.start)} ($PART1.MIN%)", "G0 X50.", "M2",
+    ]),
     (HAAS, "\ufeff%\nG0 X0\nM30\n", [f"{' '.join(HAAS.start)} (%)", "G0 X0", "M30"]),
 ]  # fmt: skip
 
@@ -230,15 +243,19 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G1 X1. ,C.1 F5.", ",C.1: a corner that is broken or rounded by a word"),
     (HAAS, "G84 Z-1. R.1 J2 F5.", "G84 with J is not translated"),
     (LATHE, "G10.9 X2.", "G10.9 needs X0, radii, or X1, diameters, and no other axis"),
+    (HAAS, "; T2 ENDMILL\nG0 X1.; Y1.", "Y1. is a block or a remark: lines of ; are remarks here"),
     (HAAS, "G0 X1.)", ") without its opening bracket before it"),
     (HAAS, "G0 X1. {a", "a comment is not closed: } is missing"),
     (HAAS, "H1", "H without G43"),
-    (HAAS, "G43 Z1.", "G43 without H"),
+    (HAAS, "G43 Z1.", "G43 without H, and no H before it"),
+    (HAAS, "/G43 H1 Z1.\nG43 Z2.", "G43 without H takes the last one, but the length here is not"),
+    (FANUC, "G81 Z-1. R.1 K2 L3", "K2 and L3: one of them says how often"),
     (HAAS, "G41 X1.", "G41 or G42 without D"),
     (HAAS, "G19 G41 D1 Y1. F5.", "G41 or G42 in G19: LinuxCNC compensates in G17 and G18"),
     (HAAS, "G4", "G4 needs its time as P, once"),
     (HAAS, "G4 P-1", "P-1: a time below 0"),
     (FANUC, "G4 P1.5", "P1.5: milliseconds have no decimal point"),
+    (FANUC, "G21 G90|X1. F60.", "no G0 or G1 is before these words: write G1 if they cut"),
     (FANUC, "G4 X5", "X5 has no decimal point: thousandths or seconds?"),
     (HAAS, "G30 P3 Z0", "G30 P3: LinuxCNC has two reference points"),
     (HAAS, "G91 G53 Z0", "G53 under G91"),
@@ -285,6 +302,10 @@ LAST = [  # control, text, how the sentence about its last line begins
     (LATHE, "G12.1 X5.", "G12.1 moves nothing"),
     (LATHE, "G107", "G107 needs C"),
     (LATHE, "G12.1\nG41 G1 X10. D5", "D5 in polar mode"),
+    (LATHE, "G99 G97 S9 M3\nT0109\nG98 G0 X50. C0\nG12.1\nG41 G1 X10. F9.",
+     "G41 or G42 in polar mode takes the loaded tool's radius, not that of offset 9"),
+    (LATHE, "M3 S9\nT0101\nT0100\nG41 G1 X10. F9.", "G41 or G42, and T says no offset"),
+    (LATHE, "M3 S9\nT0101\nG41 G1 X10. F9.\nT0111", "T0111 changes the radius of G41 or G42"),
     (HAAS_LATHE, "G112\nG0 X1.", "G0 in polar mode: its speed needs the units"),
     (HAAS, f"#1={'+'.join(['#2'] * 90)}", "the block has 452 characters on LinuxCNC, at most 254"),
     (HAAS, "G0 X\N{EN DASH}1.", "X has no value: –1."),
@@ -293,6 +314,12 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "GOTO5", "there is no N5 in this program"),
     (HAAS, "N5 X1.\nGOTO5", "the program never ends"),
     (HAAS, "M97 P100", "N100 is not in this program: M97 calls a block of it"),
+    (OKUMA, "OSAMPLE", "OSAMPLE is a name: of O and up to four letters and digits here, or"),
+    (OKUMA, "G95 G1 X40. F0,2", "0,2 has a decimal comma: write a point"),
+    (OKUMA, "N1 VC1=5", "VC1= sets a variable of the control's own: set it on the machine"),
+    (OKUMA, "VZOFZ=5", "VZOFZ= sets a variable of the control's own"),
+    (OKUMA, "X=VC12", "VC12 is a variable of the control's own: write its value"),
+    (OKUMA, "IF[VC1 EQ 5]GOTO5", "VC1 is a variable of the control's own: write its value"),
     (OKUMA, "CALL OSUB1", "O6345645 (OSUB1) is not in this file"),
     (OKUMA, "CALL OSUBX1", "CALLOSUBX1: only a program and Q"),
     (FANUC, "G0 X0|G1 X1. F60", "F60 has no decimal point: what it is then depends on G20"),
@@ -309,8 +336,8 @@ LAST = [  # control, text, how the sentence about its last line begins
     (LATHE, "G21 G10.9 X0\nG90 X9. Z1. F9.", "a turning cycle where X words are radii"),
     (control_of("doosan-lathe"), "S9 M3 P13", "P13: no spindle of the machine: there are P11, P12"),
     *((HAAS, f"G0 F5.\n{block}", f"{block[-3:]}: this control's machine has the axes XYZ")
-      for block in ("G28 A0.", "G53 A0.", "G91 G28 A0.", "G92 A0.", "#1=0\nG0 A#1",
-                    "G81 X0 Z-1. R.1\nA0.")),
+      for block in ("#1=0\nG0 A#1", "G81 X0 Z-1. R.1\nA0.", "G10 L2 P1 X1. A5.",
+                    "G10 L20 P1 X1. A5.", "G52 X1. A5.", "G154 P1 X1. A5.")),
     # C beside a slide
     *((LATHE, f"G21 G98 G0 X50. Z5.\n{text}", start) for text, start in [
         ("G1 X40. C30. F100.", "C beside a slide at a feed: its time depends"),
@@ -377,6 +404,23 @@ def test_every_refused_block_is_named_with_its_reason():
         "1: G31: a skip function: LinuxCNC probes with G38.2; line 3 too; line 2: G66: a modal "
         "macro: write G65 in each block; line 4: G4 needs its time as X or U or P, once"
     )
+
+
+@pytest.mark.parametrize("refused", ["G1 G9.9 X40. F9.", "G1 X?"])
+def test_a_refused_block_sets_its_modes(refused):
+    text = f"G98 G0 X60. Z2. C0\nG12.1\n{refused}\nX30. Y5.\nG13.1\nM30\n"
+    result = translate_program(text, LATHE)
+    assert [block.line for block in result.refused] == [3]
+    assert not any(line.startswith(("rapid", "axes")) for line in result.missing)
+
+
+def test_no_setting_is_proposed_for_a_rapid_of_a_block_before():
+    text = "G98 G0 X60. Z2. C0\nG12.1\nX30. C5.\nG13.1\nM30\n"
+    result = translate_program(text, LATHE)
+    assert result.refused[0].sentence == (
+        "G0 in polar mode: write G1 with a high feed, or G1 if this is a cut: no G1 is before it"
+    )
+    assert result.missing == []
 
 
 @pytest.mark.parametrize(
@@ -526,7 +570,7 @@ def test_a_position_of_g28_that_was_never_set_is_reported(machine_of, tmp_path):
 
 def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     text = "G21\nM51\nG5.3 Y3.\nM52 M14\nG0 X1\nM30\n"
-    missing = translate_program(text, replace(OKUMA, machine_codes=frozenset(("M14",)))).missing
+    missing = translate_program(text, OKUMA).missing
     choices = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
     assert [line for line in missing if line[0] != "["] == [
         'axes = "XZCY"', 'decimals = "least" # or "whole"', f'"G5.3" = {choices}',
@@ -534,7 +578,9 @@ def test_all_that_a_control_lacks_is_named_at_once(tmp_path):
     ]  # fmt: skip
     own = tmp_path / "own.toml"
     own.write_text('based_on = "okuma-lathe"\n' + "\n".join(missing).replace("…", "comment"))
-    assert translate_program(text.replace("X1", "X1."), read_control(str(own))).missing == []
+    assert translate_program(text.replace("X1", "X1."), read_control(str(own))).refused == []
+    here = translate_program(text, replace(OKUMA, machine_codes=frozenset())).missing
+    assert f"M14 = {choices}" in here and 'axes = "XZCY"' not in here  # the INI says its axes
 
 
 # ---------------------------------------------------------------- the order of programs

@@ -23,6 +23,7 @@ from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
+from g12.tools.machine.stored_positions import offset_at_start
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
@@ -74,9 +75,10 @@ def main(arguments: list[str]) -> int:
                 proof = replace(prove_subject(subject, stock=stock_of(options)), opened=opened)
                 scene = scene_of_proof(proof, options.override, options.units, options.feeds)
             style.save(picture_of(scene), options.output)
-    x0 = [f"note: program {scene.x0_text}"] if scene.x0_text else []
+    x0 = f"program {scene.x0_text}" if scene.x0_text else ""
+    notes = [f"note: {text}" for text in (offset_at_start(options.var, ini), x0) if text]
     judged = dict.fromkeys(judged_texts(proof, scene)) if proof else ()
-    texts = [f"{options.output} written", *x0, *judged, *message_lines(in_source.messages)]
+    texts = [f"{options.output} written", *notes, *judged, *message_lines(in_source.messages)]
     print("\n".join(texts))
     report_line_numbers("plot", opened)
     ended(options.program, in_source)

@@ -28,7 +28,7 @@ from g12.tools.headless.run import run_anyhow
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import program_seconds
-from g12.tools.preview.ended import explained_text
+from g12.tools.preview.ended import block_at, explained_text
 from g12.tools.preview.moves import IS_LENGTH, Error, Trace
 from g12.tools.preview.tracer import Parameters, Tools, TraceFailure, trace
 from g12.tools.progress import working
@@ -112,9 +112,11 @@ def main(arguments: list[str]) -> int:
     for text in lines_of_run(result, ini):
         print(text)
     if result.error:
-        line = opened.source_line(line_of_preview(result.error, preview))
+        found = line_of_preview(result.error, preview)
+        line = opened.source_line(found)
         location = f"{options.program}:{line}" if line else options.program
-        text = opened.in_source(explained_text(result.error.text, options.ini))
+        explained = explained_text(result.error.text, options.ini, block_at(opened.path, found))
+        text = opened.in_source(explained)
         report_line_numbers("run", opened)
         raise ProgramError(f"{location}: {text}")
     return GOOD

@@ -19,6 +19,7 @@ from g12.tools.commands.arguments import (
     report_line_numbers,
 )
 from g12.tools.machine.filter import opened_program
+from g12.tools.machine.stored_positions import offset_at_start
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
@@ -58,8 +59,11 @@ def main(arguments: list[str]) -> int:
     ini = checked_ini(options)
     with opened_program(options.program, ini) as opened:
         found = trace(opened.path, ini, tools=options.tools, parameters=options.var)
+        found = explained(found, options.ini, opened.path)
     report_line_numbers("trace", opened)
-    traced = explained(trace_in_source(found, opened), options.ini)
+    traced = trace_in_source(found, opened)
+    if shifted := offset_at_start(options.var, ini):
+        print(f"{0:6d} note  {shifted}")
     for move in traced.moves:
         print(line_of(move, options.digits))
     for line, text in traced.messages:

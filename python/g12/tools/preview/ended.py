@@ -7,12 +7,15 @@ from pathlib import Path
 
 from g12.machine_ini import remap_lines
 from g12.tools.errors import ProgramError
-from g12.tools.machine.ini import read_ini
+from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Tracer
+from g12.tools.preview.unknown_codes import of_other_controls, unknown_code
 from g12.tools.system import COMMAND
+from g12.tools.translate.blocks.lexer import program_text, source_lines
 
-UNKNOWN_CODE = "Unknown g code used"
+UNKNOWN_G_CODES = ("Unknown g code used", "G-code out of range")
+UNKNOWN_M_CODE = re.compile("Unknown m code used: (M[0-9]+)")
 OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
 POLAR_CODES = ("G12.1", "G13.1")
 PYTHON_FAILED = re.compile(r"pycall\(.*\) failed")
@@ -29,27 +32,45 @@ def ended(program: Path | str, result: Trace) -> Trace:
     return result
 
 
-def explained(result: Trace, ini: Path) -> Trace:
+def explained(result: Trace, ini: Path, program: Path) -> Trace:
     """Return a trace whose error has what LinuxCNC leaves out; see ``explained_text``."""
     error = result.error
     if not error:
         return result
-    return replace(result, error=error._replace(text=explained_text(error.text, ini)))
+    text = explained_text(error.text, ini, block_at(program, error.line))
+    return replace(result, error=error._replace(text=text))
 
 
-def explained_text(text: str, ini: Path) -> str:
-    """Return the interpreter's error, with what the machine has instead of the unknown code."""
+def block_at(program: Path, line: int) -> str:
+    """Return a line of a program, "" where there is none."""
+    rows = source_lines(program_text(program.read_bytes()))
+    return rows[line - 1] if 0 < line <= len(rows) else ""
+
+
+def explained_text(text: str, ini: Path, block: str = "") -> str:
+    """Return the interpreter's error with the unknown code of ``block``, and what the INI has."""
     machine = read_ini(ini)
-    codes = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
-    word = NO_AXIS.match(text)
+    remapped = {remap.code for remap in remap_lines(machine.all)}
+    word, m_code = NO_AXIS.match(text), UNKNOWN_M_CODE.fullmatch(text)
     if word and word[1].upper() not in machine.axes:
         return f"{text}: this INI's machine has axes {' '.join(machine.axes)}"
-    if text == UNKNOWN_CODE:
-        present = " ".join(codes) or "none"
-        return f"{text}: of G12, G13 and G7.1 this INI has {present}; see {COMMAND} check"
-    if set(POLAR_CODES) & set(codes):
+    if m_code:
+        return f"{text}{of_other_controls(m_code[1], machine.axes)}"
+    if text in UNKNOWN_G_CODES:
+        return _unknown_g_code(text, unknown_code(block, remapped), machine)
+    if remapped.intersection(POLAR_CODES):
         with Tracer(ini) as tracer:
             errors = PACKAGE_MESSAGE.findall(tracer.printed)
         if errors:
             return f"{text}: {'; '.join(errors)}"
     return f"{text}; see {COMMAND} check" if PYTHON_FAILED.match(text) else text
+
+
+def _unknown_g_code(text: str, code: str, machine: Ini) -> str:
+    """Return the error with its code: one of ours that the machine lacks, or another control's."""
+    named = f"{text}: {code}" if code else text
+    if code and not OUR_CODE.match(code):
+        return f"{named}{of_other_controls(code, machine.axes)}"
+    present = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
+    has = " ".join(present) or "none"
+    return f"{named}: of G12, G13 and G7.1 this INI has {has}; see {COMMAND} check"

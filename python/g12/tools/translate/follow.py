@@ -21,6 +21,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, UNSURE, ModalState, merged
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.on_lathe.sections import before_loop
+from g12.tools.translate.rules.modes import keep_modes
 from g12.tools.translate.rules.motion import is_plain
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure, find_ends, ways_from
@@ -94,6 +95,7 @@ class FollowedProgram:
                 draft.after += structure.jumps.at.get(index, ())
         except NotTranslated as refusal:
             draft.refusal = refusal
+            keep_modes(draft)
         return draft
 
     def _translate_words(self, draft: Draft) -> None:

@@ -76,16 +76,17 @@ def missing_lines(
     tables: dict[str, list[str]] = {"": []}
     words = [w for block in blocks for w in block.words if w.kind == "number"]
     letters = {control.value("words", w.letter, w.letter) for w in words}
-    axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - set(control.axes)))
-    if axes and not control.onto:
+    has_section = {"polar on", "cylinder"} & {control.meanings.get(w.code) for w in words}
+    known = {*control.axes, *("Y" if has_section else "")}  # where Y is C
+    axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - known))
+    if axes and not control.onto and not control.on_machine:
         tables[""].append(f'axes = "{control.axes}{axes}"')
     for table, line in settings:
         tables.setdefault(table, []).append(line)
     for code in sorted({w.code for w in words} - {""}, key=_number):
         meaning = control.meanings.get(code, "")
         if not meaning or (
-            meaning == "machine"
-            and not (control.machine_codes is None or control.is_machines(code))
+            meaning == "machine" and control.on_machine and not control.is_machines(code)
         ):
             name = f'"{code}"' if "." in code else code
             tables.setdefault(f"{code[0].lower()}_codes", []).append(f"{name} = {CHOICES}")

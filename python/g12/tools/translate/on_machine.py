@@ -13,6 +13,7 @@ from g12.machine_ini import Remap, m_codes_of, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS
 
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
 REFUSE_LIVE_TOOL = (
@@ -22,7 +23,7 @@ REFUSE_LIVE_TOOL = (
 
 
 def on_machine(control: Control, ini: Ini) -> Control:
-    """Return a control with the machine's own codes, spindle and unset positions of G28 and G30."""
+    """Return a control with the machine's own axes, codes, spindle and positions never set."""
     settings, remaps = ini.settings, _remaps_in_force(ini)
     clamp = [f"M{code}" for code in settings.c_clamp]
     own = dict(zip(("clamp C", "unclamp C"), clamp))
@@ -34,8 +35,10 @@ def on_machine(control: Control, ini: Ini) -> Control:
     m_codes = m_codes_of(ini.get, remaps, ini.directory)
     polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))
     cylinder = _code_of(remaps, "cylinder_mode", "G")
+    axes = "".join(axis for axis in AXIS_NUMBERS if axis in ini.axes)
     return replace(
         control,
+        axes=control.axes if control.onto else axes,
         meanings={code: _meaning_here(m, own, live) for code, m in control.meanings.items()},
         tables={
             **control.tables,

@@ -29,11 +29,15 @@ def lines_of(draft: Draft) -> list[str]:
 
 
 def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
-    """Return lines with comments after the first; those without room get lines of their own."""
+    """Return lines with comments after the first; those without room get lines of their own.
+
+    A message stays the last comment of its line: LinuxCNC obeys no other one.
+    """
     whole = "".join(f"({comment})" for comment in comments)
-    first = f"{lines[0]} {whole}".rstrip() if lines else whole
+    at = next((at for at, line in enumerate(lines) if not ACTIVE_COMMENT.search(line)), len(lines))
+    first = " ".join(filter(None, [*lines[at : at + 1], whole]))
     if size(first) <= LONGEST_LINE - LONGEST_MARK:
-        return [first, *lines[1:]]
+        return [*lines[:at], first, *lines[at + 1 :]]
     rest = [
         f"({comment[at : at + length]})"
         for comment in comments

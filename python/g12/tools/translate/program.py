@@ -8,9 +8,11 @@ from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import (
+    ALL,
     NAMED_PROGRAMS,
     ForeignBlock,
     blocks_of,
+    remarks_of,
     source_lines,
 )
 from g12.tools.translate.follow import FollowedProgram, followed_program
@@ -73,8 +75,9 @@ def _read_blocks(
 ) -> list[ForeignBlock]:
     blocks: list[ForeignBlock] = []
     variables = control.variables()
+    remarks = ALL if control.remarks else remarks_of(rows)
     for line, row in enumerate(rows, 1):
-        blocks += blocks_of(line, row, control.remarks, variables)
+        blocks += blocks_of(line, row, remarks, variables)
         if line % 1000 == 0:
             progress(READ * line / len(rows))
     return without_clocks(blocks)

@@ -145,7 +145,7 @@ def moves_and_words(
 ) -> tuple[Trace, Commanded]:
     """Return the trace of a program, and what its words command: nothing if it is refused."""
     with Tracer(ini, tools=tools) as tracer:
-        trace = explained(tracer.trace(program, parameters=parameters), ini.path)
+        trace = explained(tracer.trace(program, parameters=parameters), ini.path, program)
         if trace.error:
             return trace, Commanded()
         return commanded_by(tracer, program, trace, tools, parameters)

@@ -158,6 +158,11 @@ class Control:
         return self.machine == "lathe"
 
     @property
+    def on_machine(self) -> bool:
+        """Whether the machine's INI has its say, `on_machine`."""
+        return self.machine_codes is not None
+
+    @property
     def turns_c(self) -> bool:
         """Whether its programs are for a lathe with C and a live tool."""
         return self.is_lathe or bool(self.onto)

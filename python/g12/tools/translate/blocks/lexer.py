@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -32,9 +32,11 @@ MAYBE_WORDS = re.compile(
     r"\s*[/#%:]|\s*(?:[A-Z]\s*[-+.0-9#[=]|IF|WHILE|GOTO|DO|END|RTS|CALL)", re.I
 )
 CORNERS = (",A", ",C", ",R")  # words of direct drawing
-LABEL = re.compile(r"([A-Z_][A-Z0-9_]*):")
 CODE_NUMBER = re.compile(r"([0-9]+)\.?([0-9]*)")
 NAMED_WORD = re.compile(r"([A-Z]{2})=")
+OWN_NAME = "(?:VC[0-9]+|V[A-Z]{3,}[0-9]*)"  # of an Okuma
+MOTION = re.compile(r"G0*([0-3])(?![0-9.])")  # of a block that cannot be read
+HEADER = re.compile(r"\$.*%")  # of a file of an Okuma
 LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
@@ -52,10 +54,26 @@ BRACKET = re.compile("[(){}]")
 OTHER_CHARACTERS = str.maketrans("\N{MINUS SIGN}", "-", "\ufeff\u200b\0")
 DIGITS_AND_LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
+OTHER_TEXTS = {
+    re.compile(r"^\$.*"): "begins the program of one of two channels: translate one channel's "
+    "blocks, in a file of its own",
+    re.compile("^[A-Z_][A-Z0-9_]*:"): "is a label, which these controls do not have: take out the "
+    "colon",
+    re.compile(
+        "^O[A-Z][A-Z0-9]{4,}$"
+    ): "is a name: of O and up to four letters and digits here, or a number, as O1",
+    re.compile("[0-9],[0-9]+"): "has a decimal comma: write a point",
+    re.compile(rf"(?<![A-Z]){OWN_NAME}="): "sets a variable of the control's own: set it on the "
+    "machine, and take this out",
+    re.compile(
+        rf"(?<=[=[]){OWN_NAME}(?!\[)"
+    ): "is a variable of the control's own: write its value",
+}
 ALL_PLANES = frozenset(("G17", "G18", "G19"))
 
 
 REMARKS = "if what is after ; is a remark there, say remarks = true in a control of your own"
+BLOCKS, LINES, ALL = range(3)  # what ; begins: blocks; remarks, as its lines show; remarks always
 
 
 @lru_cache(maxsize=1024)
@@ -157,12 +175,12 @@ def source_lines(text: str) -> list[str]:
 
 
 def blocks_of(
-    line: int, text: str, remarks: bool = False, variables: Mapping[int, str] = MappingProxyType({})
+    line: int, text: str, remarks: int = BLOCKS, variables: Mapping[int, str] = MappingProxyType({})
 ) -> Iterator[ForeignBlock]:
     """Yield the blocks of one line, at least one.
 
-    With ``remarks`` what is after ``;`` is a remark, else it is the next block. ``variables``
-    has what is written for variables of the control's own.
+    ``remarks`` is what ``;`` begins in the program, one of BLOCKS, LINES and ALL. ``variables`` has
+    what is written for variables of the control's own.
     """
     comments: tuple[str, ...] = ()
     try:
@@ -176,19 +194,42 @@ def blocks_of(
         try:
             blocks = _parsed(line, part)
         except NotTranslated as problem:
-            sentence = str(problem).replace(OWN, "")
-            blocks = [ForeignBlock(line, problem=f"{sentence}; {REMARKS}" if number else sentence)]
+            sentence = str(problem).replace(OWN, "") + (f"; {REMARKS}" if number else "")
+            motion = tuple(ForeignWord("G", code) for code in MOTION.findall(part))
+            blocks = [ForeignBlock(line, words=motion, problem=sentence)]
         if number == 0:  # a stop has them as its message
             at = next((at for at, block in enumerate(blocks) if block.kind == "stop"), 0)
             blocks[at] = blocks[at]._replace(comments=blocks[at].comments + comments)
         yield from blocks
 
 
-def _without_comments(text: str, remarks: bool) -> tuple[list[str], tuple[str, ...]]:
+def remarks_of(rows: Iterable[str]) -> int:
+    """Return LINES where a line of a program begins with ``;`` and cannot be words, else BLOCKS."""
+    begun = (row.lstrip() for row in rows)
+    remarks = (row[1:].strip() for row in begun if row.startswith(";"))
+    return LINES if any(text and not _can_be_words(text) for text in remarks) else BLOCKS
+
+
+def _can_be_words(text: str) -> bool:
+    try:
+        parts, _ = _without_comments(text, ALL)
+        return bool(MAYBE_WORDS.match(text)) and bool(_parsed(0, parts[0]))
+    except NotTranslated:
+        return False
+
+
+def _without_comments(text: str, remarks: int) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
     code, comments = _split_comments(text) if BRACKET.search(text) else (text, [])
     code, *rest = code.split(";")
-    blocks = [] if remarks else [part for part in rest if MAYBE_WORDS.match(part)]
+    blocks = [] if remarks == ALL else [part for part in rest if MAYBE_WORDS.match(part)]
+    if remarks == LINES:
+        blocks = [part for part in blocks if code.strip() and _can_be_words(part)]
+    if blocks and remarks == LINES:
+        raise NotTranslated(
+            f"{excerpt(blocks[0].strip())} is a block or a remark: lines of ; are remarks here; "
+            f"write a block on a line of its own; {REMARKS}"
+        )
     comments += [part.strip() for part in rest if part.strip() and part not in blocks]
     code = "".join(";".join([code, *blocks]).upper().split()).translate(OTHER_CHARACTERS)
     parts = [part for part in code.split(";") if part] or [""]
@@ -226,11 +267,12 @@ def printable(comment: str) -> str:
 
 def _parsed(line: int, text: str) -> list[ForeignBlock]:
     """Return the block of a text, and with a condition those that it rules and its end."""
+    if HEADER.fullmatch(text):
+        return [ForeignBlock(line, comments=(text,))]
     if text.startswith("%"):
         return [ForeignBlock(line, "tape", label=printable(text[1:]))]
     if text.startswith(":"):
         text = f"O{text[1:]}"
-    _refuse_other_texts(text)
     skip = SKIP.match(text)
     if skip:
         if skip[1] not in ("", "1"):
@@ -239,6 +281,7 @@ def _parsed(line: int, text: str) -> list[ForeignBlock]:
     if PLAIN_WORDS.fullmatch(text):
         words = tuple(_plain_word(*pair) for pair in PLAIN_WORD.findall(text))
         return [ForeignBlock(line, words=words)]
+    _refuse_other_texts(text)
     return _statement(line, text)
 
 
@@ -247,16 +290,9 @@ def _skipped(line: int, text: str) -> list[ForeignBlock]:
 
 
 def _refuse_other_texts(text: str) -> None:
-    if text.startswith("$"):
-        raise NotTranslated(
-            f"{excerpt(text)} begins the program of one of two channels: translate one channel's "
-            "blocks, in a file of its own"
-        )
-    label = LABEL.match(text)
-    if label:
-        raise NotTranslated(
-            f"{excerpt(label[0])} is a label, which these controls do not have: take out the colon"
-        )
+    for pattern, rule in OTHER_TEXTS.items():
+        if found := pattern.search(text):
+            raise NotTranslated(f"{excerpt(found[0])} {rule}")
 
 
 def _statement(line: int, text: str) -> list[ForeignBlock]:

@@ -61,7 +61,6 @@ class ModalState(NamedTuple):
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
     held: tuple = ()  # slides that LinuxCNC has not moved yet, each with its position
-    known_offsets: tuple = ()  # numbered work offsets that are set, or checked
     turning_cycle: str = UNKNOWN  # the turning cycle that X and Z repeat
     kept: tuple = ()  # values of the first blocks of cycles
     pass_words: tuple = ()  # the words of ``turning_cycle``
@@ -77,6 +76,7 @@ class ModalState(NamedTuple):
     tap_speed: str = UNKNOWN  # the speed of a rigid tap
     tap_top: float | str = UNKNOWN  # the Z level to which it returns
     sizes: tuple = ()  # diameters that G10 L12 has set, by tool
+    known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way
     corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
@@ -107,5 +107,9 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
         key: kept.get(key) if kept.get(key) == others.get(key) else UNSURE
         for key in kept.keys() | others.keys()
     }
-    given, touched = one.given & other.given, one.touched | other.touched
-    return state._replace(kept=tuple(sorted(same.items())), given=given, touched=touched)
+    return state._replace(
+        kept=tuple(sorted(same.items())),
+        known_offsets=one.known_offsets & other.known_offsets,
+        given=one.given & other.given,
+        touched=one.touched | other.touched,
+    )

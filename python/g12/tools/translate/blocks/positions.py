@@ -38,6 +38,12 @@ def known_position(state: ModalState, axis: str) -> float | None:
     return at if isinstance(at, float) else None
 
 
+def is_unmoved(draft: Draft, axis: str) -> bool:
+    """Whether a block ends where it began, as far as that is known."""
+    start = known_position(draft.start, axis)
+    return start is not None and start == known_position(draft.state, axis)
+
+
 def value_text(value: float) -> str:
     """Return a number of the program's as LinuxCNC reads it, with eight decimals."""
     text = f"{value:.8f}".rstrip("0")
@@ -66,7 +72,7 @@ def _is_drilling(draft: Draft) -> bool:
 
 
 def _follow_drilling(draft: Draft) -> None:
-    again = draft.control.value("subprograms", "cycle_repeat", "L") in draft.letters()
+    again = draft.letters() & set(draft.control.value("subprograms", "cycle_repeat", "L"))
     words = [w for w in draft.axis_words() if w.letter in "XY"]
     moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}
     lost = draft.state.distance == "G91" and again and not set(draft.meanings) & PATTERNS

@@ -132,19 +132,26 @@ def _check_words(draft: Draft, code: str, values: dict[str, str]) -> None:
         raise NotTranslated(f"{code} without Z, and no depth before it")
     if NEEDS.get(code) == "Q" and "Q" not in values:
         raise NotTranslated(f"{code} needs Q, the depth of a peck")
-    odd = draft.letters() & set("IJKUVWABC") - {draft.control.value("subprograms", "cycle_repeat")}
+    odd = draft.letters() & set("IJKUVWABC") - set(repeat_letters(draft))
     if odd:
         raise NotTranslated(f"{code} with {min(odd)} is not translated: only Z, R, Q, P, F and L")
 
 
 def repeats_of(draft: Draft) -> str:
     """Return how often the cycle is repeated, "" if that is not said."""
-    word = draft.take(draft.control.value("subprograms", "cycle_repeat", "L"))
-    if not word:
+    words = draft.take_each(repeat_letters(draft))
+    if not words:
         return ""
+    word = words[0]
+    if len(words) > 1:
+        raise NotTranslated(f"{word.text} and {words[1].text}: one of them says how often")
     if word.kind != "number" or not word.value.isdigit():
         raise NotTranslated(f"{word.text}: how often a cycle is repeated must be a whole number")
     return str(int(word.value))
+
+
+def repeat_letters(draft: Draft) -> str:
+    return draft.control.value("subprograms", "cycle_repeat", "L")
 
 
 def _store(draft: Draft, code: str) -> None:

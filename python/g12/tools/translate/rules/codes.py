@@ -82,7 +82,7 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
         return []
     if meaning == "same" or control.is_machines(code):
         return [word]
-    if meaning in BUILDERS and control.machine_codes is not None:
+    if meaning in BUILDERS and control.on_machine:
         raise NotTranslated(
             f"{code} is the machine builder's, and this machine has neither a REMAP line nor "
             f"a file for it: say under [m_codes] of your control what it does"

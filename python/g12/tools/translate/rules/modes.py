@@ -4,33 +4,20 @@
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import AS_PROGRAMMED, GROUP_OF, REFERENCES, UNKNOWN
+from g12.tools.translate.blocks.modal import (
+    AS_PROGRAMMED,
+    GROUP_OF,
+    MOTIONS,
+    REFERENCES,
+    UNKNOWN,
+)
+from g12.tools.translate.rules.reference import cancel_length
 
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 BLOCK_LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 MACHINES_OWN = REFERENCES | {"G53"}
-
-
-def zero_of_missing_axis(draft: Draft) -> None:
-    """Drop ``A0`` on a machine without A: CAM writes it for a fourth axis that is not used.
-
-    A lathe's A and C beside X or Z are an angle and a chamfer, so this is for a machine with Y.
-    A block keeps the word where it would mean another thing without it, as G28 does.
-    """
-    axes = draft.control.axes
-    words = [w for w in draft.axis_words() if w.letter not in axes and w.letter in "ABC"]
-    zeros = [word for word in words if word.is_zero]
-    if "Y" not in axes or not zeros or draft.meanings:
-        return
-    if zeros == draft.axis_words() and not _only_positions(draft):
-        return
-    draft.drop(zeros)
-    draft.comments += [f"{word.text}: no {word.letter} here" for word in zeros]
-
-
-def _only_positions(draft: Draft) -> bool:
-    straight = draft.motion() in ("G0", "G1") and not draft.state.cycle
-    return straight and all(code in GROUP_OF for code in draft.codes())
+SECTION_ENDS = {"polar on": "on", "polar off": "off"}
+ORIGIN_MEANINGS = ("offset by program", "speed limit or origin")
 
 
 def follow_modes(draft: Draft) -> None:
@@ -53,6 +40,17 @@ def follow_modes(draft: Draft) -> None:
     _follow_surface_speed(draft)
 
 
+def keep_modes(draft: Draft) -> None:
+    """Follow the modes of a refused block, or the next ones would be refused for another's."""
+    for word in draft.block.words:
+        meaning = draft.control.meanings.get(word.code, "")
+        code = word.code if meaning == "same" else meaning
+        if code in GROUP_OF:
+            draft.change(**{GROUP_OF[code]: code})
+        elif meaning in SECTION_ENDS:
+            draft.change(polar=SECTION_ENDS[meaning])
+
+
 def _follow_surface_speed(draft: Draft) -> None:
     word = draft.word("S")
     if word and draft.state.spindle_mode == "G96" and not draft.meanings:
@@ -60,16 +58,40 @@ def _follow_surface_speed(draft: Draft) -> None:
 
 
 def axes_at_zero(draft: Draft) -> None:
-    """Keep words of an axis that the machine lacks as comments: it is always at their 0."""
-    if draft.state.polar != "off" or {"polar on", "cylinder"}.intersection(draft.meanings):
+    """Keep words of an axis that the machine lacks as comments: it is always at their 0.
+
+    CAM writes them for an axis that a job does not use. A block of nothing else does nothing: G28
+    would move each axis without them, a drilling cycle would not be repeated.
+    """
+    control, increments = draft.control, draft.increments() if draft.control.is_lathe else []
+    lacking = set(control.at_zero) - set(control.axes)
+    words = [*draft.axis_words(), *increments]
+    zeros = [w for w in words if PARTNERS.get(w.letter, w.letter) in lacking and w.is_zero]
+    alone = bool(zeros) and len(zeros) == len(words)
+    in_section = draft.state.polar != "off" or {"polar on", "cylinder"} & draft.meanings.keys()
+    if in_section or (alone and _repeats_cycle(draft)):
         return
-    lacking = set(draft.control.at_zero) - set(draft.control.axes)
-    letters = [*lacking, *(inc for inc, axis in PARTNERS.items() if axis in lacking)]
-    unmoved = [w for w in draft.words if w.letter in letters and w.is_zero]
-    draft.drop(unmoved)
-    if unmoved and not draft.axis_words() and not draft.increments():
-        draft.comments += draft.take_codes(MACHINES_OWN)  # without an axis G28 moves each of them
-    draft.comments += [word.text for word in unmoved]
+    draft.drop(zeros)
+    if alone:
+        _drop_codes_of_axes(draft)
+    draft.comments += [word.text for word in zeros]
+
+
+def _repeats_cycle(draft: Draft) -> bool:
+    ended = "cancel cycle" in draft.meanings or not MOTIONS.isdisjoint(draft.codes())
+    return bool(draft.state.cycle) and not ended
+
+
+def _drop_codes_of_axes(draft: Draft) -> None:
+    """Keep the codes as comments that would have nothing to act on, or another axis."""
+    codes = draft.take_codes(MACHINES_OWN | {"G52"})
+    draft.comments += codes
+    if not REFERENCES.isdisjoint(codes):
+        cancel_length(draft)
+    for meaning in ORIGIN_MEANINGS:
+        if meaning in draft.meanings and draft.letters().isdisjoint("RS"):
+            words = [draft.meanings.pop(meaning), *draft.take_each("LP")]
+            draft.comments.append(" ".join(word.text for word in words))
 
 
 def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:
@@ -83,7 +105,6 @@ def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:
 
 
 def refuse_leftovers(draft: Draft) -> None:
-    axes = draft.control.axes
     if draft.meanings:
         word = next(iter(draft.meanings.values()))
         raise NotTranslated(f"{word.code} cannot be in this block")
@@ -95,10 +116,19 @@ def refuse_leftovers(draft: Draft) -> None:
             raise NotTranslated(f"{word.letter} is given twice in this block")
         letters.add(word.letter)
         inside = word.letter in INSIDE.get(draft.state.polar, "")
-        if word.letter in AXIS_NUMBERS and word.letter not in axes and not inside:
-            raise NotTranslated(
-                f"{word.text}: this control's machine has the axes {axes}; for another one say "
-                f'axes = "{axes}{word.letter}" in a control of your own'
-            )
+        if word.letter in AXIS_NUMBERS and not inside:
+            check_axis(draft, word)
         if word.letter not in BLOCK_LETTERS and word.letter not in AXIS_NUMBERS and not inside:
             raise NotTranslated(f"{word.text} is not understood in this block")
+
+
+def check_axis(draft: Draft, word: ForeignWord) -> None:
+    axes = draft.control.axes
+    if word.letter in axes:
+        return
+    if draft.control.on_machine:
+        raise NotTranslated(f"{word.text}: the INI's machine has the axes {axes}")
+    raise NotTranslated(
+        f"{word.text}: this control's machine has the axes {axes}; for another one say "
+        f'axes = "{axes}{word.letter}" in a control of your own'
+    )

@@ -63,16 +63,23 @@ def _take_motion(draft: Draft, motion: str) -> None:
 def _bare_words(draft: Draft) -> None:
     state = draft.state
     if state.motion == UNKNOWN:
-        raise NotTranslated(
-            "words without G0 or G1, and none before them: which of them holds at the start is a "
-            "setting of the control"
-        )
+        _assume_rapid(draft)
+        return
     if state.own_motion == AS_PROGRAMMED:
         return
     if state.motion == UNSURE:
         raise NotSure("words without G0 or G1, which is not the same on every way here", "motion")
     draft.put_first(state.motion)
     draft.change(own_motion=AS_PROGRAMMED)
+
+
+def _assume_rapid(draft: Draft) -> None:
+    """Write G0, in which the control powers up, with a message; what may be a cut must say it."""
+    if "F" in draft.letters() or draft.state.polar != "off":
+        raise NotTranslated("no G0 or G1 is before these words: write G1 if they cut, else G0")
+    draft.before.append(f"(MSG, line {draft.block.line}: no G0 or G1 before it, it runs as G0)")
+    draft.put_first("G0")
+    draft.change(motion="G0")
 
 
 def distance_mode(draft: Draft) -> None:
@@ -110,7 +117,7 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
 
 
 PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point
-SETTLED = ("", UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
+SETTLED = ("", UNKNOWN, UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
 
 
 def is_plain(draft: Draft) -> bool:
@@ -122,7 +129,8 @@ def is_plain(draft: Draft) -> bool:
     own = (state.own_motion, state.own_distance, state.own_feed)
     letters = {word.letter for word in words}
     if (
-        (control.onto, state.turning_cycle, state.cycle, state.polar, *own) != SETTLED
+        (control.onto, state.turning_cycle, state.cycle, state.delayed, state.polar, *own)
+        != SETTLED
         or len(letters) < len(words)
         or not all(word.kind == "number" and PLAIN.fullmatch(word.text) for word in words)
         or not letters.isdisjoint(AXIS_NUMBERS.keys() - set(control.axes))

@@ -2,8 +2,9 @@
 """Work offsets beyond LinuxCNC's nine, and offsets that a program sets.
 
 LinuxCNC has no offsets for G154 P1 to P99 (G110 to G129 are the first twenty): they are kept in
-numbered parameters, in machine units as the var file keeps G54's, ten for each: X Y Z A B C from
-``first_parameter`` on. To select one is to copy it into G59.3 and to select that.
+numbered parameters, as the var file keeps G54's (in machine units, angles in degrees), ten for
+each: X Y Z A B C from ``first_parameter`` on. To select one is to copy it into G59.3 and to select
+that.
 
 G10 of these controls: L2 P1-P6 is G54 to G59, P0 is G52; L20 P1-P99 is G154; L10 and L11 are a
 tool's length and its wear, L12 and L13 its diameter and its wear. LinuxCNC's tool table has one
@@ -16,6 +17,7 @@ from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, position
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.rules.modes import check_axis
 
 SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99
@@ -24,6 +26,7 @@ FIRST_PARAMETER = 4001
 LENGTH_WEAR, DIAMETER_WEAR = 3000, 3200  # and the tool's number
 TOOLS = 100
 G52_PARAMETER, G54_PARAMETER = 5211, 5221
+LENGTHS = "XYZ"
 SCALE = "#<machine_units>"
 BARE_HEIGHT = "#<height_without_tool>"
 SET_SCALE = f"{SCALE}=[[25.4 - 24.4 * #<_metric>] / [25.4 - 24.4 * #<_metric_machine>]]"
@@ -53,10 +56,9 @@ def numbered_offset(draft: Draft) -> None:
 
 def _unset_lines(draft: Draft, number: int) -> list[str]:
     """Return lines that report a system that was never set; LinuxCNC then reads 0."""
-    known = () if draft.state.known_offsets == UNSURE else draft.state.known_offsets
-    if number in known:
+    if number in draft.state.known_offsets:
         return []
-    draft.change(known_offsets=(*known, number))
+    draft.change(known_offsets=draft.state.known_offsets | {number})
     parameters = [f"#{_parameter_of(draft, number, axis)}" for axis in draft.control.axes]
     label = f"o<unset_{draft.index}>"
     return [
@@ -119,7 +121,13 @@ def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
     draft.drop(words)
     if not words:
         raise NotTranslated(f"{code} without an axis sets nothing")
+    for word in words:
+        check_axis(draft, word)
     return words
+
+
+def _scaled(by: str, letter: str) -> str:
+    return f" {by} {SCALE}" if letter in LENGTHS else ""
 
 
 def _work_offset(draft: Draft, incremental: bool) -> None:
@@ -131,7 +139,10 @@ def _work_offset(draft: Draft, incremental: bool) -> None:
     texts = [word.text for word in words]
     if incremental:
         parameters = [f"#{first + AXIS_NUMBERS[word.letter] - 1}" for word in words]
-        texts = [f"{w.letter}[{p} / {SCALE} + {w.value}]" for w, p in zip(words, parameters)]
+        texts = [
+            f"{w.letter}[{p}{_scaled('/', w.letter)} + {w.value}]"
+            for w, p in zip(words, parameters)
+        ]
     draft.after.append(" ".join([f"G10 L2 P{number}" if number else "G52", *texts]))
 
 
@@ -142,8 +153,9 @@ def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
     for word in _axis_values(draft, "G10 L20"):
         parameter = f"#{_parameter_of(draft, number, word.letter)}"
         old = f"{parameter} + " if incremental else ""
-        values.append(f"{parameter}=[{old}{word.value} * {SCALE}]")
+        values.append(f"{parameter}=[{old}{word.value}{_scaled('*', word.letter)}]")
     draft.after.append(" ".join(values))
+    draft.change(known_offsets=draft.state.known_offsets | {number})
     if draft.sure("offset", "G10 L20 changes a work offset") == f"P{number}":
         draft.after.append(_load_system(draft, number))
 

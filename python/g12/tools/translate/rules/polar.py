@@ -22,6 +22,7 @@ from g12.tools.translate.blocks.positions import (
     IN_POLAR,
     STAYING,
     axis_of,
+    is_unmoved,
     known_position,
     value_text,
 )
@@ -118,7 +119,7 @@ def inside_polar(draft: Draft) -> None:
     if is_polar:
         if draft.control.value("polar", "c") == "diameter":
             draft.words = [_halved(w) if w.letter in "CH" else w for w in draft.words]
-        if draft.letters() & IN_PLANE and _is_unmoved(draft, "Z"):
+        if draft.letters() & IN_PLANE and is_unmoved(draft, "Z"):
             draft.comment_out("Z")
         _delay_compensation(draft)
     rapid(draft)
@@ -126,11 +127,6 @@ def inside_polar(draft: Draft) -> None:
 
 def _halved(word: ForeignWord) -> ForeignWord:
     return ForeignWord(word.letter, f"[{word.value} / 2]", "expression")
-
-
-def _is_unmoved(draft: Draft, axis: str) -> bool:
-    start = known_position(draft.start, axis)
-    return start is not None and start == known_position(draft.state, axis)
 
 
 def _delay_compensation(draft: Draft) -> None:
@@ -143,7 +139,7 @@ def _delay_compensation(draft: Draft) -> None:
         draft.sure("delayed", "G40 or G41 is before it")
     axes = {axis_of(word.letter) for word in draft.words if word.letter in IN_PLANE}
     is_arc = bool(draft.letters() & set("IJKR"))
-    if axes and (is_arc or not all(_is_unmoved(draft, axis) for axis in axes)):
+    if axes and (is_arc or not all(is_unmoved(draft, axis) for axis in axes)):
         if code not in own:
             draft.put_first(code)
         draft.change(delayed=UNKNOWN)
@@ -170,12 +166,10 @@ def rapid(draft: Draft) -> None:
     if rule == "keep" or not _is_rapid(draft):
         return
     if rule == "refuse":
-        where = SECTION_NAMES[draft.state.polar]
-        raise NotSaid(
-            f'G0 {where}: G1 with a high feed, or rapid = "feed" in [polar]',
-            "polar",
-            'rapid = "feed"',
-        )
+        sentence = f"G0 {SECTION_NAMES[draft.state.polar]}: write G1 with a high feed"
+        if "G0" not in draft.codes():
+            raise NotTranslated(f"{sentence}, or G1 if this is a cut: no G1 is before it")
+        raise NotSaid(f'{sentence}, or say rapid = "feed" in [polar]', "polar", 'rapid = "feed"')
     feed = feed_of_rapids(draft)
     draft.take_codes({"G0"})
     draft.take("F")  # of later blocks

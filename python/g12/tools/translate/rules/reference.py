@@ -27,8 +27,7 @@ def reference_point(draft: Draft) -> None:
         draft.comments.append(f"{code}.1 was never set on this machine: machine zero")
     if draft.control.is_lathe:
         _from_here(draft, code)
-    if draft.control.value("reference", "cancels_length", False):
-        _cancel_length(draft)
+    cancel_length(draft)
 
 
 def _from_here(draft: Draft, code: str) -> None:
@@ -55,8 +54,10 @@ def _absolute(draft: Draft, word: ForeignWord) -> ForeignWord:
     return ForeignWord(axis, value, "expression")
 
 
-def _cancel_length(draft: Draft) -> None:
-    """Cancel the tool length: at once without an intermediate point, else after the block."""
+def cancel_length(draft: Draft) -> None:
+    """Cancel the tool length where the control does: at once without an intermediate point."""
+    if not draft.control.value("reference", "cancels_length", False):
+        return
     draft.change(length="0")
     passes = any(w.kind == "expression" or w.number for w in draft.axis_words())
     if not passes and (draft.state.distance == "G91" or not draft.axis_words()):

@@ -3,12 +3,15 @@
 
 import re
 
-from g12.tools.translate.blocks.draft import Draft, word_of
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.positions import is_unmoved
+from g12.tools.translate.rules.polar import SECTION_NAMES
 from g12.tools.translate.rules.spindle import SPINDLE_M_CODES
 
+PLANES = {"G18": "XZ", "G19": "YZ"}
 COMPENSATION_ON = frozenset(("G41", "G42"))
 PLAIN_POCKETS = frozenset(("G12", "G13"))
 USES_D = COMPENSATION_ON | PLAIN_POCKETS
@@ -17,8 +20,11 @@ USES_D = COMPENSATION_ON | PLAIN_POCKETS
 def tool_and_offsets(draft: Draft) -> None:
     if draft.control.is_lathe:
         _turret_word(draft)
+        if COMPENSATION_ON.intersection(draft.codes()) and not draft.word("D"):
+            draft.words += offsets_radius(draft)
     else:
         _length_offset(draft)
+        _wait_for_the_plane(draft)
         _radius_offset(draft)
         if word := draft.word("T"):
             draft.change(next_tool=word.value.lstrip("0") or "0")
@@ -46,7 +52,27 @@ def _turret_word(draft: Draft) -> None:
         why = "LinuxCNC's tool change stops the spindle (say M3, M4 or M5 in the block of T)"
         draft.words += map(word_of, filter(None, [draft.sure("spindle", why)]))
     draft.comments += [word.text] if loaded else []
-    draft.change(tool=str(tool) if tool else draft.state.tool, length=str(max(offset, 0)))
+    length = str(offset) if offset >= 0 else UNKNOWN
+    if draft.start.compensation != "G40" and draft.state.length != length:
+        raise NotTranslated(f"{word.text} changes the radius of G41 or G42: write G40 before it")
+    draft.change(tool=str(tool) if tool else draft.state.tool, length=length)
+
+
+def offsets_radius(draft: Draft) -> list[ForeignWord]:
+    """Return the D word by which G41 or G42 of a lathe takes the radius of the offset in force."""
+    why = "G41 and G42 take the radius of T's offset"
+    offset, tool = draft.sure("length", why), draft.sure("tool", why)
+    if offset in (UNKNOWN, tool):
+        return []
+    if offset == "0":
+        raise NotTranslated("G41 or G42, and T says no offset whose radius it takes: as T0101")
+    if draft.state.polar != "off":
+        raise NotTranslated(
+            f"G41 or G42 {SECTION_NAMES[draft.state.polar]} takes the loaded tool's radius, not "
+            f"that of offset {offset}: give the tool offset {offset}'s values in the tool table, "
+            "and write T with one number for both, as T0101"
+        )
+    return [word_of(f"D{offset}")]
 
 
 def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
@@ -83,7 +109,10 @@ def _length_offset(draft: Draft) -> None:
     if word and "G43" not in codes:
         raise NotTranslated("H without G43 in its block: write G43 before it")
     if "G43" in codes and not word:
-        raise NotTranslated("G43 without H: LinuxCNC would take the loaded tool's length")
+        word = ForeignWord("H", draft.sure("length", "G43 without H takes the last one"))
+        if word.value in (UNKNOWN, "0"):
+            raise NotTranslated("G43 without H, and no H before it: LinuxCNC would take T's length")
+        draft.words.append(word)
     if not word:
         return
     if word.is_zero:
@@ -91,6 +120,34 @@ def _length_offset(draft: Draft) -> None:
         draft.take_codes({"G43"})
         draft.words.append(word_of("G49"))
     draft.change(length=word.value.lstrip("0") or "0")
+
+
+def _wait_for_the_plane(draft: Draft) -> None:
+    """Write G41 and G42 with the next move in the plane: LinuxCNC refuses a Z move before it."""
+    codes, own = draft.codes(), COMPENSATION_ON.intersection(draft.codes())
+    if draft.control.onto or not (own or draft.state.delayed):
+        return
+    plane = PLANES.get(draft.state.plane, "XY")
+    moves = any(w.letter in plane and not is_unmoved(draft, w.letter) for w in draft.axis_words())
+    if own and not moves and (draft.axis_words() or _next_move_is_beside(draft, plane)):
+        draft.change(delayed=draft.take_codes(own)[0])
+        draft.comments.append(f"{draft.state.delayed} with the next move")
+    elif own or "G40" in codes:
+        draft.change(delayed=UNKNOWN)
+    elif moves and CONSUMERS.isdisjoint(codes):
+        draft.put_first(draft.sure("delayed", "G41 or G42 is before this move"))
+        draft.change(delayed=UNKNOWN)
+
+
+def _next_move_is_beside(draft: Draft, plane: str) -> bool:
+    """Whether the next move of the program is not in its plane."""
+    for index, block in draft.program:
+        letters = {word.letter for word in block.words}
+        if index > draft.index and (block.kind != "words" or letters & {*plane, *"OPQ"}):
+            return False
+        if index > draft.index and letters & AXIS_NUMBERS.keys():
+            return True
+    return False
 
 
 def _radius_offset(draft: Draft) -> None:
@@ -116,7 +173,7 @@ def _compensated_again(draft: Draft) -> None:
     """
     on = next((word for word in draft.words if word.code[:3] in COMPENSATION_ON), None)
     before = draft.start
-    if not on or before.polar != "off" or draft.control.onto:
+    if not on or before.polar != "off" or before.delayed or draft.control.onto:
         return
     if before.compensation not in (on.code[:3], UNSURE):
         return

@@ -22,6 +22,7 @@ from g12.tools.translate.blocks.modal import (
 from g12.tools.translate.blocks.positions import FIELDS
 from g12.tools.translate.rules.motion import in_absolute_words, needs_g90
 from g12.tools.translate.rules.polar import own_feed_ended
+from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
 from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
     named_blocks,
@@ -190,8 +191,9 @@ def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: comple
     """Write moves without nose compensation; it is restored after them."""
     on = draft.sure("compensation", "roughing is not compensated")
     _write_moves(draft, moves, start, motion=UNSURE, own_motion=UNSURE)
-    if on in ("G41", "G42"):
-        draft.after = ["G40", *draft.after, on]
+    if on in COMPENSATION_ON:
+        radius = (word.text for word in offsets_radius(draft))
+        draft.after = ["G40", *draft.after, " ".join([on, *radius])]
 
 
 def _pattern_repeating(draft: Draft, meaning: str) -> None:

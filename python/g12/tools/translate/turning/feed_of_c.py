@@ -11,7 +11,7 @@ from math import hypot
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
-from g12.tools.translate.blocks.modal import CONSUMERS, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import axis_of, known_position, value_text
 
 LEAST_SLIDE_MM = 0.001  # a slide moves by that or not at all
@@ -41,7 +41,7 @@ def feed_of_c(draft: Draft) -> None:
 def _is_feed(draft: Draft) -> bool:
     other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
     codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
-    return draft.motion() != "G0" and not other and not codes
+    return draft.motion() not in ("G0", UNKNOWN) and not other and not codes
 
 
 def distances(draft: Draft, axes: set[str]) -> dict[str, float]:

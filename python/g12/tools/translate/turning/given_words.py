@@ -9,6 +9,7 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import MOVES, ModalState
 from g12.tools.translate.blocks.positions import known_position
 from g12.tools.translate.rules import codes, decimals, modes
+from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
 from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
 
 SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
@@ -173,6 +174,8 @@ def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
             values[word.letter] = word.number
         elif word.letter in BESIDE_CYCLE or word.code in KEPT_MODES:
             others.append(word.text)
+            if word.code in COMPENSATION_ON:
+                others += [radius.text for radius in offsets_radius(reader)]
         elif word.letter != "N" and word.code not in IN_CONTOURS:
             raise NotTranslated(f"{word.text} cannot be in a contour")
     own = next((code for code in reader.codes() if code in MOVES), motion)
