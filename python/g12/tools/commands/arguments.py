@@ -95,7 +95,7 @@ def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
 
 
 def report_line_numbers(name: str, opened: OpenedProgram) -> None:
-    """Report if the lines of a command's output are not those of the user's file."""
+    """Report if a command's text or lines are not what the user expects of the file."""
     if opened.note:
         print_error(f"g12 {name}", opened.note)
 

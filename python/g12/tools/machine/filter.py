@@ -31,12 +31,13 @@ class OpenedProgram:
     """A program: the user's file, the text that LinuxCNC reads, and the user's line numbers.
 
     Without a filter ``path`` is the user's file. Then, and where the user's lines are unknown,
-    ``lines`` is empty.
+    ``lines`` is empty. ``other_case`` is the suffix that has a filter where this one has none.
     """
 
     source: Path
     path: Path
     lines: tuple[int, ...] = ()
+    other_case: str = ""
 
     @property
     def is_filtered(self) -> bool:
@@ -56,7 +57,12 @@ class OpenedProgram:
 
     @property
     def note(self) -> str:
-        """A note on the line numbers, "" if they are the user's."""
+        """A note on the text or its line numbers, "" if they are the user's."""
+        if self.other_case:
+            return (
+                f"{self.source}: LinuxCNC reads it as it is: the INI's [FILTER] has "
+                f"{self.other_case}, not {self.source.suffix[1:]}"
+            )
         if self.lines or not self.is_filtered:
             return ""
         return f"{self.source}: lines are those of the program that the INI's [FILTER] makes of it"
@@ -79,9 +85,19 @@ class OpenedProgram:
 
 
 def filter_for(program: Path, ini: Ini) -> str | None:
-    """Return the command of the INI's [FILTER] for a program's suffix, None if there is none."""
+    """Return the command of the INI's [FILTER] for a program's suffix, None if there is none.
+
+    As on the screens the suffix is looked up as it is written: NC is not nc.
+    """
     suffix = program.suffix[1:]
     return ini.get("FILTER", suffix) if suffix else None
+
+
+def case_with_filter(program: Path, ini: Ini) -> str:
+    """Return a program's suffix in the case that has a filter, "" if none has."""
+    suffix = program.suffix[1:]
+    cases = {suffix.lower(), suffix.upper()} - {suffix}
+    return next((case for case in sorted(cases) if ini.get("FILTER", case)), "")
 
 
 @contextmanager
@@ -89,7 +105,7 @@ def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
     """Yield a program as LinuxCNC reads it; an error inside names the user's file and lines."""
     command = filter_for(program, ini)
     if not command:
-        yield OpenedProgram(program, program)
+        yield OpenedProgram(program, program, other_case=case_with_filter(program, ini))
         return
     with tempfile.TemporaryDirectory(prefix="g12-filter-") as folder:
         path = Path(folder, program.name)
