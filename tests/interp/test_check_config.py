@@ -15,10 +15,21 @@ import pytest
 from g12.tools.commands import check, install, uninstall
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, PROBLEM
+from g12.tools.install.lathe.hal_pins import pins_missing
 from g12.tools.system import COMMAND
 from support.kinematics import marked
+from support.sample_configs import SAMPLES
 from support.sim_machines import ROOT, SIM, trace_text
-from support.small_configs import HAAS, LATHE, MILL, content_of, restored, with_lines, write_config
+from support.small_configs import (
+    HAAS,
+    LATHE,
+    MILL,
+    config_of,
+    content_of,
+    restored,
+    with_lines,
+    write_config,
+)
 
 REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{HAAS}"
 PYTHON = f"[PYTHON]\nTOPLEVEL = {ROOT}/python/toplevel.py\nPATH_PREPEND = {ROOT}/python\n"
@@ -335,3 +346,17 @@ def test_the_installed_copy_checks_and_uninstalls_itself(tmp_path):
         )
         assert done.returncode == 0, done.stdout + done.stderr
     assert content_of(tmp_path) == before
+
+
+WRONG_SAMPLES = {  # that name pins of earlier versions of LinuxCNC: it does not start with them
+    "rolfmill.ini",
+    "3-axis-servo.ini",
+    "3-axis-stepper.ini",
+}
+
+
+def test_the_pins_of_linuxcncs_own_samples_are_there():
+    inis = sorted(SAMPLES.rglob("*.ini"))
+    wrong = {ini.name for ini in inis if any(pins_missing(config_of(ini)))}
+    assert inis
+    assert wrong <= WRONG_SAMPLES

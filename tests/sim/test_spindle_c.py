@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.commands import check, install, uninstall
+from g12.tools.commands import check, install, run, uninstall
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -277,8 +277,11 @@ def plain_lathe(folder):
     parts = "lathe_spindle_c", "lathe_spindle_c_mm", "lathe_mm"
     text = "".join((sim / "parts" / f"{part}.inc").read_text() for part in parts)
     cut = text[: text.index("[SPINDLE_C]")] + text[text.index("[KINS]") :]
+    ours = ("HALFILE", "HALCMD", "PROGRAM_EXTENSION")
     lines = [
-        line for line in cut.splitlines() if not line.startswith(("HALFILE", "HALCMD", "nc ="))
+        line
+        for line in cut.splitlines()
+        if not (line.startswith(ours) or " translate --control " in line)
     ]
     hal = "\n".join(lines).replace("[HAL]", "[HAL]\nHALFILE = plain.hal")
     python = hal[hal.index("[PYTHON]") : hal.index("[TASK]")]
@@ -305,6 +308,30 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert install.main([str(ini), *options]) == 0  # again: nothing
     assert uninstall.main([str(ini)]) == 0
     assert ini.read_bytes() == before
+
+
+def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
+    ini, pins, program = plain_lathe(tmp_path), tmp_path / "spindle.toml", tmp_path / "part.ngc"
+    before = ini.read_bytes()
+    pins.write_text(PINS.replace("drive-pid.command", "drive-pid.comand"))
+    program.write_text("M2\n")
+    assert install.main([str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
+    wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
+    assert capsys.readouterr().err == (
+        f"g12 install: {wrong}; cure: write drive-pid.command, if that is meant\n"
+    )
+    assert ini.read_bytes() == before
+    for line, says in (
+        ("HALCMD = unlinkp drive-pid.comand", "HAL: ERROR: pin 'drive-pid.comand' not found"),
+        ("HALCMD = net c-follows drive-pid.comand", "Pin 'drive-pid.comand' does not exist"),
+        ("HALFILE = wrong.hal", "wrong.hal:2: Pin 'drive-pid.comand' does not exist"),
+    ):
+        (ini.parent / "wrong.hal").write_text("# of ours\nnet c-follows drive-pid.comand\n")
+        ini.write_bytes(before.replace(b"plain.hal\n", f"plain.hal\n{line}\n".encode()))
+        assert check.main([str(ini)]) == 1
+        assert "there is no pin drive-pid.comand" in capsys.readouterr().out
+        assert run.main([str(program), "--ini", str(ini)]) == 2
+        assert says in capsys.readouterr().err.splitlines()[-1]
 
 
 @needs_kinematics
