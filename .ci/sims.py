@@ -86,10 +86,10 @@ SPINDLES = (
     "REMAP = M35 modalgroup=10 prolog=spindle_c_on ngc=spindle_c_on epilog=spindle_c_is_on",
 )
 PROGRAMS = {
-    "haas-mill": "Haas programs",
-    "yasnac-mill": "Yasnac programs",
-    "mitsubishi-mill": "Mitsubishi programs",
-    "fanuc-lathe": "Fanuc programs, G code system A",
+    "haas-mill": ("Haas programs", ("nc",)),
+    "yasnac-mill": ("Yasnac programs", ("nc", "tap")),
+    "mitsubishi-mill": ("Mitsubishi programs", ("nc", "tap")),
+    "fanuc-lathe": ("Fanuc programs of G code system A", ("nc", "tap")),
 }
 
 
@@ -266,14 +266,15 @@ def display(machine: Machine, screen: str) -> list[str]:
 
 
 def filters(machine: Machine) -> list[str]:
-    lines = [f"PROGRAM_EXTENSION = .nc {PROGRAMS[machine.control]}"]
-    events = machine.slides[-1].letter == "Z"
-    if events:
-        lines.append("PROGRAM_EXTENSION = .dyn Dynapath circle mill events")
-    lines.append(f"nc = {COMMAND} translate --control {machine.control}")
-    if events:
-        lines.append(f"dyn = {COMMAND} dynapath --units {machine.unit}")
-    return lines
+    kinds = [(*PROGRAMS[machine.control], f"translate --control {machine.control}")]
+    if machine.slides[-1].letter == "Z":
+        kinds.append(("Dynapath circle mill events", ("dyn",), f"dynapath --units {machine.unit}"))
+    shown, opened = [], []
+    for what, names, command in kinds:
+        endings = [ending for name in names for ending in (name, name.upper())]
+        shown.append(f"PROGRAM_EXTENSION = {','.join(f'.{ending}' for ending in endings)} {what}")
+        opened += [f"{ending} = {COMMAND} {command}" for ending in endings]
+    return shown + opened
 
 
 def interpreter(machine: Machine) -> list[str]:

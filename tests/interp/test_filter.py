@@ -2,14 +2,20 @@
 """Programs that an INI's [FILTER] rewrites: every command opens them as the screens do."""
 
 import json
+import re
+import shutil
+import subprocess
+from pathlib import Path
 
 import pytest
 
 from g12.tools.commands import main
 from g12.tools.machine.filter import OpenedProgram, filter_for, lines_of_source, opened_program
 from g12.tools.machine.ini import read_ini
+from g12.tools.system import PYTHON
 from support.foreign_programs import FOREIGN
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
+from support.small_configs import package_of, put_in, write_config
 
 POCKET = """\
 %
@@ -35,6 +41,9 @@ def without_progress(errors):
 
 
 TRANSLATE = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
+
+
+small_package = package_of({"python/g12/__init__.py": b""})
 
 
 @pytest.fixture(scope="module")
@@ -150,6 +159,34 @@ def test_a_program_without_a_filter_is_the_users_file(sim):
     with opened_program(program, read_ini(sim / "mill_inch.ini")) as opened:
         assert (opened.path, opened.lines) == (program, ())
         assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
+
+
+def test_screens_open_both_cases_through_the_filter(tmp_path):
+    """By LinuxCNC's own reader, in AXIS's function; those of gmoccapy and QtVCP equal it."""
+    ini = write_config(tmp_path)
+    put_in(ini, "programs-okuma-lathe")
+    ask = "import linuxcnc, os, re, sys\ninifile = linuxcnc.ini(sys.argv[1])\n"
+    source = Path(shutil.which("axis")).read_text()
+    ask += re.search(r"def get_filter\(.*?(?=\ndef )", source, re.DOTALL)[0]
+    ask += "\nfor name in sys.argv[2:]: print(get_filter(name))\n"
+    names = ["PART.MIN", "part.min", "PART.NC", "part.nc", "part.ngc", "part"]
+    done = subprocess.run([PYTHON, "-c", ask, str(ini), *names], capture_output=True, text=True)
+    command = "python3 g12/python/g12 translate --control okuma-lathe"
+    assert done.stdout.splitlines() == [command] * 4 + ["None"] * 2
+    own = read_ini(ini)
+    assert [filter_for(Path(name), own) for name in names] == [command] * 4 + [None] * 2
+    (shown,) = own.all("FILTER", "PROGRAM_EXTENSION")
+    assert shown.split()[0].split(",") == [".min", ".MIN", ".nc", ".NC"]
+
+
+def test_a_program_whose_case_has_no_filter_is_said_to_be_read_as_it_is(sim, tmp_path, capsys):
+    program, ini = tmp_path / "PART.NC", mill_with(sim, TRANSLATE)
+    program.write_text("G20 G0 X1\nM2\n")
+    text = (sim / "parts" / "own.inc").read_text()
+    (sim / "parts" / "own.inc").write_text(text.replace("\nNC = ", "\n# NC = "))
+    assert main.main(["trace", str(program), "--ini", str(ini)]) == 0
+    says = f"{program}: LinuxCNC reads it as it is: the INI's [FILTER] has nc, not NC\n"
+    assert capsys.readouterr().err == f"g12 trace: {says}"
 
 
 def test_any_filter_is_applied(sim, tmp_path):

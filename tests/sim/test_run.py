@@ -14,7 +14,7 @@ from g12.tools.commands import main, run
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.moves import Error
 from g12.tools.system import COMMAND
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, SIM, copy_of_machines
 
 
 @pytest.fixture
@@ -169,3 +169,17 @@ def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, li
 def test_a_run_of_unknown_length_has_the_usual_time():
     ini = read_ini(SIM / "mill_mm.ini")
     assert run.default_timeout(None, ini, 100.0) == run.USUAL_TIMEOUT
+
+
+def test_bytes_that_are_no_utf8_run(tmp_path, capsys):
+    """In the INI and the program, whose message LinuxCNC's own screens could not show."""
+    machines = copy_of_machines(tmp_path)
+    text = (machines / "mill_mm.ini").read_bytes().replace(b"MACHINE = ", b"MACHINE = M\xfchle ")
+    (machines / "mill_mm.ini").write_bytes(b"# K\xf6ln\n" + text)
+    program = tmp_path / os.fsdecode(b"Fr\xe4se.ngc")
+    program.write_bytes(b"(Fr\xe4sen)\nG21 G90 F3000\nG1 X1\n(MSG, L\xe4nge)\nM2\n")
+    assert main.main(["run", str(program), "--ini", str(machines / "mill_mm.ini")]) == 0
+    assert capsys.readouterr().out.splitlines()[:2] == [
+        "message: L?nge",
+        "ends at X1 Y0 Z0 (machine position, mm)",
+    ]

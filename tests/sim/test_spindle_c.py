@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.commands import check, install, uninstall
+from g12.tools.commands import check, install, run, uninstall
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -301,6 +301,30 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert install.main([str(ini), *options]) == 0  # again: nothing
     assert uninstall.main([str(ini)]) == 0
     assert ini.read_bytes() == before
+
+
+def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
+    ini, pins, program = plain_lathe(tmp_path), tmp_path / "spindle.toml", tmp_path / "part.ngc"
+    before = ini.read_bytes()
+    pins.write_text(PINS.replace("drive-pid.command", "drive-pid.comand"))
+    program.write_text("M2\n")
+    assert install.main([str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
+    wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
+    assert capsys.readouterr().err == (
+        f"g12 install: {wrong}; cure: write drive-pid.command, if that is meant\n"
+    )
+    assert ini.read_bytes() == before
+    for line, says in (
+        ("HALCMD = unlinkp drive-pid.comand", "HAL: ERROR: pin 'drive-pid.comand' not found"),
+        ("HALCMD = net c-follows drive-pid.comand", "Pin 'drive-pid.comand' does not exist"),
+        ("HALFILE = wrong.hal", "wrong.hal:2: Pin 'drive-pid.comand' does not exist"),
+    ):
+        (ini.parent / "wrong.hal").write_text("# of ours\nnet c-follows drive-pid.comand\n")
+        ini.write_bytes(before.replace(b"plain.hal\n", f"plain.hal\n{line}\n".encode()))
+        assert check.main([str(ini)]) == 1
+        assert "there is no pin drive-pid.comand" in capsys.readouterr().out
+        assert run.main([str(program), "--ini", str(ini)]) == 2
+        assert says in capsys.readouterr().err.splitlines()[-1]
 
 
 @needs_kinematics

@@ -109,10 +109,25 @@ def test_a_file_that_may_not_be_read_is_reported_in_one_line(files, monkeypatch,
     assert ends(capsys, "verify", files.program, "--ini", files.ini) == (2, says)
 
 
-ANY_TABLE = ["", "; none yet\n", TOOLS, "P1 T1 D6 ; mill\nd.25 t2\n", "T3\n"]
+ANY_TABLE = ["", "; \udce4\n", TOOLS, "P1 T1 D6 ; mill\nd.25 t2\n", "T3\n"]
 NO_TABLE = [MILL, "G21\nT1 M6\nM2\n", "P1 D6\n"]
-ANY_VAR = ["", "5220\t1.000000\n5221\t-10.5\n\n", " 31 5 kept\n"]
-NO_VAR = [MILL, TOOLS, "5221 1\n5220 1\n", "5221 1\n5221 2\n", "5221\n"]
+ANY_VAR = ["", "5220\t1.000000\n5221\t-10.5\n\n", " 31 5 kept\n", "# \udce4\n31 1e300\n"]
+NO_VAR = [MILL, TOOLS, "5221 1\n5220 1\n", "5221 1\n5221 2\n", "5221\n", "9999999999 1\n"]
+MEASURES = [  # a file of numbers beyond all measure, its reader, what is said of it
+    (
+        "5221\t1e400\n",
+        tables.var_file,
+        ":1: 5221 1e400: no number that a machine can have, 1e+09 is",
+    ),
+    ("5220 1\n5223 1e17\n", tables.var_file, ":2: 5223 1e17: no number that a machine can have"),
+    ("31 nan\n", tables.var_file, ":1: 31 nan: no number that a machine can have"),
+    ("31 -inf\n", tables.var_file, ":1: 31 -inf: no number that a machine can have"),
+    (f"31 {'9' * 400}\n", tables.var_file, ":1: 31 999"),
+    ("5602 1\n", tables.var_file, ": 5602: the last parameter is 5601"),
+    ("T1 P1 D1e400\n", tables.tool_table, ":1: D1E400: no number that a machine can have"),
+    ("T1\nT2 Znan\n", tables.measured_tools, ":2: ZNAN: no number that a machine can have"),
+    (f"T{'9' * 5000} P1\n", tables.tool_table, ":1: T999"),
+]
 
 
 @pytest.mark.parametrize(
@@ -125,12 +140,22 @@ NO_VAR = [MILL, TOOLS, "5221 1\n5220 1\n", "5221 1\n5221 2\n", "5221\n"]
 def test_tool_tables_and_var_files(tmp_path, reader, right, wrong, says):
     path = tmp_path / "any"
     for text in right:
-        path.write_text(text)
+        path.write_bytes(text.encode(errors="surrogateescape"))
         assert reader(path) == path
     for text in wrong:
         path.write_text(text)
         with pytest.raises(UsageError, match=says):
             reader(path)
+
+
+@pytest.mark.parametrize(("text", "reader", "says"), MEASURES)
+def test_a_number_beyond_all_measure_is_one_sentence(tmp_path, text, reader, says):
+    path = tmp_path / "any"
+    path.write_text(text)
+    with pytest.raises(UsageError) as refused:
+        reader(path)
+    assert str(refused.value).startswith(f"{path}{says}")
+    assert len(str(refused.value)) < len(str(path)) + 150
 
 
 def test_errors_of_linuxcnc_are_explained(files):

@@ -276,12 +276,12 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.count("\n") == 1
 
 
-def test_a_note_is_no_reason_to_fail_and_every_finding_shows_its_name(
+def test_only_a_problem_is_a_reason_to_fail_and_every_finding_shows_its_name(
     tmp_path, capsys, monkeypatch
 ):
     ini = write_config(tmp_path, GOOD)
     said = {}
-    for level, code in ((NOTE, 0), (WARNING, 1), (PROBLEM, 1)):
+    for level, code in ((NOTE, 0), (WARNING, 0), (PROBLEM, 1)):
         finding = ConfigFinding(level, "some-name", "something", "a cure")
         monkeypatch.setattr(check, "check_config", lambda text, f=finding: (config_of(ini), [f]))
         assert check.main([str(ini)]) == code

@@ -3,13 +3,15 @@
 
 import pytest
 
+from g12.tools.install.config.filters import filter_findings, installed_programs, wrong_filters
 from g12.tools.install.plan import Refused, make_plan
-from g12.tools.install.rules import installed_programs, wrong_filters
 from support.small_configs import LATHE, config_of, package_of, put_in, restored, write_config
 
-FILTER = """\
-PROGRAM_EXTENSION = .nc Programs of haas-mill
-nc = python3 g12/python/g12 translate --control haas-mill
+COMMAND = "python3 g12/python/g12 translate --control"
+FILTER = f"""\
+PROGRAM_EXTENSION = .nc,.NC Programs of haas-mill
+nc = {COMMAND} haas-mill
+NC = {COMMAND} haas-mill
 """
 
 
@@ -26,12 +28,100 @@ def test_a_section_of_its_own(tmp_path):
         assert installed_programs(config_of(ini)) == ["haas-mill"]
 
 
-def test_a_filter_of_the_users_own_for_the_suffix_is_refused(tmp_path):
+@pytest.mark.parametrize(
+    ("control", "suffixes"),
+    [
+        ("fanuc-mill", "nc NC tap TAP"),
+        ("doosan-lathe", "nc NC tap TAP"),
+        ("okuma-lathe", "min MIN nc NC"),
+        ("mazak-integrex", "eia EIA nc NC"),
+        ("haas-lathe", "nc NC"),
+    ],
+)
+def test_each_usual_extension_is_opened_in_both_cases(tmp_path, control, suffixes):
     ini = write_config(tmp_path)
-    ini.write_text(f"{ini.read_text()}\n[FILTER]\nnc = mine\n")
+    with restored(ini):
+        put_in(ini, f"programs-{control}")
+        filters = ini.read_text().partition("[FILTER]\n")[2].partition("# <<<")[0]
+        shown = ",".join(f".{suffix}" for suffix in suffixes.split())
+        assert filters.splitlines() == [
+            f"PROGRAM_EXTENSION = {shown} Programs of {control}",
+            *(f"{suffix} = {COMMAND} {control}" for suffix in suffixes.split()),
+        ]
+
+
+def test_an_older_installation_gets_the_missing_lines_with_its_own_command(tmp_path):
+    ini = write_config(tmp_path)
+    with restored(ini):
+        put_in(ini, "programs-fanuc-mill")
+        old = f"{COMMAND} fanuc-mill --decimals least"
+        newer = ini.read_text()
+        lines = [line for line in newer.splitlines(True) if not line.startswith(("NC", "ta", "TA"))]
+        older = "".join(lines).replace(f"nc = {COMMAND} fanuc-mill", f"nc = {old}")
+        ini.write_text(older)
+        put_in(ini, "programs-fanuc-mill")
+        text = ini.read_text()
+        assert [line for line in text.splitlines() if line.endswith("least")] == [
+            f"{suffix} = {old}" for suffix in ("nc", "NC", "tap", "TAP")
+        ]
+        assert "PROGRAM_EXTENSION = .NC,.tap,.TAP Programs of fanuc-mill\n" in text
+        assert list(filter_findings(config_of(ini))) == []
+
+
+@pytest.mark.parametrize("suffix", ["nc", "NC", "TAP"])
+def test_a_filter_of_the_users_own_for_a_suffix_is_refused(tmp_path, suffix):
+    ini = write_config(tmp_path)
+    ini.write_text(f"{ini.read_text()}\n[FILTER]\n{suffix} = mine\n")
     with pytest.raises(Refused) as refused:
-        make_plan(config_of(ini), ["programs-haas-mill"])
-    assert refused.value.args[0].text == "[FILTER] nc = mine is there already"
+        make_plan(config_of(ini), ["programs-fanuc-mill"])
+    assert refused.value.args[0].text == f"[FILTER] {suffix} = mine is there already"
+
+
+CASES = [  # the lines of [FILTER], what `check` says of them
+    ("nc = {haas}\nNC = {haas}\n", []),
+    ("nc = {haas}\n", ["[FILTER] nc is there, NC is not: LinuxCNC would run PART.NC as it is"]),
+    ("NC = {haas}\n", ["[FILTER] NC is there, nc is not: LinuxCNC would run PART.nc as it is"]),
+    ("nc = {haas}\nNC = {fanuc}\n", [
+        "[FILTER] nc and NC differ: .NC files are opened by", "[FILTER] NC and nc differ"]),
+    ("dyn = {events}\n", ["[FILTER] dyn is there, DYN is not"]),
+    ("py = python3\n", []),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("lines", "says"), CASES)
+def test_a_suffix_that_lacks_its_other_case_is_found(tmp_path, lines, says):
+    (tmp_path / "python" / "g12").mkdir(parents=True)
+    package = f"python3 {tmp_path}/python/g12"
+    commands = {
+        "haas": f"{package} translate --control haas-mill",
+        "fanuc": f"{package} translate --control fanuc-mill",
+        "events": f"{package} dynapath --units mm",
+    }
+    ini = write_config(tmp_path)
+    ini.write_text(f"{ini.read_text()}\n[FILTER]\n{lines.format(**commands)}")
+    found = list(filter_findings(config_of(ini)))
+    assert len(found) == len(says)
+    assert all(finding.text.startswith(text) for finding, text in zip(found, says))
+
+
+def test_programs_that_no_filter_takes_are_named(tmp_path):
+    (tmp_path / "python" / "g12").mkdir(parents=True)
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name in ("a.nc", "B.TAP", "c.Nc", "own.ngc", "d", "e.min"):
+        (programs / name).write_text("")
+    command = f"python3 {tmp_path}/python/g12 translate --control fanuc-mill"
+    ini = write_config(tmp_path)
+    ini.write_text(
+        f"{ini.read_text()}\n[DISPLAY]\nPROGRAM_PREFIX = programs\n[FILTER]\n"
+        f"nc = {command}\nNC = {command}\n"
+    )
+    (finding,) = filter_findings(config_of(ini))
+    assert (finding.level, finding.text) == (
+        "warning",
+        "[DISPLAY] PROGRAM_PREFIX = programs: B.TAP, c.Nc: no [FILTER] takes these programs of "
+        "fanuc-mill: LinuxCNC would run them as they are",
+    )
 
 
 @pytest.mark.parametrize(
@@ -50,7 +140,7 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     ini.write_text(
         f"{ini.read_text()}\n[FILTER]\nnc = python3 {command} translate --control {control}\n"
     )
-    (finding,) = wrong_filters(config_of(ini))
+    (finding, *_) = wrong_filters(config_of(ini))
     assert text in finding.text
 
 

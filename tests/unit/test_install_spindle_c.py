@@ -7,7 +7,7 @@ from g12.tools.errors import UsageError
 from g12.tools.install.config import features
 from g12.tools.install.lathe import kinematics_rules
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
-from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
+from g12.tools.install.lathe.spindle_c import live_spindle_missing, read_pins, spindle_c_findings
 from g12.tools.install.plan import Refused, make_plan
 from support.small_configs import TURNING as LATHE
 from support.small_configs import TURNING_HAL as HAL
@@ -30,7 +30,18 @@ brake = "drive.brake"
 REFUSED = [  # what is changed of the INI or the HAL file, what is said
     ("trivkins coordinates=xzc", "trivkins coordinates=xza", "no joint is C alone"),
     ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
+    (
+        "HALFILE = motion.hal",
+        "HALFILE = LIB:basic_sim.tcl",
+        "LIB:basic_sim.tcl is Tcl, which install does not read: it cannot know the signals of "
+        "spindle.0.revs, spindle.0.speed-in, spindle.0.index-enable",
+    ),
     ("loadrt [KINS]", "loadrt lut5 count=1\nloadrt [KINS]", "loads lut5 too"),
+    (
+        "loadrt [KINS]",
+        "loadrt pid names=drive\nloadrt [KINS]",
+        'velocity = "drive.velocity": there is no such pin: LinuxCNC would not start',
+    ),
     ("net c joint", "net d => motion.digital-out-02\nnet c joint", "motion.digital-out-02 is what"),
 ]
 MISTAKES = [  # what is changed of an installed machine's INI, what is found
@@ -44,7 +55,22 @@ MISTAKES = [  # what is changed of an installed machine's INI, what is found
      "spindle-c-index"),
     ("HALCMD = unlinkp drive.mode", "HALCMD = loadrt sum2", "spindle-c-module"),
     ("HALCMD = unlinkp drive.mode", "HALCMD = net x => spindle.0.is-oriented", "pin-taken"),
+    ("HALCMD = unlinkp drive.position", "HALCMD = setp drive.positon 0", "hal-pin"),
 ]  # fmt: skip
+LIVE = [  # [TRAJ] SPINDLES, what motion is loaded with, LIVE_SPINDLE, what check says
+    ("", "", "", "warning", "[TRAJ] SPINDLES is 1: LinuxCNC has no spindle 1 for a live tool"),
+    ("2", "", "", "problem", "motion.hal:2: loadrt [EMCMOT]EMCMOT servo_period_nsec=[EMCMOT]SERVO"),
+    ("2", "2", "", "", ""),
+    ("2", "[TRAJ]SPINDLES", "1", "", ""),
+    (
+        "2",
+        "2",
+        "3",
+        "problem",
+        "[G12] LIVE_SPINDLE = 3, but [TRAJ] SPINDLES is 2: LinuxCNC refuses",
+    ),
+    ("4", "3", "3", "problem", "motion.hal:2: loadrt [EMCMOT]EMCMOT"),
+]
 
 
 small_package = package_of(
@@ -184,3 +210,20 @@ def test_check_finds(tmp_path, old, new, kind):
     ini.write_text(text.replace(old, new))
     found = list(spindle_c_findings(config_of(ini)))
     assert kind in [finding.kind for finding in found]
+
+
+@pytest.mark.parametrize(("spindles", "loaded", "said", "level", "text"), LIVE)
+def test_the_spindle_of_a_live_tool(tmp_path, spindles, loaded, said, level, text):
+    lines = f"[TRAJ]\nSPINDLES = {spindles}\n" if spindles else "[TRAJ]\n"
+    ini = LATHE.replace("[TRAJ]\n", lines) + "[EMCMOT]\nEMCMOT = motmod\n"
+    ini += f"[G12]\nLIVE_SPINDLE = {said}\n" if said else ""
+    joints = "num_joints=[KINS]JOINTS"
+    hal = HAL.replace(joints, f"{joints} num_spindles={loaded}" if loaded else joints)
+    found = list(live_spindle_missing(config_of(installed(tmp_path, ini, hal))))
+    assert [finding.level for finding in found] == ([level] if level else [])
+    assert "".join(finding.text for finding in found).startswith(text)
+
+
+def test_no_live_tool_is_asked_for_without_it(tmp_path):
+    ini = write_config(tmp_path, LATHE, "lathe.ini", motion_hal=HAL)
+    assert list(live_spindle_missing(config_of(ini))) == []

@@ -27,7 +27,9 @@ SUB_NOT_FOUND = "INTERP_REMAP: NGC file not found"
 # Python's line of an exception, and LinuxCNC's of a HAL line or a sub that it cannot load.
 SPECIFIC_LINE = re.compile(
     rf"[\w.]*(Error|Exception|Refusal)\b.*:|\S+\.(hal|tcl):\d+: |.*{SUB_NOT_FOUND}"
+    r"|INI file HAL command .* failed"
 )
+HAL_REASON = re.compile(r"HAL: ERROR: (.* not found)|<commandline>:0: (.* does not exist)")
 
 
 class Parser(argparse.ArgumentParser):
@@ -95,7 +97,7 @@ def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
 
 
 def report_line_numbers(name: str, opened: OpenedProgram) -> None:
-    """Report if the lines of a command's output are not those of the user's file."""
+    """Report if a command's text or lines are not what the user expects of the file."""
     if opened.note:
         print_error(f"g12 {name}", opened.note)
 
@@ -138,5 +140,6 @@ def sentence_of(problem: Exception) -> str:
         return f"{problem.filename}: {problem.strerror}"
     lines = [line.strip() for line in str(problem).splitlines() if line.strip()] or [""]
     specific = [line for line in lines if SPECIFIC_LINE.match(line)]
-    text = " … ".join(dict.fromkeys((lines[0], (specific or lines)[-1])))
+    reasons = [reason[0] for line in lines if (reason := HAL_REASON.match(line))]
+    text = " … ".join(dict.fromkeys((lines[0], *reasons[:1], (specific or lines)[-1])))
     return f"{text}; see {COMMAND} check" if SUB_NOT_FOUND in text else text

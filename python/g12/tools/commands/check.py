@@ -14,14 +14,14 @@ from g12.tools.install.checking import (
     lines_of_check,
     read_config_text,
 )
-from g12.tools.install.config.findings import NOTE
+from g12.tools.install.config.findings import PROBLEM
 
 EXAMPLES = """\
 examples:
   g12 check ~/linuxcnc/configs/mill/mill.ini
   g12 check mill.ini --json
 
-exit code: 0 good, 1 something found, 2 wrong use"""
+exit code: 0 good, warnings and notes included, 1 a problem, 2 wrong use"""
 
 
 def command_parser() -> Parser:
@@ -41,4 +41,4 @@ def main(arguments: list[str]) -> int:
     config, found = check_config(read_config_text(options.ini))
     report = check_report(config, found)
     print(json.dumps(report, indent=2) if options.json else "\n".join(lines_of_check(report)))
-    return FINDING if any(finding.level != NOTE for finding in found) else GOOD
+    return FINDING if any(finding.level == PROBLEM for finding in found) else GOOD

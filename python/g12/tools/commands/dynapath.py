@@ -4,8 +4,9 @@
 It prints nothing if any line is refused. For a [FILTER] of LinuxCNC's INI:
 
   [FILTER]
-  PROGRAM_EXTENSION = .dyn Dynapath circle mill events
+  PROGRAM_EXTENSION = .dyn,.DYN Dynapath circle mill events
   dyn = python3 /path/to/g12/python/g12 dynapath --units inch
+  DYN = python3 /path/to/g12/python/g12 dynapath --units inch
 """
 
 from pathlib import Path

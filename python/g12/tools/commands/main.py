@@ -4,6 +4,7 @@
 A command is a module with ``main(arguments) -> exit code``.
 """
 
+import io
 import os
 import select
 import sys
@@ -41,6 +42,9 @@ def usage() -> str:
 def main(arguments: list[str]) -> int:
     """Run the command named first; return its exit code."""
     name, *rest = arguments or ["--help"]
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a file's name may be no UTF-8
     try:
         try:
             return command(name, rest)

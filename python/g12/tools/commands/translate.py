@@ -4,8 +4,9 @@
 It prints nothing if any block is refused. For a [FILTER] of LinuxCNC's INI:
 
   [FILTER]
-  PROGRAM_EXTENSION = .nc Haas programs
+  PROGRAM_EXTENSION = .nc,.NC Haas programs
   nc = python3 /path/to/g12/python/g12 translate --control haas-mill
+  NC = python3 /path/to/g12/python/g12 translate --control haas-mill
 
 LinuxCNC passes its INI to a filter (INI_FILE_NAME): M codes of this machine are not changed.
 """

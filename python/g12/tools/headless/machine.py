@@ -41,6 +41,7 @@ START = 60.0  # s that LinuxCNC may take to start
 LOG_LINES = 60
 INI_ERROR = re.compile(r"\.ini:(\d+): error: (.*)")  # of LinuxCNC 2.10
 FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the same text
+NOISE = "Running with fallback_uid"  # for each module that is loaded
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"
@@ -270,7 +271,7 @@ def startup_error(what: str, log: str, ini: Ini) -> str:
 
 def lines_to_last_error(log: str) -> list[str]:
     """Return the lines of LinuxCNC's log up to the last one that reports an error."""
-    lines = log.partition(FAREWELL)[0].splitlines()
+    lines = [line for line in log.partition(FAREWELL)[0].splitlines() if NOISE not in line]
     while lines and lines[-1].startswith(SHUTTING_DOWN):
         lines.pop()
     return lines or log.splitlines()

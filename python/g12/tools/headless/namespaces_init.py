@@ -55,13 +55,13 @@ def unshare() -> None:
 
 
 def write_text(path: str, text: str) -> None:
-    with open(path, "w", encoding="utf-8") as file:
+    with open(path, "w", encoding="utf-8", errors="surrogateescape") as file:
         file.write(text)
 
 
 def mount(source: str, target: str, kind: str | None, flags: int, options: str = "") -> None:
     """Mount ``source`` on ``target``, with the arguments of the system call."""
-    arguments = [text.encode() if text is not None else None for text in (source, target, kind)]
+    arguments = [os.fsencode(text) if text is not None else None for text in (source, target, kind)]
     raise_if_failed(libc.mount(*arguments, flags, options.encode()), f"mounting {target}")
 
 

@@ -10,11 +10,12 @@ from g12.ini_sections import entries_of
 from g12.settings import INI_SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
+from g12.tools.install.config.filters import translating_filters
 from g12.tools.install.config.findings import ConfigFinding
 from g12.tools.install.config.forms import shown
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, load_config
-from g12.tools.install.rules import findings_of, translating_filters
+from g12.tools.install.rules import findings_of
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini
 
@@ -56,7 +57,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
             {"code": code.remap.code, "feature": code.feature, "line": code.line.location}
             for code in config.codes
         ],
-        "programs": {suffix: control for suffix, control, _ in translating_filters(config)},
+        "programs": {suffix: control for suffix, _, control in translating_filters(config)},
         "forms": shown(config),
         "other_remaps": {remap.code: remap.text for remap in others},
         "settings": {key: value for _, key, value in settings if key in TABLE},
@@ -72,8 +73,10 @@ def lines_of_check(report: dict) -> Iterator[str]:
     for code in report["codes"]:
         meaning = features.MEANING[code["feature"]]
         yield f"  {code['code']:6} {code['feature']:12} {meaning} ({code['line']})"
-    for suffix, control in report["programs"].items():
-        yield f"  .{suffix:5} {'programs':12} {control}"
+    programs = report["programs"]
+    for control in dict.fromkeys(programs.values()):
+        suffixes = " ".join(f".{suffix}" for suffix, of in programs.items() if of == control)
+        yield f"  {suffixes:6} {'programs':12} {control}"
     for form in report["forms"]:
         yield f"  {'':6} {'form':12} {form}"
     for code, text in report["other_remaps"].items():

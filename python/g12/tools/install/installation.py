@@ -8,6 +8,7 @@ from pathlib import Path
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
+from g12.tools.install.config.filters import installed_programs, shortened
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
 from g12.tools.install.config.loaded import load_config
 from g12.tools.install.lathe.spindle_c import Pins
@@ -19,7 +20,7 @@ from g12.tools.install.plan import (
     refuse,
     refuse_problems,
 )
-from g12.tools.install.rules import STOPPING, findings_of, installed_programs, shortened
+from g12.tools.install.rules import STOPPING, findings_of
 from g12.tools.install.trial import try_out
 from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
 from g12.tools.system import COMMAND

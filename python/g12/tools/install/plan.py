@@ -13,8 +13,7 @@ from pathlib import Path
 
 from g12.settings import INI_SECTION as SETTINGS
 from g12.tools.install import package_copy
-from g12.tools.install.config import features, forms
-from g12.tools.install.config.features import FILTER_SUFFIX
+from g12.tools.install.config import features, filters, forms
 from g12.tools.install.config.findings import PROBLEM, ConfigFinding, problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
@@ -30,7 +29,7 @@ from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.kinematics_rules import uses_face_kinematics
 from g12.tools.install.lathe.rules import ON_A_LATHE, geometry_for
-from g12.tools.install.rules import IMPORT_HANDLERS, installed_programs, odd_folder
+from g12.tools.install.rules import IMPORT_HANDLERS, odd_folder
 from g12.tools.translate.blocks.control import Control, read_control
 
 BEGIN_LINE = f"{BEGIN_MARK} (g12 uninstall takes these lines out again)"
@@ -236,22 +235,32 @@ def add_subroutines(plan: InstallPlan) -> None:
 
 
 def add_filter(plan: InstallPlan) -> None:
-    """Add the lines that open .nc files as another control's programs, and their settings."""
-    names = [features.CONTROLS[name] for name in plan.requested if name in features.CONTROLS]
-    present = plan.config.ini.get("FILTER", FILTER_SUFFIX)
-    for name in names:
-        add_settings(plan, read_control(name))
-        if present and name not in installed_programs(plan.config):
+    """Add the lines that open files as another control's programs, and their settings."""
+    for name in filter(None, map(features.CONTROLS.get, plan.requested)):
+        control, find = read_control(name), plan.config.ini.get
+        add_settings(plan, control)
+        present = {suffix: find("FILTER", suffix) for suffix in filters.suffixes_of(control)}
+        refuse_other_filters(plan, name, present)
+        command = f"python3 {plan.prefix}/python/g12 translate --control {name}"
+        command = next(filter(None, present.values()), command)
+        missing = [suffix for suffix, value in present.items() if not value]
+        plan.add({"FILTER": filters.filter_lines(control, command, missing)})
+
+
+def refuse_other_filters(
+    plan: InstallPlan, control: str, present: Mapping[str, str | None]
+) -> None:
+    """Refuse if a suffix of a control's programs has a filter that is not for them."""
+    ours = {each.suffix for each in filters.translating_filters(plan.config)
+            if each.control == control}  # fmt: skip
+    for suffix, value in present.items():
+        if value and suffix not in ours:
             raise refuse(
                 "filter",
-                f"[FILTER] {FILTER_SUFFIX} = {present} is there already",
+                f"[FILTER] {suffix} = {value} is there already",
                 "take that line out, or give your programs another suffix and add the line by hand "
                 "(python/g12/tools/translate/README.md)",
             )
-        if not present:
-            command = f"python3 {plan.prefix}/python/g12 translate --control {name}"
-            shown = f"PROGRAM_EXTENSION = .{FILTER_SUFFIX} Programs of {name}"
-            plan.add({"FILTER": [shown, f"{FILTER_SUFFIX} = {command}"]})
 
 
 def add_settings(plan: InstallPlan, control: Control) -> None:

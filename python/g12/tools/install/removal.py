@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Uninstallation: removes from a machine config exactly what `install` added."""
 
-import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from g12.machine_ini import remap_from_value
 from g12.tools.install import package_copy
 from g12.tools.install.config import forms
 from g12.tools.install.config.features import model_of
+from g12.tools.install.config.filters import FILTER_LINE
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
     END_MARK,
@@ -38,13 +38,8 @@ OWN_ENDS = {
 HEADERS = ("[PYTHON]", "[FILTER]", "[HAL]", "[G12]", "[AXIS_Y]")
 OWN, HEADER, EDITED, USERS = "own", "header", "edited", "user's"  # what a line of a block is
 EDITED_NOTE = "# before uninstall: "
-OF_PROGRAMS = re.compile(
-    r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
-    r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
-)
-
 OWN_LINES = (
-    OF_PROGRAMS,
+    FILTER_LINE,
     GEOMETRY_LINE,
     forms.FORM_LINE,
     kinematics_lines.KINEMATICS_LINE,

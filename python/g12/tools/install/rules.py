@@ -10,27 +10,27 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from g12.errors import LONGEST_BLOCK, Refusal
-from g12.ini_sections import INCLUDE, entries_of, key_and_value
+from g12.ini_sections import INCLUDE, key_and_value
 from g12.machine_ini import m_codes_of, remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
+from g12.tools.install.config.filters import filter_findings, installed_programs, shortened
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.lathe.hal_pins import pins_missing
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
 from g12.tools.install.lathe.segments_rules import gained_by_kinematics
-from g12.tools.install.lathe.spindle_c import spindle_c_findings
+from g12.tools.install.lathe.spindle_c import live_spindle_missing, spindle_c_findings
 from g12.tools.machine.ini import IniError
 from g12.tools.path.track import limits_of
 from g12.tools.preview.loading import UNREAD
-from g12.tools.system import COMMAND, PROGRAM
-from g12.tools.translate.blocks.control import ControlError, read_control
+from g12.tools.system import COMMAND
 
 OLDEST = (2, 9)
-TRANSLATE = "translate"  # the command in a [FILTER] line
 WELL_FORMED_HEADER = re.compile(r"\[[^\s\]]+\]")
 HEADER_LIKE = re.compile(r"\[|\w+\s*\]$")
 SETTINGS_PAGE = "configs/README.md has every setting"
@@ -39,7 +39,6 @@ IMPORT_HANDLERS = "from g12.remap import *"
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
 FORM_FILE = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
-MOST_NAMED = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
 STOPPING = {  # kinds that prevent LinuxCNC itself from loading the config
     *("taken", "wrong-line", "no-sub", "blank-in-path", "no-python", "python-fails"),
@@ -390,38 +389,6 @@ def tools(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-# Filters.
-
-
-def translating_filters(config: Config) -> Iterator[tuple[str, str, list[str]]]:
-    """Yield suffix, control and arguments of each [FILTER] line that translates."""
-    for _, key, value in entries_of(config.ini.lines, "FILTER"):
-        words = value.split()
-        if TRANSLATE in words and "--control" in words[:-1]:
-            yield key, words[words.index("--control") + 1], words
-
-
-def installed_programs(config: Config) -> list[str]:
-    """Return the controls whose programs the machine opens."""
-    return [control for _, control, _ in translating_filters(config)]
-
-
-def wrong_filters(config: Config) -> Iterator[ConfigFinding]:
-    for suffix, control, words in translating_filters(config):
-        command = folder_from_ini(config.ini, words[words.index(TRANSLATE) - 1])
-        if not command.exists():
-            yield problem(
-                "filter",
-                f"[FILTER] {suffix}: {command} is not there: no .{suffix} program opens",
-                f"write {PROGRAM} in its place, or take the line out",
-            )
-        try:
-            own = control.endswith(".toml")
-            read_control(str(folder_from_ini(config.ini, control)) if own else control)
-        except ControlError as wrong:
-            yield problem("filter", f"[FILTER] {suffix}: {wrong}", "correct the control's file")
-
-
 # The copy.
 
 
@@ -447,12 +414,6 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def shortened(names: list[str]) -> str:
-    """Return some names in one line, and the number of the others."""
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + more
-
-
 CONFIG_RULES: tuple[Rule, ...] = (
     other_linuxcnc,
     codes_missing,
@@ -471,13 +432,15 @@ CONFIG_RULES: tuple[Rule, ...] = (
     wrong_values,
     needs,
     tools,
-    wrong_filters,
+    filter_findings,
     changed_copy,
     form_findings,
     kinematics_findings,
     lathe_findings,
     gained_by_kinematics,
     spindle_c_findings,
+    live_spindle_missing,
+    pins_missing,
 )
 
 

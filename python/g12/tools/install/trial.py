@@ -16,7 +16,7 @@ from g12.tools.install.config.ini_edit import IniText, other_inis
 from g12.tools.install.plan import InstallPlan, refuse_problems
 from g12.tools.machine.ini import Ini, broken_line
 
-OWN_FILTER = "filter"  # kind of a finding about a line that the plan does not write
+OTHERS_LINES = {"filter", "hal-pin", "live-spindle"}  # kinds: of lines that no plan writes
 SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
 
 
@@ -27,12 +27,12 @@ def try_out(plan: InstallPlan) -> list[ConfigFinding]:
     it does not have are warnings.
     """
     tried = trial(plan, plan.text)
-    filters = [replace(each, level=WARNING) for each in tried if each.kind == OWN_FILTER]
-    warnings = filters + refuse_problems([each for each in tried if each.kind != OWN_FILTER])
+    others = [replace(each, level=WARNING) for each in tried if each.kind in OTHERS_LINES]
+    warnings = others + refuse_problems([each for each in tried if each.kind not in OTHERS_LINES])
     for other, shared in others_including(plan.text, [*plan.changes()]):
         found = [of_other(each, other.path, shared) for each in trial(plan, other)]
-        refuse_problems([each for each in found if each.kind not in SHOWN_ONLY | {OWN_FILTER}])
-        harmless = (each for each in found if each.kind in ("form", OWN_FILTER))
+        refuse_problems([each for each in found if each.kind not in SHOWN_ONLY | OTHERS_LINES])
+        harmless = (each for each in found if each.kind in {"form", *OTHERS_LINES})
         warnings += [replace(each, level=WARNING) for each in harmless]
     return warnings
 

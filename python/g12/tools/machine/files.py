@@ -5,6 +5,7 @@ import contextlib
 import difflib
 import filecmp
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
@@ -13,6 +14,7 @@ from pathlib import Path
 from g12.tools.errors import UsageError
 
 BACKUP = ".before-g12"
+NO_UTF8 = re.compile("[\udc80-\udcff]")  # bytes by surrogateescape
 
 
 def existing(path: Path) -> Path:
@@ -23,6 +25,15 @@ def existing(path: Path) -> Path:
         raise UsageError(f"{path}: no such file")
     with open(path, "rb"):
         return path
+
+
+def utf8_text(text: str) -> str:
+    """Return a text or name with a ``?`` for each byte that is no UTF-8."""
+    return NO_UTF8.sub("?", text)
+
+
+def as_utf8(content: bytes) -> bytes:
+    return utf8_text(content.decode(errors="surrogateescape")).encode()
 
 
 def difference(path: Path, content: bytes) -> Iterator[str]:

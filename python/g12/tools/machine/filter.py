@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A program as LinuxCNC's screens open it: through the [FILTER] that the INI has for its suffix.
 
+LinuxCNC runs bytes that are no UTF-8, in comments, but its preview and its messages are UTF-8: such
+a program is read with a ``?`` for each of these bytes.
+
 Line numbers are those of the user's file. `translate` marks its lines, ``(line 12)``; the lines of
 any other filter are found by comparing both texts. Where that fails, the numbers are those of the
 filter's output, with a note.
@@ -17,6 +20,7 @@ from pathlib import Path
 
 from g12.tools.errors import ProgramError
 from g12.tools.machine.aligned_lines import aligned_lines
+from g12.tools.machine.files import as_utf8, utf8_text
 from g12.tools.machine.ini import Ini
 
 MARK = re.compile(rb" \(line ([0-9]+)\)\s*$|^\(line ([0-9]+)\) ")
@@ -30,13 +34,14 @@ OWN_ERROR = re.compile(r"g12 \w+: ")
 class OpenedProgram:
     """A program: the user's file, the text that LinuxCNC reads, and the user's line numbers.
 
-    Without a filter ``path`` is the user's file. Then, and where the user's lines are unknown,
-    ``lines`` is empty.
+    ``path`` is the user's file, or a text made of it. Of the first, and where lines are unknown,
+    ``lines`` is empty. ``other_case`` is the suffix that has a filter where this one has none.
     """
 
     source: Path
     path: Path
     lines: tuple[int, ...] = ()
+    other_case: str = ""
 
     @property
     def is_filtered(self) -> bool:
@@ -56,7 +61,12 @@ class OpenedProgram:
 
     @property
     def note(self) -> str:
-        """A note on the line numbers, "" if they are the user's."""
+        """A note on the text or its line numbers, "" if they are the user's."""
+        if self.other_case:
+            return (
+                f"{self.source}: LinuxCNC reads it as it is: the INI's [FILTER] has "
+                f"{self.other_case}, not {self.source.suffix[1:]}"
+            )
         if self.lines or not self.is_filtered:
             return ""
         return f"{self.source}: lines are those of the program that the INI's [FILTER] makes of it"
@@ -79,24 +89,37 @@ class OpenedProgram:
 
 
 def filter_for(program: Path, ini: Ini) -> str | None:
-    """Return the command of the INI's [FILTER] for a program's suffix, None if there is none."""
+    """Return the command of the INI's [FILTER] for a program's suffix, None if there is none.
+
+    As on the screens the suffix is looked up as it is written: NC is not nc.
+    """
     suffix = program.suffix[1:]
     return ini.get("FILTER", suffix) if suffix else None
+
+
+def case_with_filter(program: Path, ini: Ini) -> str:
+    """Return a program's suffix in the case that has a filter, "" if none has."""
+    suffix = program.suffix[1:]
+    cases = {suffix.lower(), suffix.upper()} - {suffix}
+    return next((case for case in sorted(cases) if ini.get("FILTER", case)), "")
 
 
 @contextmanager
 def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
     """Yield a program as LinuxCNC reads it; an error inside names the user's file and lines."""
-    command = filter_for(program, ini)
-    if not command:
-        yield OpenedProgram(program, program)
+    command, source = filter_for(program, ini), program.read_bytes()
+    other_case = "" if command else case_with_filter(program, ini)
+    content = as_utf8(filtered(program, command, ini) if command else source)
+    location = str(program.absolute())
+    if content == source and utf8_text(location) == location:
+        yield OpenedProgram(program, program, other_case=other_case)
         return
     with tempfile.TemporaryDirectory(prefix="g12-filter-") as folder:
-        path = Path(folder, program.name)
-        content = filtered(program, command, ini)
+        path = Path(folder, utf8_text(program.name))
         path.write_bytes(content)
-        lines = lines_of_source(program.read_bytes().splitlines(), content.splitlines())
-        opened = OpenedProgram(program, path, lines)
+        rows = content.splitlines()
+        lines = lines_of_source(source.splitlines(), rows) if command else range(1, len(rows) + 1)
+        opened = OpenedProgram(program, path, tuple(lines), other_case)
         try:
             yield opened
         except ProgramError as problem:

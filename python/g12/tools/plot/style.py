@@ -25,6 +25,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.geometry.polygon import orient
 
 from g12.tools.errors import UsageError
+from g12.tools.machine.files import utf8_text
 from g12.tools.units import Unit
 
 FORMATS = ("png", "svg", "pdf")
@@ -91,8 +92,9 @@ def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure
     """Return a page with its title; sizes in inches."""
     figure = Figure(figsize=(width, height), facecolor="white")
     left, top = MARGIN / width, 1 - 0.16 / height
-    figure.text(left, top, title, size=13, weight="bold", va="top")
-    lines = "\n".join(textwrap.wrap(subtitle, int((width - MARGIN - 0.3) * LETTERS_PER_INCH)))
+    figure.text(left, top, utf8_text(title), size=13, weight="bold", va="top")
+    letters = int((width - MARGIN - 0.3) * LETTERS_PER_INCH)
+    lines = "\n".join(textwrap.wrap(utf8_text(subtitle), letters))
     figure.text(left, top - 0.28 / height, lines, size=8.5, color=MUTED, va="top")
     return figure
 

@@ -25,6 +25,7 @@ from typing import Self
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
+from g12.tools.machine.tables import measured_tools, var_file
 from g12.tools.preview.moves import Error, Event, Move, ToolTable, Trace, modes
 from g12.tools.system import PYTHON
 
@@ -202,7 +203,7 @@ def write_tools(tools: Tools, ini: Ini, path: Path) -> Path:
         lines = (f"T{tool} P{tool} D{diameter!r}\n" for tool, diameter in source.items())
         path.write_text("".join(lines), encoding="ascii")
     elif source and Path(source).exists():
-        shutil.copyfile(source, path)
+        shutil.copyfile(measured_tools(Path(source)), path)
     else:
         path.write_text("", encoding="ascii")
     return path
@@ -213,7 +214,7 @@ def write_parameters(parameters: Parameters, path: Path) -> Path:
         lines = (f"{number}\t{value!r}\n" for number, value in sorted((parameters or {}).items()))
         path.write_text("".join(lines), encoding="ascii")
     else:
-        shutil.copyfile(parameters, path)
+        shutil.copyfile(var_file(Path(parameters)), path)
     return path
 
 

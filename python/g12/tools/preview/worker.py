@@ -580,19 +580,38 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
 def interpreted(canon: Canon, program: str, setup: list[str]) -> tuple[str, int] | None:
     """Let LinuxCNC interpret a program; return the text and the line of an error.
 
-    What ``canon`` refuses is a RuntimeError of LinuxCNC's that does not say why.
+    What ``canon`` refuses is a RuntimeError of LinuxCNC's that does not say why; so is a comment
+    that is no UTF-8, which LinuxCNC itself runs.
     """
     import gcode
 
     try:
         result, _ = gcode.parse(program, canon, setup)
     except RuntimeError:
-        if canon.refused:
-            return canon.refused
+        refused = canon.refused or no_utf8(program)
+        if refused:
+            return refused
         raise
     if result <= gcode.MIN_ERROR:
         return None
     return gcode.strerror(result), canon.lines.of_error() if canon.started else 0
+
+
+def no_utf8(program: str) -> tuple[str, int] | None:
+    """Return the error of the file that was being executed if it is no UTF-8, with its call."""
+    this = interpreter_object()
+    with open(this.filename, "rb") as file:
+        content = file.read()
+    try:
+        content.decode()
+    except UnicodeDecodeError as error:
+        line = content.count(b"\n", 0, error.start) + 1
+        text = (
+            f"{os.path.basename(this.filename)}:{line}: a byte that is no UTF-8: LinuxCNC runs it, "
+            "its preview does not; convert the file, for example with iconv"
+        )
+        return text, line if this.filename == program else this.sub_context[0].sequence_number
+    return None
 
 
 def state_after(request: dict, length: tuple) -> dict:
@@ -635,7 +654,8 @@ def answered(machine: dict, tools: list[tuple], request: dict) -> dict:
     try:
         return interpret(machine, tools, request)
     except Exception:
-        return {"failure": traceback.format_exc()}
+        traceback.print_exc()
+        return {"failure": "a fault of the preview, please report it"}
 
 
 def ini_refused(machine: dict) -> str | None:

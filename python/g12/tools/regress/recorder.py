@@ -211,14 +211,14 @@ def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
     if not path.exists():
         return Result(name, NEW, summary=_summary(read_recording(now)))
     try:
-        was = path.read_bytes().decode()
+        was = path.read_bytes().decode(errors="surrogateescape")
         facts, body = split_facts(was)
         new_facts, new_body = split_facts(now)
         notes = tuple(_notes(facts, new_facts))
         if body == new_body:
             return Result(name, SAME, notes=notes)
         recordings = read_recording(was), read_recording(now)
-    except (TraceTextError, UnicodeDecodeError) as problem:
+    except TraceTextError as problem:
         if job.keep:
             return Result(name, NEW, summary=_summary(read_recording(now)))
         raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None

@@ -19,7 +19,7 @@ FORMAT = 1
 ABOUT = "regress.json"
 TOOLS, PARAMETERS = "tool.tbl", "parameters.var"
 SUFFIX = ".trace"
-PROGRAM_SUFFIXES = (".ngc", ".nc", ".tap", ".gcode")
+PROGRAM_SUFFIXES = (".ngc", ".nc", ".tap", ".gcode", ".min", ".eia")
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,9 @@ class Baseline:
     def keep(self, name: str, text: str) -> None:
         path = self.trace_file(name)
         path.parent.mkdir(parents=True, exist_ok=True)
-        if not path.exists() or path.read_bytes() != text.encode():
-            write(path, text.encode())
+        content = text.encode(errors="surrogateescape")  # the program's name may be no UTF-8
+        if not path.exists() or path.read_bytes() != content:
+            write(path, content)
 
     def drop(self, name: str) -> None:
         """Remove the trace of a program, and its folder if nothing else is in it."""

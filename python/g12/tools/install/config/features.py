@@ -7,7 +7,7 @@ from pathlib import Path
 
 from g12.ini_sections import entries_of
 from g12.machine_ini import HANDLERS, Remap, remap_from_value
-from g12.tools.translate.blocks.control import shipped_controls
+from g12.tools.translate.blocks.control import read_control, shipped_controls
 
 ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
@@ -50,7 +50,8 @@ MEANING = {
     POLAR_SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, "
     "by G12.4/G13.4",
     **{
-        name: f".nc files are opened as programs of {control}" for name, control in CONTROLS.items()
+        name: f"files such as .nc are opened as programs of {control}"
+        for name, control in CONTROLS.items()
     },
 }
 FIRST_STEPS = {  # what to try of a feature, besides a code
@@ -59,7 +60,6 @@ FIRST_STEPS = {  # what to try of a feature, besides a code
     KINEMATICS: "home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back",
     FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
 }
-FILTER_SUFFIX = "nc"  # of other controls' programs
 SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
 CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
@@ -126,7 +126,8 @@ def first_step(feature: str) -> str:
     if feature in FIRST_STEPS:
         return FIRST_STEPS[feature]
     if feature in CONTROLS:
-        return f"open a .{FILTER_SUFFIX} program of {CONTROLS[feature]}"
+        control = read_control(CONTROLS[feature])
+        return f"open a .{control.extensions[0]} program of {control.name}"
     codes = [remap.code for remap in remaps_of(feature)]
     if feature in (*POLAR_FEATURES, "cylinder"):
         block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0"

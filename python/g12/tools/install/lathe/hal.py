@@ -2,16 +2,20 @@
 """The HAL lines of a machine config: its files and [HAL]'s commands, their signals and pins."""
 
 import re
+import shutil
 from collections.abc import Iterable, Iterator
+from functools import cache
 from itertools import chain, product
 from pathlib import Path
 from typing import NamedTuple
 
+from g12.ini_sections import continued
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
 ARROW = re.compile(r"\s<?=>?\s")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
+LIBRARY = "LIB:"  # before the name of a file of LinuxCNC's own
 
 
 class HalLine(NamedTuple):
@@ -23,8 +27,25 @@ class HalLine(NamedTuple):
 
 def hal_files(config: Config, key: str = "HALFILE") -> list[list[HalLine]]:
     """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
-    return [hal_lines(folder_from_ini(config.ini, value.split()[0]))
-            for value in config.ini.all("HAL", key) if value.strip()]  # fmt: skip
+    names = (value.split()[0] for value in config.ini.all("HAL", key) if value.strip())
+    return [hal_lines(hal_file(config, name)) for name in names]
+
+
+def hal_file(config: Config, name: str) -> Path:
+    """Return a HAL file that the INI names: one in its folder, else one of LinuxCNC's own."""
+    own, library = folder_from_ini(config.ini, name), linuxcnc_folder("HALLIB_DIR")
+    if library and (name.startswith(LIBRARY) or not own.exists()):
+        return library / name.removeprefix(LIBRARY)
+    return own
+
+
+@cache
+def linuxcnc_folder(name: str) -> Path | None:
+    """Return a folder of the LinuxCNC on this computer by its name in the script ``linuxcnc``."""
+    script = shutil.which("linuxcnc")
+    text = Path(script).read_text(encoding="utf-8", errors="replace") if script else ""
+    folder = re.search(rf"^{name}=([^\s;]+)", text, re.MULTILINE)
+    return Path(folder[1]) if folder else None
 
 
 def hal_lines(path: Path) -> list[HalLine]:
@@ -32,8 +53,12 @@ def hal_lines(path: Path) -> list[HalLine]:
     if not path.is_file():
         return []
     texts = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    bare = ((text.partition("#")[0].strip(), number) for number, text in enumerate(texts, 1))
-    return [HalLine(text, f"{path.name}:{number}") for text, number in bare if text]
+    found, number = [], 1
+    for rows in continued([text.partition("#")[0].strip() for text in texts]):
+        text = " ".join(row.rstrip("\\ ") for row in rows).strip()
+        found += [HalLine(text, f"{path.name}:{number}")] if text else []
+        number += len(rows)
+    return found
 
 
 def later_hal(config: Config) -> list[HalLine]:

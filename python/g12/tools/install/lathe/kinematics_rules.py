@@ -6,7 +6,6 @@ step of the page has a rule here.
 """
 
 import re
-import shutil
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from math import hypot
@@ -22,6 +21,7 @@ from g12.tools.install.lathe.hal import (
     all_hal,
     hal_files,
     later_hal,
+    linuxcnc_folder,
     names,
     pins_taken,
     signals,
@@ -55,10 +55,8 @@ SMOOTHED, SETTLED = 4, 6  # cycles: of LinuxCNC's interpolation, of polar_xzc.co
 
 def module_file() -> Path | None:
     """Return the kinematics' module in the LinuxCNC on this computer, None without one."""
-    script = shutil.which("linuxcnc")
-    text = Path(script).read_text(encoding="utf-8", errors="replace") if script else ""
-    folder = re.search(r"^LINUXCNC_RTLIB_DIR=(\S+)", text, re.MULTILINE)
-    file = Path(folder[1], f"{FACE_KINEMATICS}.so") if folder else None
+    folder = linuxcnc_folder("LINUXCNC_RTLIB_DIR")
+    file = folder / f"{FACE_KINEMATICS}.so" if folder else None
     return file if file and file.exists() else None
 
 

@@ -8,13 +8,16 @@ HAL files have already, with the inputs of its drive. The owner names these in a
 import re
 import tomllib
 from collections.abc import Iterator, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from g12.ini_sections import leading_number
 from g12.machine_ini import face_joints
+from g12.settings import INI_SECTION
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import KINEMATICS, ROOT
-from g12.tools.install.config.findings import ConfigFinding, problem
+from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.hal import (
     HalLine,
@@ -24,10 +27,13 @@ from g12.tools.install.lathe.hal import (
     names,
     pins_taken,
     signals,
+    substituted,
 )
+from g12.tools.install.lathe.hal_pins import missing_pin, modules_of, owners_of, pins_in
 from g12.tools.install.lathe.kinematics_lines import joints
 from g12.tools.install.lathe.kinematics_rules import GUARD_HAL, uses_face_kinematics
 from g12.tools.machine.files import existing
+from g12.tools.units import counted_as
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
 SPINDLE_C_HAL = "configs/include/spindle_c.hal"
@@ -75,6 +81,14 @@ DRIVE = {  # names in the pins' file, and the signals that their pins get
     "brake": "spindle-c-brake",
 }
 REQUIRED_PINS = ("velocity", "position", "holds")
+ALMOST_SAME = 0.9  # least similarity of a misspelt pin
+NUMBER = re.compile(r"\d+")
+LOADS_MOTION = re.compile(r"loadrt motmod\b")
+LIVE_SPINDLE_CURE = (
+    "SPINDLES = {}, num_spindles=[TRAJ]SPINDLES where HAL loads motion, and wire "
+    "spindle.{}.speed-out"
+)
+NUM_SPINDLES = re.compile(r"\bnum_spindles=(\d+)")
 MODULES = re.compile(r"^loadrt (\w+) names=(\S+)", re.MULTILINE)  # with their components
 SPINDLE_C_LINE = re.compile(
     rf"HALFILE = \S+/{re.escape(SPINDLE_C_HAL)}"
@@ -128,15 +142,47 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
         yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
                       f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
     lines = all_hal(config)
-    for pin in (SIGNALS[key][0] for key in ENCODER):
-        if pin not in signals(config, lines):
-            yield problem(
-                "spindle-c",
-                f"no HAL file connects {pin}",
-                f"connect the spindle's encoder first: G33 has to work ({SPINDLE_C_PAGE})",
-            )
+    yield from encoder_unconnected(config, signals(config, lines))
+    yield from drive_missing(config, pins, lines)
     if not config.ini.get("SPINDLE_C", "JOINT"):  # a file of the user's may have our file's name
         yield from in_the_way(lines)
+
+
+def encoder_unconnected(config: Config, found: dict[str, str]) -> Iterator[ConfigFinding]:
+    """Find pins of the spindle's encoder that no HAL file connects, or one in Tcl may connect."""
+    missing = [pin for pin in (SIGNALS[key][0] for key in ENCODER) if pin not in found]
+    tcl = [name for name in config.ini.all("HAL", "HALFILE") if ".tcl" in name]
+    if missing and tcl:
+        yield problem(
+            "spindle-c",
+            f"[HAL] HALFILE = {tcl[0]} is Tcl, which install does not read: it cannot know the "
+            f"signals of {', '.join(missing)}",
+            "name them in a HAL file of your own, with a HALFILE line after that one: "
+            f"{'; '.join(f'net SIGNAL => {pin}' for pin in missing)}; in a running LinuxCNC "
+            "`halcmd show pin spindle.0` shows the signals",
+        )
+        return
+    for pin in missing:
+        yield problem(
+            "spindle-c",
+            f"no HAL file connects {pin}",
+            f"connect the spindle's encoder first: G33 has to work ({SPINDLE_C_PAGE})",
+        )
+
+
+def drive_missing(
+    config: Config, pins: Pins | None, lines: Sequence[HalLine]
+) -> Iterator[ConfigFinding]:
+    """Find inputs of the drive that no module of the HAL files makes."""
+    modules = modules_of(config, lines)
+    for name, pin in pins.drive.items() if pins else ():
+        nearest = missing_pin(pin, modules)
+        if nearest is not None:
+            yield problem(
+                "pins",
+                f'{name} = "{pin}": there is no such pin: LinuxCNC would not start',
+                f"write {nearest}, if that is meant" if nearest else "correct its name",
+            )
 
 
 def letters_of_joints(config: Config) -> str:
@@ -274,6 +320,64 @@ def axis_c_wrong(config: Config) -> Iterator[ConfigFinding]:
             )
 
 
+def drive_misspelt(config: Config) -> Iterator[ConfigFinding]:
+    """Find inputs of the drive, of modules unknown here, that other HAL lines name nearly so."""
+    lines, modules = other_lines(config), modules_of(config, all_hal(config))
+    ours = [line for line in lines if line.text.startswith("net spindle-c-")]
+    others = [line for line in lines if line not in ours and not line.text.startswith("unlinkp")]
+    named = {pin for line in others for pin in pins_in(substituted(line.text, config))}
+    for text, location in ours:
+        for pin in set(pins_in(substituted(text, config))) - named:
+            near = get_close_matches(pin, named, 1, ALMOST_SAME)
+            is_known = owners_of(pin, modules)
+            if near and not is_known and NUMBER.sub("", near[0]) != NUMBER.sub("", pin):
+                yield warning(
+                    "hal-pin",
+                    f"{location}: {text}: no other HAL line names {pin}, but one names {near[0]}",
+                    f"write {near[0]}, if that is meant",
+                )
+
+
+def live_spindle_missing(config: Config) -> Iterator[ConfigFinding]:
+    """Find a machine that has no such spindle as its live tool needs."""
+    said = int((config.settings.live_spindle if config.settings else "") or 0)
+    live = said or int(any(PROLOG in remap.handlers for _, remap in config.remaps))
+    spindles = leading_number(config.ini.get("TRAJ", "SPINDLES") or "") or 1
+    loaded = loaded_spindles(config)
+    if said and spindles <= said:
+        yield problem(
+            "live-spindle",
+            f"[{INI_SECTION}] LIVE_SPINDLE = {said}, but [TRAJ] SPINDLES is {spindles:g}: "
+            f"LinuxCNC refuses S2000 M3 ${said}",
+            LIVE_SPINDLE_CURE.format(said + 1, said),
+        )
+    elif live and spindles <= live:
+        yield warning(
+            "live-spindle",
+            f"[TRAJ] SPINDLES is {spindles:g}: LinuxCNC has no spindle {live} for a live tool, and "
+            f"refuses S2000 M3 ${live}",
+            f"{LIVE_SPINDLE_CURE.format(live + 1, live)}; nothing, if there is no live tool",
+        )
+    elif live and loaded and loaded[0] <= live:
+        count, (text, location) = loaded
+        yield problem(
+            "live-spindle",
+            f"{location}: {text}: motion has {counted_as(count, 'spindle')}, and no answer to "
+            f"S2000 M3 ${live}",
+            "add to the line: num_spindles=[TRAJ]SPINDLES",
+        )
+
+
+def loaded_spindles(config: Config) -> tuple[int, HalLine] | None:
+    """Return how many spindles motion is loaded with, and the line."""
+    for line in all_hal(config):
+        text = substituted(line.text, config)
+        if LOADS_MOTION.match(text):
+            given = NUM_SPINDLES.search(text)
+            return int(given[1]) if given else 1, line
+    return None
+
+
 def others_in_the_way(config: Config) -> Iterator[ConfigFinding]:
     yield from in_the_way(other_lines(config))
 
@@ -319,4 +423,5 @@ SPINDLE_C_RULES = (
     index_shared,
     axis_c_wrong,
     others_in_the_way,
+    drive_misspelt,
 )

@@ -54,17 +54,22 @@ RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 class TextRule(NamedTuple):
     """What a text, or each of a list, must be: a pattern, and the end of the sentence if not.
 
-    ``keys`` is the pattern of the keys in a table whose keys a control chooses.
+    ``keys`` is the pattern of the keys in a table whose keys a control chooses; ``listed``: a list
+    of texts may be given.
     """
 
     pattern: str
     rule: str
     keys: str = ""
+    listed: bool = False
 
 
 TOP = {
     "title": str, "based_on": str, "machine": ("mill", "lathe"),
     "axes": TextRule(r"(?!.*(.).*\1)[XYZABC]+", "must be letters of X Y Z A B C, each once"),
+    "extensions": TextRule(
+        "[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be extensions in small letters such as nc tap"
+    ),
     "start": TextRule(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
     "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
     "at_zero": str, "remarks": bool, "sources": list, "readings": list,
@@ -80,7 +85,7 @@ TABLES: dict[str, Any] = {
         "cycle": ("seconds", "milliseconds", "refuse"),
     },
     "tools": {
-        "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO"),
+        "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO", listed=True),
         "size": ("diameter", "radius"), "pocket": ("last", "own"),
     },
     "reference": {"cancels_length": bool},
@@ -142,6 +147,7 @@ class Control:
     decimals: str = ""  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
     feed_of_c: str = "say"  # the path of F where C and a slide move together, ``say``: unknown
     at_zero: str = ""  # axes that the machine lacks and whose words may be 0
+    extensions: tuple[str, ...] = ("nc",)  # of its programs' files, the usual one first
     remarks: bool = False  # text after ``;`` is a remark
     sources: tuple[str, ...] = ()
     readings: tuple[str, ...] = ()
@@ -207,7 +213,7 @@ def read_control(name: str) -> Control:
         raise ControlError(f"{path}: {missing[0]} is missing: say it, or based_on another control")
     given: dict[str, Any] = {"title": path.stem}
     given |= {k: tuple(v) if isinstance(v, list) else v for k, v in data.items() if k in TOP}
-    given["start"] = tuple(data.get("start", "").split())
+    given |= {key: tuple(data[key].split()) for key in ("start", "extensions") if key in data}
     return Control(
         name=path.stem,
         **given,
@@ -290,7 +296,7 @@ class _Checked:
 
     def _value(self, key: str, value: Any, kind: Any) -> None:
         if isinstance(kind, TextRule):
-            for text in value if isinstance(value, list) else [value]:
+            for text in value if kind.listed and isinstance(value, list) else [value]:
                 if not isinstance(text, str) or not re.fullmatch(kind.pattern, text):
                     self._refuse(key, f'{key} = "{text}" {kind.rule}')
             return

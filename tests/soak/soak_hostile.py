@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""2,000 hostile files of all kinds: every command answers each with a sentence, never a fault."""
+
+import random
+
+import pytest
+
+from soak import SEED, tries
+from support.hostile_files import Shop, check_answer, kinds
+
+EACH = dict.fromkeys(kinds(), 160) | {"run": 20}  # in ten minutes
+
+
+@pytest.mark.parametrize("kind", EACH)
+def test_soak_hostile(kind, tmp_path, capfd, request):
+    chance, shop = random.Random(f"{SEED} {kind}"), Shop(tmp_path)
+    for number in tries(request, "hostile files given to commands", EACH[kind]):
+        check_answer(capfd, f"{number} of {SEED}", *shop.attack(kind, chance))

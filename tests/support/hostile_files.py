@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Files of every kind with random damage, in a shop, and the commands that read them."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from random import Random
+
+from g12.tools.commands import main
+from g12.tools.translate.blocks.control import shipped_controls
+from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
+from support.small_configs import TURNING, TURNING_HAL
+
+PIECES = [
+    b"", b"\0", b"\r", b"\n", b"\\", b"\\\n", b"\xff\xfe", b"\xe4", b"=", b"[", b"]", b"(", b"#",
+    b'"', b"'", b"%", b"/", b";", b"-", b".", b"\t", b" ", b"e", b"nan", b"inf", b"1e400", b"-1e17",
+    b"9" * 400, b"9" * 5000, b"0", b"-1", b"\xc2\x85", b"\xe2\x80\xa8", b"\xf4\x90\x80\x80",
+    b"#INCLUDE ", b"#INCLUDE .\n", b"[RS274NGC]\n", b"[FILTER]\n", b"true", b"{}", b"[1, 2]",
+    b"null", b"x" * 300, b"[" * 300, b"(" * 300, b"$", b"~", b"..", b"/", b"\x1b[2J",
+]  # fmt: skip
+PINS = b"""\
+velocity = "drive.velocity"
+velocity_scale = 60
+position = "drive.position"
+holds = "drive.mode"
+"""
+VAR = b"5161\t1.0\n5220\t1.0\n5221\t10.0\n5222\t-3.5\n5230\t0.0\n5241\t0.0\n"
+EVENTS = PROGRAMS / "dynapath" / "flange.dyn"
+FOREIGN = sorted((PROGRAMS / "foreign").glob("*/*.nc"))
+NATIVE = sorted(PROGRAMS.glob("haas/*.ngc"))
+CONTROL_FILES = sorted(ROOT.glob("python/g12/tools/translate/controls/*.toml"))
+ATTACK = "attack_"  # begins the names of the methods that damage a kind of file
+CONTROLS = shipped_controls()
+
+
+def damaged(chance: Random, content: bytes) -> bytes:
+    """Return a file's content with some stretches replaced, repeated or lost."""
+    for _ in range(chance.randint(1, 5)):
+        at, length = chance.randint(0, len(content)), chance.choice([0, 0, 1, 4, 40])
+        piece = chance.choice([*PIECES, chance.randbytes(6), content[at : at + 30]])
+        content = content[:at] + piece + content[at + length :]
+    return content[: chance.randint(0, len(content))] if chance.random() < 0.1 else content
+
+
+def kinds() -> list[str]:
+    return [name.removeprefix(ATTACK) for name in dir(Shop) if name.startswith(ATTACK)]
+
+
+class Shop:
+    """A folder with good files of every kind; `attack` damages one and names a command for it."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.sim = copy_of_machines(folder)
+        self.ini = self.sim / "mill_mm.ini"
+        self.table, self.var = folder / "tool.tbl", folder / "shop.var"
+        self.table.write_bytes((self.sim / "mill_mm.tbl").read_bytes())
+        self.var.write_bytes(VAR)
+        self.program = folder / "part.ngc"
+        self.program.write_bytes(NATIVE[0].read_bytes())
+        self.recordings = folder / "recordings"
+        words = ["regress", "record", str(self.program), "--ini", str(self.ini)]
+        assert main.main([*words, "--var", str(self.var), "-d", str(self.recordings)]) == 0
+        self.lathe = folder / "lathe" / "lathe.ini"
+        self.lathe.parent.mkdir()
+        self.lathe.write_text(TURNING)
+        (self.lathe.parent / "motion.hal").write_text(TURNING_HAL)
+        self.pins = folder / "spindle.toml"
+        self.pins.write_bytes(PINS)
+
+    def attack(self, kind: str, chance: Random) -> tuple[list[str], Path]:
+        """Return the words of a command, and the damaged file that it gets."""
+        return getattr(self, ATTACK + kind)(chance)
+
+    def _made(self, chance: Random, name: str, content: bytes) -> Path:
+        path = self.folder / name
+        path.write_bytes(damaged(chance, content))
+        return path
+
+    def _read(self, chance: Random, program: Path, *more: str) -> list[str]:
+        """Return a command that reads a program."""
+        command = chance.choice(["trace", "verify", "plot", "regress"])
+        picture = ["-o", str(self.folder / "part.svg")] if command == "plot" else []
+        if command == "regress":
+            shutil.rmtree(self.folder / "new", ignore_errors=True)
+            words = ["record", str(program), "-d", str(self.folder / "new")]
+            return ["regress", *words, "--ini", str(self.ini), *more]
+        return [command, str(program), "--ini", str(self.ini), *more, *picture]
+
+    def _set_up(self, chance: Random, ini: Path, *features: str) -> list[str]:
+        """Return a command that reads a config."""
+        dry = [str(ini), "--with", *features, "--dry-run"]
+        return chance.choice([["check", str(ini)], ["install", *dry], ["uninstall", str(ini)]])
+
+    def attack_program(self, chance):
+        program = self._made(chance, "bad.ngc", chance.choice(NATIVE).read_bytes())
+        return self._read(chance, program), program
+
+    def attack_foreign(self, chance):
+        program = self._made(chance, "bad.NC", chance.choice(FOREIGN).read_bytes())
+        translate = ["translate", "--control", chance.choice(CONTROLS), str(program)]
+        return chance.choice([translate, self._read(chance, program)]), program
+
+    def attack_events(self, chance):
+        events = self._made(chance, "bad.dyn", EVENTS.read_bytes())
+        return chance.choice([["dynapath", str(events)], self._read(chance, events)]), events
+
+    def attack_name(self, chance):
+        name = chance.randbytes(chance.randint(1, 9)).translate(None, b"\0/") + b".ngc"
+        program = Path(os.fsdecode(os.fsencode(self.folder) + b"/" + name))
+        program.write_bytes(self.program.read_bytes())
+        return self._read(chance, program), program
+
+    def attack_ini(self, chance):
+        ini = self.sim / "bad.ini"
+        ini.write_bytes(damaged(chance, self.ini.read_bytes()))
+        reads = self._read(chance, self.program)
+        reads[reads.index("--ini") + 1] = str(ini)
+        translate = ["translate", "--control", "haas-mill", "--ini", str(ini), str(FOREIGN[0])]
+        words = self._set_up(chance, ini, "circle-mill", "programs-haas-mill")
+        return chance.choice([reads, translate, words]), ini
+
+    def attack_include(self, chance):
+        part = self.sim / "parts" / "bad.inc"
+        part.write_bytes(damaged(chance, (self.sim / "parts" / "mill_mm.inc").read_bytes()))
+        ini = self.sim / "with_bad.ini"
+        ini.write_text(self.ini.read_text().replace("parts/mill_mm.inc", "parts/bad.inc"))
+        reads = self._read(chance, self.program)
+        reads[reads.index("--ini") + 1] = str(ini)
+        return chance.choice([reads, self._set_up(chance, ini, "circle-mill")]), part
+
+    def attack_table(self, chance):
+        table = self._made(chance, "bad.tbl", self.table.read_bytes())
+        ini = self.sim / "with_bad.ini"
+        text = "\n".join([f"[EMCIO]\nTOOL_TABLE = {table}", self.ini.read_text()])
+        ini.write_text(text)
+        own = self._read(chance, self.program)
+        own[own.index("--ini") + 1] = str(ini)
+        given = self._read(chance, self.program, "--tools", str(table))
+        return chance.choice([own, given, self._set_up(chance, ini, "circle-mill")]), table
+
+    def attack_var(self, chance):
+        var = self._made(chance, "bad.var", VAR)
+        ini = self.sim / "with_bad.ini"
+        text = self.ini.read_text().replace(
+            "PARAMETER_FILE = mill_mm.var", f"PARAMETER_FILE = {var}"
+        )
+        ini.write_text(text)
+        own = self._read(chance, self.program)
+        own[own.index("--ini") + 1] = str(ini)
+        return chance.choice([self._read(chance, self.program, "--var", str(var)), own]), var
+
+    def attack_hal(self, chance):
+        hal = self.lathe.parent / "bad.hal"
+        hal.write_bytes(damaged(chance, TURNING_HAL.encode()))
+        ini = self.lathe.parent / "with_bad.ini"
+        ini.write_text(TURNING.replace("motion.hal", "bad.hal"))
+        words = ["install", str(ini), "--with", "polar", "spindle-c", "--pins", str(self.pins)]
+        return chance.choice([[*words, "--dry-run"], ["check", str(ini)]]), hal
+
+    def attack_pins(self, chance):
+        pins = self._made(chance, "bad.toml", PINS)
+        words = ["install", str(self.lathe), "--with", "polar", "spindle-c", "--pins", str(pins)]
+        return [*words, "--dry-run"], pins
+
+    def attack_control(self, chance):
+        control = self._made(chance, "own.toml", chance.choice(CONTROL_FILES).read_bytes())
+        ini = self.lathe.parent / "with_filter.ini"
+        command = f"python3 {ROOT}/python/g12 translate --control {control}"
+        ini.write_text(f"{TURNING}\n[FILTER]\nnc = {command}\n")
+        translate = ["translate", "--control", str(control), str(chance.choice(FOREIGN))]
+        return chance.choice([translate, ["check", str(ini)]]), control
+
+    def attack_run(self, chance):
+        bad = self.sim / "bad_to_run.ini", self.folder / "bad_to_run.ngc"
+        good = self.ini.read_bytes(), self.program.read_bytes()
+        for path, content in zip(bad, good):
+            path.write_bytes(content)
+        hal = self.sim / "parts" / "three_joints.hal"
+        content = (SIM / "parts" / hal.name).read_bytes()
+        file, content = chance.choice([*zip(bad, good), (hal, content)])
+        hal.write_bytes((SIM / "parts" / hal.name).read_bytes())
+        file.write_bytes(damaged(chance, content))
+        words = ["run", str(bad[1]), "--ini", str(bad[0]), "--override", "1000", "--timeout", "20"]
+        return words, file
+
+    def attack_recording(self, chance):
+        kept = self.folder / "kept"
+        shutil.rmtree(kept, ignore_errors=True)
+        shutil.copytree(self.recordings, kept)
+        file = chance.choice(sorted(path for path in kept.rglob("*") if path.is_file()))
+        file.write_bytes(damaged(chance, file.read_bytes()))
+        more = chance.choice([[], ["--json"], ["--picture", str(self.folder / "pictures")]])
+        return ["regress", "check", "-d", str(kept), *more], file
+
+
+def answered(words: list[str]) -> int:
+    """Return the exit code of a command."""
+    try:
+        return main.main(words)
+    except SystemExit as end:
+        return int(end.code or 0)
+
+
+def check_answer(capfd, number: object, words: list[str], file: Path) -> None:
+    """Run a command on a damaged file; it says why it ended, and nothing of a fault."""
+    what = f"{number}: {words}\n{file.read_bytes()!r}"
+    capfd.readouterr()
+    try:
+        code = answered(words)
+    except Exception as problem:
+        raise AssertionError(what) from problem
+    said = capfd.readouterr()
+    assert code in (0, 1, 2), what
+    for shown in ("Traceback", "a fault of"):
+        assert shown not in said.out + said.err, f"{what}\n{said}"
+    if code == 2:
+        assert said.err.splitlines()[-1].startswith("g12 "), f"{what}\n{said}"
