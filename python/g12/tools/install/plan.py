@@ -93,9 +93,9 @@ class InstallPlan:
         return any(line in block for block in self.text.blocks())
 
     def changes(self) -> dict[Path, bytes]:
-        """Return the user's files that change and their new content, the INI last."""
-        inis = {file: to_bytes(lines) for file, lines in reversed(self.text.files.items())}
-        files = {**{path: with_lines(path, new) for path, new in self.modules.items()}, **inis}
+        """Return the user's files that change and their new content, that with the codes last."""
+        modules = {path: with_lines(path, new) for path, new in self.modules.items()}
+        files = {**modules, **self.text.contents()}
         return {path: content for path, content in files.items() if content != path.read_bytes()}
 
 
@@ -186,13 +186,10 @@ def package_folder(config: Config) -> tuple[str, bool]:
         return package_copy.NAME, True
     if package_copy.is_package(own):
         return package_copy.NAME, False
-    edited = package_copy.leftovers(own)
-    what = f"left from an uninstall, with files you changed: {', '.join(edited)}"
-    advice = ", and put your changes into the new one afterwards" if edited else ""
     raise refuse(
         "folder",
-        f"{own} is there already, {what if edited else 'and is not this package'}",
-        f"rename that folder{advice}",
+        f"{own} is there already, and is not this package",
+        "rename that folder; what you had changed in an earlier copy can go into the new one",
     )
 
 

@@ -14,7 +14,7 @@ from g12.ini_sections import INCLUDE, entries_of, key_and_value
 from g12.machine_ini import remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
-from g12.tools.install import package_copy
+from g12.tools.install import package_copy, placing
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
@@ -443,6 +443,16 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
+def stopped_command(config: Config) -> Iterator[ConfigFinding]:
+    place = config.folder / placing.BESIDE
+    if place.exists():
+        yield warning(
+            "unfinished",
+            f"{place}: an install or uninstall was stopped before its end, or is at work",
+            "run the same command again: it ends what was begun and removes that folder",
+        )
+
+
 def shortened(names: list[str]) -> str:
     """Return some names in one line, and the number of the others."""
     more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
@@ -469,6 +479,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     tools,
     wrong_filters,
     changed_copy,
+    stopped_command,
     form_findings,
     kinematics_findings,
     lathe_findings,
