@@ -42,6 +42,7 @@ PACKAGE = {
     "python/g12/__init__.py": b"",
     **files_of_package("python/toplevel.py", "python/remap.py"),
 }
+ABORT = "ON_ABORT_COMMAND = O <g12_on_abort> call\n"
 OWN_PYTHON = "[PYTHON]\nPATH_PREPEND = python\nTOPLEVEL = python/toplevel.py\n"
 small_package = package_of(PACKAGE)
 
@@ -70,6 +71,7 @@ def test_the_lines_stand_at_the_end_of_their_section(ini):
         "SUBROUTINE_PATH = g12/ngc\n"
         "REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done\n"
         "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done\n"
+        f"{ABORT}"
         f"{END_MARK}\n\n"
     )
     assert text.endswith(
@@ -78,6 +80,39 @@ def test_the_lines_stand_at_the_end_of_their_section(ini):
 
 
 PATH = "SUBROUTINE_PATH = "
+OWN_ABORT = "ON_ABORT_COMMAND = O <on_abort> call [7]\n"
+
+
+@pytest.mark.parametrize("end", ["", "[G12]\nPOLAR_Z = allow\n"])
+def test_a_users_own_command_after_an_abort_is_kept_and_called(tmp_path, end):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", OWN_ABORT) + end)
+    with restored(ini):
+        put_in(ini, "haas")
+        put_in(ini, "circle-mill", package=tmp_path / "g12" / "python" / "g12")
+        text = ini.read_text()
+        assert f"# was: {OWN_ABORT}# now: {ABORT}{ABORT}{END_MARK}\n" in text
+        assert f"# now: {OWN_ABORT}{OWN_ABORT}{END_MARK}\n" in text
+        found = IniText(ini).ini()
+        assert found.get("G12", "ON_ABORT_COMMAND") == "O <on_abort> call [7]"
+        assert found.get("RS274NGC", "ON_ABORT_COMMAND") == "O <g12_on_abort> call"
+
+
+def test_a_users_own_command_in_two_lines_is_refused(tmp_path):
+    ini = write_config(
+        tmp_path, with_lines(MILL, "RS274NGC", OWN_ABORT.replace(" call", " \\\n call"))
+    )
+    before = content_of(tmp_path)
+    with pytest.raises(IniError, match=r"mill\.ini:5: goes on in the next line; write it in one"):
+        put_in(ini, "haas")
+    assert content_of(tmp_path) == before
+
+
+def test_the_command_of_an_older_package_is_brought_up_to_date(tmp_path, ini):
+    ini.write_text(ini.read_text().replace(ABORT, "ON_ABORT_COMMAND = G13.1 P\n"))
+    put_in(ini, "circle-mill", package=tmp_path / "g12" / "python" / "g12")
+    assert "G13.1" not in ini.read_text() and ABORT in ini.read_text()
+    take_out(ini)
+    assert ini.read_text() == MILL
 
 
 def test_an_existing_path_gets_longer(tmp_path):

@@ -19,6 +19,7 @@ from g12.tools.install.config.findings import PROBLEM, ConfigFinding, problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
     END_MARK,
+    NOW,
     IniLine,
     IniText,
     InsertionPoint,
@@ -122,6 +123,7 @@ def make_plan(
         add_python(plan)
         add_subroutines(plan)
         plan.add({"RS274NGC": [f"REMAP = {remap.text}" for remap in new_remaps(plan)]})
+    add_abort_command(plan)
     add_filter(plan)
     add_kinematics(plan)
     add_spindle(plan, pins)
@@ -215,8 +217,6 @@ def new_remaps(plan: InstallPlan) -> list[features.Remap]:
 def add_subroutines(plan: InstallPlan) -> None:
     """Add the package's folder to SUBROUTINE_PATH, or that line."""
     name, ini = f"{plan.prefix}/ngc", plan.config.ini
-    if not any(features.names_of(feature) for feature in plan.codes):
-        return
     refuse_problems([*odd_folder(folder_from_ini(ini, name))])
     entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
     if not entries:
@@ -230,6 +230,23 @@ def add_subroutines(plan: InstallPlan) -> None:
     if missing or (line.file != plan.text.path and not plan.is_ours(line)):
         # in an included file the entry may come from another INI's installation
         plan.notes.append(f"{BLOCK_NOTE}{name}{PATH_NOTE}")
+
+
+def add_abort_command(plan: InstallPlan) -> None:
+    """Make LinuxCNC call the package after an abort, which then calls what the user has there."""
+    if not plan.codes and not plan.config.features:
+        return
+    text = f"{features.ON_ABORT} = {features.CALLS_ABORT_SUB}"
+    present = plan.text.entries("RS274NGC", features.ON_ABORT)[:1]
+    if not present:
+        plan.add({"RS274NGC": [text]})
+    for line, command in present:
+        if plan.is_ours(line):  # also one of an older package
+            plan.text.replace(line, text)
+        elif not features.is_abort_call(command):
+            plan.text.put_in_place(line, text, BEGIN_LINE)
+            users = f"{features.ON_ABORT} = {command}"
+            plan.add({SETTINGS: [NOW + users, users]})
 
 
 def add_filter(plan: InstallPlan) -> None:
@@ -303,7 +320,7 @@ def add_kinematics(plan: InstallPlan) -> None:
         for line, _ in plan.text.entries("SPINDLE_C", key):
             if plan.is_ours(line):
                 plan.text.replace(line, f"{key} = {signal}")
-    plan.add(kinematics_lines.added(config, plan.requested, plan.prefix))
+    plan.add(kinematics_lines.added(config, plan.prefix))
 
 
 def add_spindle(plan: InstallPlan, pins: spindle_c.Pins | None) -> None:

@@ -8,8 +8,7 @@ from pathlib import Path
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
 from g12.tools.install import package_copy, placing
-from g12.tools.install.config import forms
-from g12.tools.install.config.features import model_of
+from g12.tools.install.config import features, forms
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
     END_MARK,
@@ -43,7 +42,9 @@ OF_PROGRAMS = re.compile(
     r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
 )
 
+ABORT_LINE = re.compile(rf"{features.ON_ABORT} = ({features.CALLS_ABORT_SUB}|G\S+ P)")
 OWN_LINES = (
+    ABORT_LINE,
     OF_PROGRAMS,
     GEOMETRY_LINE,
     forms.FORM_LINE,
@@ -147,10 +148,10 @@ def remove_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
 def kinds_of(block: list[IniLine]) -> Iterator[tuple[IniLine, str]]:
     """Yield the lines of a block, each with what it is."""
     texts = [line.text for line in block]
-    replaced = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
-    replaced |= set(kinematics_lines.LIMIT_KEYS) if "[AXIS_Y]" in texts else set()
     notes = [text[len(NOW) :] for text in texts if text.startswith(NOW)]
-    inserted = {text for note in notes for text in note.split(NEXT)}
+    inserted = {text for note in notes for text in (note, *note.split(NEXT))}
+    before = (text[len(WAS) :] for text in texts if text.startswith(WAS))
+    replaced = {key_and_value(text)[0] for text in (*before, *inserted)}
     for line in block:
         replaces = key_and_value(line.text)[0] in replaced - {""}
         if line.text.startswith(WAS):
@@ -168,7 +169,7 @@ def is_by_install(line: IniLine) -> bool:
     if any(rule.fullmatch(line.text) for rule in OWN_LINES):
         return True
     if key == "REMAP":
-        return model_of(remap_from_value(value)) is not None
+        return features.model_of(remap_from_value(value)) is not None
     if key:
         return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
     return line.text.startswith((BEGIN_MARK, BLOCK_NOTE, NOW, END_MARK))

@@ -189,6 +189,8 @@ class IniText:
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
         """Insert an entry between markers instead of a line, which becomes a comment."""
+        if CONTINUED.search(self.files[line.file][line.row]):
+            raise IniError(f"{line.location}: goes on in the next line; write it in one line")
         self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END_MARK])
         self.replace(line, WAS + line.text)
         self.insert(InsertionPoint(line.file, line.row), [begin])
