@@ -76,24 +76,26 @@ def listed(folder: Path) -> dict[str, str]:
     manifest = folder / MANIFEST
     content = manifest.read_bytes() if manifest.is_file() else b""
     lines = content.decode("utf-8", "replace").splitlines()
-    entries, here = [MANIFEST_ENTRY.fullmatch(line) for line in lines], folder.resolve()
+    entries = [MANIFEST_ENTRY.fullmatch(line) for line in lines]
+    folders = {os.path.dirname(entry[2]) for entry in entries if entry}
+    inside = {name for name in folders if is_inside(folder, name)}
     for number, (line, entry) in enumerate(zip(lines, entries), start=1):
-        if not entry or not is_below(here, entry[2]):
+        if not entry or os.path.dirname(entry[2]) not in inside:
             raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
                              "take that line out")  # fmt: skip
     return {entry[2]: entry[1] for entry in entries}
 
 
-def is_below(folder: Path, name: str) -> bool:
-    """Return whether a file's name is below a folder with all its links followed."""
-    above = (folder / name).parent
-    return ".." not in above.parts and above.resolve().is_relative_to(folder)
+def is_inside(folder: Path, name: str) -> bool:
+    """Return whether a name is that of a folder in another one, with all its links followed."""
+    found = (folder / name).resolve()
+    return ".." not in Path(name).parts and found.is_relative_to(folder.resolve())
 
 
 def differing(folder: Path) -> dict[str, str]:
     """Return the files of a copy that are not as they were installed, with their digests now."""
-    found = {name: digest_of(folder / name) for name in listed(folder)}
-    return {name: found[name] for name, value in listed(folder).items() if found[name] != value}
+    found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
+    return {name: present for name, value, present in found if present != value}
 
 
 def edited(folder: Path) -> list[str]:
