@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`install` and `regress` are killed at random moments; one command mends what is left."""
+"""`install`, `uninstall` and `regress` are killed; a second run completes what they began."""
 
 import random
 import shutil
 import subprocess
+import sys
 import time
+
+import pytest
 
 from g12.tools.regress.recording_text import read_recording
 from g12.tools.system import PYTHON
 from soak import SEED, tries
+from support.killed_installs import CASES, KilledInstalls
 from support.sim_machines import PROGRAMS, ROOT, SIM
-from support.small_configs import content_of, write_config
 
 COMMAND = [PYTHON, ROOT / "python" / "g12"]
 
@@ -34,25 +37,12 @@ def seconds_of(*words, **options):
     return time.monotonic() - started
 
 
-def test_installs(tmp_path, request):
-    chance = random.Random(SEED)
-    ini = write_config(tmp_path)
-    before = content_of(tmp_path)
-    words = ("install", ini, "--with", "haas")
-    lasts = seconds_of(*words)
-    assert g12("uninstall", ini).returncode == 0
-    assert content_of(tmp_path) == before
-    for number in tries(request, "kill -9 of install, mended by install", 50):
-        seed = f"kill {number} of seed {SEED}"
-        killed(chance.uniform(0, lasts), *words)
-        assert ini.read_bytes() == before[ini.name] or g12("check", ini).returncode == 0, seed
-        mended = g12(*words)
-        assert mended.returncode == 0, f"{seed}: {mended.stderr}"
-        assert g12("check", ini).returncode == 0, seed
-        assert g12("uninstall", ini).returncode == 0, seed
-        assert ini.read_bytes() == before[ini.name], seed
-        left = set(content_of(tmp_path)) - set(before)
-        assert not [path for path in left if not path.rpartition("/")[2].startswith(".")], seed
+@pytest.mark.parametrize(("feature", "command"), CASES)
+def test_installs(tmp_path, request, feature, command):
+    installs, chance = KilledInstalls(tmp_path, feature, command), random.Random(SEED)
+    tried = tries(request, f"kills of {command}, {feature}, completed by it", 23)
+    for _, point in zip(tried, installs.sample(chance, sys.maxsize)):
+        installs.kill(point)
 
 
 def test_recordings(tmp_path, request):

@@ -124,8 +124,9 @@ def content_of(folder: Path) -> dict[str, bytes]:
 
 def put_in(ini: Path, *names: str, pins: Pins | None = None, **python) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
-    config = config_of(ini, **python)
-    return installation.write_changes(make_plan(config, names, pins), config.folder)
+    plan = make_plan(config_of(ini, **python), names, pins)
+    old_copy = plan.copied and installation.out_of_date(ini.parent / package_copy.NAME)
+    return installation.write_changes(plan.changes(), ini.parent, old_copy)
 
 
 def take_out(ini: Path) -> list[str]:

@@ -16,9 +16,11 @@ from g12.tools.preview.loading import python_error
 from support.small_configs import HAAS, LATHE, MILL, config_of, with_lines, write_config
 
 HANDLERS = {name: "g12.remap" for f in features.REMAP_FILES for name in features.functions_of(f)}
+HANDLERS |= {"g12_on_abort": "g12.remap"}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
 SUBS = "SUBROUTINE_PATH = ngc\n"
-GOOD = with_lines(MILL, "RS274NGC", f"{SUBS}{HAAS}") + PYTHON
+ABORT = "ON_ABORT_COMMAND = O <g12_on_abort> call\n"
+GOOD = with_lines(MILL, "RS274NGC", f"{SUBS}{HAAS}{ABORT}") + PYTHON
 
 
 @pytest.fixture
@@ -27,7 +29,7 @@ def found(tmp_path):
 
     def find(text, remap=HANDLERS, remap_file="remap.py", files=(), **facts):
         names = {name for feature in features.REMAP_FILES for name in features.names_of(feature)}
-        subs = {f"ngc__{name}_ngc": "" for name in names}
+        subs = {f"ngc__{name}_ngc": "" for name in (*names, "g12_on_abort")}
         in_order = {"toplevel_py": "", "mill_var": "5161\t50.0\n", **dict(files)}
         ini = write_config(tmp_path, text, **in_order, **subs)
         package = tmp_path / "python" / "g12"
@@ -38,7 +40,7 @@ def found(tmp_path):
 
 
 def lines_of(feature):
-    return "".join(f"REMAP = {remap.text}\n" for remap in features.remaps_of(feature))
+    return "".join(f"REMAP = {remap.text}\n" for remap in features.remaps_of(feature)) + ABORT
 
 
 def kinds(findings):
@@ -72,8 +74,9 @@ OWN_G13 = "REMAP = g13 modalgroup=1 ngc=mine"
 POLAR = "".join(
     f"REMAP = G1{n}.1 modalgroup=1 python=polar_{x}\n" for n, x in ((2, "on"), (3, "off"))
 )
-ON_LATHE = with_lines(LATHE, "RS274NGC", SUBS + POLAR) + PYTHON
+ON_LATHE = with_lines(LATHE, "RS274NGC", SUBS + POLAR + ABORT) + PYTHON
 MINE = {**HANDLERS, "mine": "remap"}
+NO_ABORT = {name: "g12.remap" for name in HANDLERS if name != "g12_on_abort"}
 SHADOW = {"circle_mill": "oword", "g12_haas": "oword"}
 NO_TABLE = "TOOL_TABLE = mill.tbl\n"
 
@@ -83,13 +86,18 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      f"mill.ini:5: G13 is remapped here already: {OWN_G13}"),
     (ON_LATHE, {"owned": {"G12.1"}}, "owned", "polar-g12.3"),
     (with_lines(LATHE, "RS274NGC", lines_of("polar")) + PYTHON, {}, "no-sub",
-     "g12_skipped_over.ngc is in none of the folders"),
+     "g12_skipped_over.ngc and g12_on_abort.ngc are in none of the folders"),
+    (GOOD.replace(ABORT, ""), {}, "on-abort", "ON_ABORT_COMMAND is missing: after an abort"),
+    (GOOD.replace(ABORT, ABORT.upper().replace("O <", "o<")), {"remap": NO_ABORT}, "no-import",
+     "remap.py has no g12_on_abort"),
+    (GOOD.replace("O <g12_on_abort> call", "O <mine> call"), {}, "on-abort",
+     "O <g12_on_abort> call, and [G12] ON_ABORT_COMMAND = O <mine> call"),
     (GOOD.replace(f"{SECOND}\n", ""), {}, "half",
      "haas: G13 is missing, though its other code is there"),
     (GOOD.replace(SECOND, "REMAP = G13 modalgroup=1 python=mine"), {"remap": MINE}, "half",
      "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)"),
     (GOOD.replace(SUBS, ""), {}, "no-sub",
-     "g12_haas.ngc and g12_helix.ngc are in none of the folders"),
+     "g12_haas.ngc and g12_helix.ngc and g12_on_abort.ngc are in none of the folders"),
     (GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n", {"files": {"programs__g12_haas_ngc": ""}},
      "shadowed", "before the package's g12_haas.ngc"),
     (with_lines(GOOD, "RS274NGC", lines_of("circle-mill")), {"oword": SHADOW}, "shadowed",
@@ -100,7 +108,7 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
     (GOOD, {"error": "No module named 'g12' (remap.py:1)"}, "python-fails", "PATH_APPEND"),
     (GOOD, {"remap": {}, "remap_file": None}, "no-remap-module", "import remap"),
     (GOOD, {"remap": {"mine": "remap"}, "remap_file": "/machine/remap.py"}, "no-import",
-     "/machine/remap.py has no cycle_done, g12_haas, g13_haas"),
+     "/machine/remap.py has no cycle_done, g12_haas, g12_on_abort, g13_haas"),
     (GOOD, {"remap": {**HANDLERS, "cycle_done": "remap"}}, "hidden", "cycle_done"),
     (GOOD.replace(HAAS, f"{HAAS}REMAP = M400 modalgroup=10 python=mine\n"), {}, "does-not-load",
      "mill.ini:8: 'mine' is not a Python callable function"),

@@ -15,7 +15,6 @@ LATHE = """\
 [RS274NGC]
 REMAP = G12.1 modalgroup=1 python=polar_on
 REMAP = G13.1 modalgroup=1 python=polar_off
-ON_ABORT_COMMAND = G13.1 P
 
 [G12]
 POLAR_KINEMATICS = 1
@@ -57,8 +56,6 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("JOINTS = 3", "JOINTS = 4", "kins", "JOINTS = 4, but"),
     ("COORDINATES = X Y Z C", "COORDINATES = X Z C", "coordinates", "lacks Y"),
     ("POLAR_KINEMATICS = 1", "POLAR_KINEMATICS = 0", "kinematics-unused", "makes segments"),
-    ("ON_ABORT_COMMAND = G13.1 P\n", "", "abort", "ON_ABORT_COMMAND is missing"),
-    ("COMMAND = G13.1 P", "COMMAND = O <mine> call", "abort", "= O <mine> call"),
     ("HALFILE = polar.hal", "HALFILE = gone.hal", "kinematics-hal", "never leave"),
     ("HALFILE = motion.hal\nHALFILE = polar.hal", "HALFILE = polar.hal\nHALFILE = motion.hal",
      "kinematics-hal", "comes before"),

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `install` writes and `uninstall` takes out; without LinuxCNC."""
 
-import os
 import re
 import shutil
 import stat
@@ -17,7 +16,7 @@ from hypothesis import strategies as st
 from g12.tools import progress
 from g12.tools.commands import install, uninstall
 from g12.tools.errors import UsageError
-from g12.tools.install import installation, package_copy, trial
+from g12.tools.install import installation, package_copy, placing, trial
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniError, IniText
 from g12.tools.install.plan import Refused
@@ -43,6 +42,7 @@ PACKAGE = {
     "python/g12/__init__.py": b"",
     **files_of_package("python/toplevel.py", "python/remap.py"),
 }
+ABORT = "ON_ABORT_COMMAND = O <g12_on_abort> call\n"
 OWN_PYTHON = "[PYTHON]\nPATH_PREPEND = python\nTOPLEVEL = python/toplevel.py\n"
 small_package = package_of(PACKAGE)
 
@@ -71,6 +71,7 @@ def test_the_lines_stand_at_the_end_of_their_section(ini):
         "SUBROUTINE_PATH = g12/ngc\n"
         "REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done\n"
         "REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done\n"
+        f"{ABORT}"
         f"{END_MARK}\n\n"
     )
     assert text.endswith(
@@ -79,6 +80,39 @@ def test_the_lines_stand_at_the_end_of_their_section(ini):
 
 
 PATH = "SUBROUTINE_PATH = "
+OWN_ABORT = "ON_ABORT_COMMAND = O <on_abort> call [7]\n"
+
+
+@pytest.mark.parametrize("end", ["", "[G12]\nPOLAR_Z = allow\n"])
+def test_a_users_own_command_after_an_abort_is_kept_and_called(tmp_path, end):
+    ini = write_config(tmp_path, with_lines(MILL, "RS274NGC", OWN_ABORT) + end)
+    with restored(ini):
+        put_in(ini, "haas")
+        put_in(ini, "circle-mill", package=tmp_path / "g12" / "python" / "g12")
+        text = ini.read_text()
+        assert f"# was: {OWN_ABORT}# now: {ABORT}{ABORT}{END_MARK}\n" in text
+        assert f"# now: {OWN_ABORT}{OWN_ABORT}{END_MARK}\n" in text
+        found = IniText(ini).ini()
+        assert found.get("G12", "ON_ABORT_COMMAND") == "O <on_abort> call [7]"
+        assert found.get("RS274NGC", "ON_ABORT_COMMAND") == "O <g12_on_abort> call"
+
+
+def test_a_users_own_command_in_two_lines_is_refused(tmp_path):
+    ini = write_config(
+        tmp_path, with_lines(MILL, "RS274NGC", OWN_ABORT.replace(" call", " \\\n call"))
+    )
+    before = content_of(tmp_path)
+    with pytest.raises(IniError, match=r"mill\.ini:5: goes on in the next line; write it in one"):
+        put_in(ini, "haas")
+    assert content_of(tmp_path) == before
+
+
+def test_the_command_of_an_older_package_is_brought_up_to_date(tmp_path, ini):
+    ini.write_text(ini.read_text().replace(ABORT, "ON_ABORT_COMMAND = G13.1 P\n"))
+    put_in(ini, "circle-mill", package=tmp_path / "g12" / "python" / "g12")
+    assert "G13.1" not in ini.read_text() and ABORT in ini.read_text()
+    take_out(ini)
+    assert ini.read_text() == MILL
 
 
 def test_an_existing_path_gets_longer(tmp_path):
@@ -321,12 +355,13 @@ def test_the_copy_is_checked_by_sha256sum(tmp_path, ini):
 
 def test_edited_files_of_the_copy_survive_uninstall_and_are_reported(tmp_path, ini):
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
+    (tmp_path / "g12" / "ngc" / "shelf").symlink_to(tmp_path)
     (tmp_path / "g12" / "python" / "__pycache__").mkdir()
-    assert any("but for what you changed: ngc/g12_haas.ngc" in line for line in take_out(ini))
-    assert content_of(tmp_path / "g12") == {"ngc/g12_haas.ngc": b"(mine)\n"}
-    with pytest.raises(
-        Refused, match=r"left from an uninstall, with files you changed: ngc/g12_ha"
-    ):
+    kept = "but for what you changed: ngc/shelf, ngc/g12_haas.ngc.edited"
+    assert any(kept in line for line in take_out(ini))
+    assert content_of(tmp_path / "g12") == {"ngc/g12_haas.ngc.edited": b"(mine)\n"}
+    assert (tmp_path / "g12" / "ngc" / "shelf").readlink() == tmp_path
+    with pytest.raises(Refused, match="g12 is there already, and is not this package"):
         put_in(ini, "haas")
 
 
@@ -361,54 +396,19 @@ def test_the_real_package_has_what_a_machine_needs(monkeypatch):
 # Installations that were interrupted, damaged or edited.
 
 
-def test_of_several_old_versions_none_is_left_over(tmp_path, monkeypatch):
-    ini, python = own_config(tmp_path)
-    before = content_of(tmp_path)
-
-    def fails_on_the_ini(path):
-        if path.suffix == ".ini":
-            raise KeyboardInterrupt
-        return files.back_up(path)
-
-    monkeypatch.setattr(installation, "back_up", fails_on_the_ini)
-    with pytest.raises(KeyboardInterrupt):
-        put_in(ini, "haas", **python)
-    assert content_of(tmp_path) == before
-    assert not list(tmp_path.glob(".g12*"))
-
-
-def test_a_copy_that_is_killed_half_way_is_no_folder_g12(tmp_path, monkeypatch):
-    written = []
-
-    def killed(path, content):
-        written.append(path)
-        assert not (tmp_path / "g12").exists()
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(package_copy, "write", killed)
-    with pytest.raises(KeyboardInterrupt):
-        package_copy.write_copy(tmp_path / "g12")
-    assert written
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_next_copy_takes_away_what_a_killed_one_began(tmp_path):
-    begun, users = tmp_path / ".g12.ab12cd_x", tmp_path / ".g12.mine1234"
-    for folder, name in ((begun, "ngc/g12_haas.ngc"), (begun, "ngc/.half.7"), (users, "notes")):
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text("any")
-    package_copy.write_copy(tmp_path / "g12")
-    assert sorted(path.name for path in tmp_path.iterdir()) == [".g12.mine1234", "g12"]
-
-
 def newer(monkeypatch, files):
     monkeypatch.setattr(package_copy, "package_files", lambda: dict(files))
 
 
-def test_an_interrupted_update_takes_no_new_file_for_an_edited_one(tmp_path, ini, monkeypatch):
+def renew(ini):
+    """Update the copy; return the lines to show."""
+    return installation.write_changes({}, ini.parent, installation.out_of_date(ini.parent / "g12"))
+
+
+def test_an_update_takes_no_new_file_for_an_edited_one(tmp_path, ini, monkeypatch):
     newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(two)\n"})
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").write_bytes(b"(two)\n")
-    installation.bring_copy_up_to_date(tmp_path / "g12")
+    renew(ini)
     assert not list((tmp_path / "g12").rglob("*.edited*"))
     assert package_copy.edited(tmp_path / "g12") == []
 
@@ -418,14 +418,14 @@ def test_no_edit_is_ever_lost(tmp_path, ini, monkeypatch):
     haas = copy / "ngc" / "g12_haas.ngc"
     for version in ("two", "three"):
         haas.write_text(f"(mine before {version})\n")
-        assert installation.bring_copy_up_to_date(copy) == []
+        assert not installation.out_of_date(copy)
         newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": f"({version})\n".encode()})
-        installation.bring_copy_up_to_date(copy)
+        renew(ini)
     haas.write_text("(mine at last)\n")
     (copy / "ngc" / "new.ngc").write_text("(my own)\n")
     rest = {name: content for name, content in PACKAGE.items() if not name.startswith("ngc/")}
     newer(monkeypatch, {**rest, "ngc/new.ngc": b"(theirs)\n"})
-    said = installation.bring_copy_up_to_date(copy)
+    said = renew(ini)
     assert content_of(copy / "ngc") == {
         "g12_haas.ngc.edited": b"(mine before two)\n",
         "g12_haas.ngc.edited.2": b"(mine before three)\n",
@@ -441,7 +441,7 @@ def test_a_damaged_copy_is_mended(tmp_path, ini):
     (tmp_path / "g12" / "ngc" / "g12_haas.ngc").unlink()
     (tmp_path / "g12" / "python" / "remap.py").write_bytes(b"")
     assert installation.missing_files(IniText(ini))
-    installation.bring_copy_up_to_date(tmp_path / "g12")
+    renew(ini)
     assert content_of(tmp_path) == whole
     assert installation.missing_files(IniText(ini)) == []
 
@@ -459,11 +459,11 @@ def test_a_copy_does_not_mend_itself(tmp_path, ini, monkeypatch):
     monkeypatch.setattr(features, "ROOT", copy)
     (copy / "ngc" / "g12_haas.ngc").write_text("(mine)\n")
     newer(monkeypatch, {**PACKAGE, "ngc/g12_haas.ngc": b"(mine)\n"})
-    assert installation.bring_copy_up_to_date(copy) == []
+    assert not installation.out_of_date(copy)
     assert package_copy.edited(copy) == ["ngc/g12_haas.ngc"]
     (copy / "ngc" / "g12_haas.ngc").unlink()
     with pytest.raises(UsageError, match="from the package itself"):
-        installation.bring_copy_up_to_date(copy)
+        installation.out_of_date(copy)
 
 
 @pytest.mark.parametrize(
@@ -498,22 +498,6 @@ def test_the_copy_stays_while_the_users_lines_need_it(tmp_path, ini):
     assert not (tmp_path / "g12").exists()
 
 
-def test_an_uninstall_that_failed_can_be_run_again(tmp_path, ini, monkeypatch):
-    real = package_copy.remove_files
-
-    def fails(folder, names):
-        real(folder, list(names)[:1])
-        raise OSError("busy")
-
-    monkeypatch.setattr(package_copy, "remove_files", fails)
-    with pytest.raises(OSError, match="busy"):
-        take_out(ini)
-    monkeypatch.setattr(package_copy, "remove_files", real)
-    take_out(ini)
-    assert ini.read_text() == MILL
-    assert not (tmp_path / "g12").exists()
-
-
 def test_a_link_to_the_ini_is_no_other_machine(tmp_path):
     ini = write_config(tmp_path)
     (tmp_path / "link.ini").symlink_to(ini)
@@ -541,31 +525,47 @@ def test_writing_keeps_mode_and_links(tmp_path):
 
 
 def test_a_write_that_fails_leaves_every_file_as_it_was(tmp_path, monkeypatch):
-    first, second = tmp_path / "first", tmp_path / "second"
-    first.write_text("one\n")
-    second.write_text("two\n")
-    before = content_of(tmp_path)
-    real = os.replace
+    ini, python = own_config(tmp_path)
+    before, real = content_of(tmp_path), placing.take_after
 
-    def fails_on_second(source, target):
-        if str(target).endswith("second"):
+    def fails_on_the_ini(new, model):
+        real(new, model)
+        if model.suffix == ".ini":
             raise OSError("disk full")
-        real(source, target)
 
-    monkeypatch.setattr(os, "replace", fails_on_second)
+    monkeypatch.setattr(placing, "take_after", fails_on_the_ini)
     with pytest.raises(OSError, match="disk full"):
-        files.write_all({first: b"new\n", second: b"new\n"})
+        put_in(ini, "haas", **python)
     assert content_of(tmp_path) == before
+    assert not (tmp_path / placing.BESIDE).exists()
+
+
+def test_two_commands_at_once_are_one_too_many(tmp_path, ini):
+    with placing.folder_beside(tmp_path), pytest.raises(UsageError, match="another install"):
+        take_out(ini)
+    assert take_out(ini)
+
+
+def test_a_file_that_could_not_be_replaced_whole_is_refused(tmp_path, ini):
+    (tmp_path / "common").mkdir()
+    shared = tmp_path / "common" / "remap.py"
+    shared.write_text("x = 1  # by g12 install\n")
+    (tmp_path / "mill").mkdir()
+    with placing.folder_beside(tmp_path / "mill") as place, pytest.raises(UsageError) as refused:
+        placing.stage(place, shared, b"", shared)
+    assert "copy it into" in str(refused.value)
 
 
 def test_old_versions_are_never_overwritten(tmp_path):
-    path = tmp_path / "mill.ini"
+    path, first = tmp_path / "mill.ini", tmp_path / "mill.ini.before-g12"
     path.write_text("one\n")
-    assert files.back_up(path).name == "mill.ini.before-g12"
-    assert files.back_up(path).name == "mill.ini.before-g12"
+    assert files.backup_of(path) == first
+    first.write_text("one\n")
+    assert files.backup_of(path) == first
     path.write_text("two\n")
-    assert files.back_up(path).name == "mill.ini.before-g12.2"
-    assert files.drop_backup(path) == [tmp_path / "mill.ini.before-g12"]
+    assert files.backup_of(path) == tmp_path / "mill.ini.before-g12.2"
+    files.drop_backups(path, b"two\n")
+    assert files.backups_of(path) == [first]
 
 
 # The command line.

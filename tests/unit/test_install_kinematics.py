@@ -28,10 +28,8 @@ REFUSED = [  # what is changed of the INI, and what is said
     ("MAX_VELOCITY = 360\n", "", "[AXIS_C] has no MAX_VELOCITY"),
     ("MAX_LIMIT = 200.0", "MAX_LIMIT = 150", "MAX_LIMIT 150 and 200"),
     ("[AXIS_C]", "[AXIS_Y]\nMAX_LIMIT = 1\n[AXIS_C]", "there is an [AXIS_Y]"),
-    ("[TRAJ]", "ON_ABORT_COMMAND = O <mine> call\n[TRAJ]", "has an ON_ABORT_COMMAND"),
     ("HALFILE = motion.hal", "HALFILE = motion.tcl", "HALFILE = motion.tcl is no HAL file"),
     ("[HAL]", "[HAL]\nTWOPASS = on", "TWOPASS"),
-    ("xzc kinstype=B", "xzc \\\n kinstype=B", "goes on in the next line"),
     ("[KINS]KINEMATICS", "trivkins coordinates=XZC", "no HAL file has loadrt [KINS]KINEMATICS"),
     ("motion-controller servo-thread", "motion-controller fast", "addf motion-controller servo"),
     ("net x", "source more.hal\nnet x", "a source line"),
@@ -94,7 +92,7 @@ def test_what_is_written(tmp_path):
         "MAX_ACCELERATION = 700\n"
         "MIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
         "HALFILE = g12/configs/kinematics/polar_kinematics.hal\n# <<<",
-        "ON_ABORT_COMMAND = G13.1 P\n# <<<",
+        "ON_ABORT_COMMAND = O <g12_on_abort> call\n# <<<",
         "[G12]\nPOLAR_KINEMATICS = 1\n",
     ):
         assert lines in text

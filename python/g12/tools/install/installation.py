@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The installation in a machine config: tried out, shown, then written."""
 
-import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from g12.tools.errors import UsageError
-from g12.tools.install import package_copy
+from g12.tools.install import package_copy, placing
 from g12.tools.install.config import features
 from g12.tools.install.config.filters import installed_programs, shortened
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
@@ -14,7 +13,6 @@ from g12.tools.install.config.loaded import load_config
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.plan import (
     MODULE_MARK,
-    InstallPlan,
     make_plan,
     names_copy,
     refuse,
@@ -22,7 +20,7 @@ from g12.tools.install.plan import (
 )
 from g12.tools.install.rules import STOPPING, findings_of
 from g12.tools.install.trial import try_out
-from g12.tools.machine.files import back_up, difference, drop_backup, require_writable, write_all
+from g12.tools.machine.files import backup_of, difference
 from g12.tools.system import COMMAND
 
 PREVENTING = {"python-fails", "does-not-load"}  # kinds: what the config does is unknown
@@ -31,13 +29,16 @@ PREVENTING = {"python-fails", "does-not-load"}  # kinds: what the config does is
 def install(
     text: IniText, requested: Sequence[str], dry_run: bool, pins: Pins | None = None
 ) -> Iterator[str]:
+    if not dry_run:
+        yield from placing.tidy(text.path.parent)
     missing = missing_files(text)
     if missing:
         yield f"{text.path.parent / package_copy.NAME}: missing: {shortened(missing)}"
         if dry_run:
             yield "dry run: nothing was written; without these files nothing more can be checked"
             return
-        yield from bring_copy_up_to_date(text.path.parent / package_copy.NAME)
+        copy = text.path.parent / package_copy.NAME
+        yield from write_changes({}, copy.parent, out_of_date(copy))
     config = load_config(text)
     preventing = PREVENTING if config.python else PREVENTING | STOPPING
     refuse_problems([finding for finding in findings_of(config) if finding.kind in preventing])
@@ -56,7 +57,7 @@ def install(
     if dry_run and old_copy:
         yield f"{config.folder / package_copy.NAME}: would get {size_of_package()}"
     if not dry_run:
-        yield from write_changes(plan, config.folder)
+        yield from write_changes(changes, config.folder, old_copy)
     for warning in warnings:
         yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
     if dry_run:
@@ -85,42 +86,34 @@ def missing_files(text: IniText) -> list[str]:
     return list(package_copy.package_files()) if names_copy(text) else []
 
 
-def write_changes(plan: InstallPlan, folder: Path) -> list[str]:
-    """Write all changes; return a line for each."""
-    changes, copy = plan.changes(), folder / package_copy.NAME
-    require_writable(changes)
-    new_copy, backups = plan.copied and not copy.exists(), {}
-    try:
-        done = bring_copy_up_to_date(copy) if plan.copied else []
-        for path in changes:
+def write_changes(changes: Mapping[Path, bytes], folder: Path, old_copy: bool) -> list[str]:
+    """Put the changes, and with ``old_copy`` a new copy, in place; return a line for each."""
+    with placing.folder_beside(folder) as place:
+        moves, done = new_copy(place) if old_copy else ([], [])
+        for path, content in changes.items():
+            note = ""
             if not has_own_lines(path):
-                backups[path] = back_up(path)
-        write_all(changes)
-    except BaseException:
-        for path in backups:
-            drop_backup(path)
-        if new_copy:
-            shutil.rmtree(copy, ignore_errors=True)
-        raise
-    for path in changes:
-        before = f"; as it was: {backups[path].name}" if path in backups else ""
-        done.append(f"{path}: changed{before}")
+                backup = backup_of(path)
+                moves.append(placing.stage(place, backup, path.read_bytes(), path))
+                note = f"; as it was: {backup.name}"
+            moves.append(placing.stage(place, path, content, path))
+            done.append(f"{path}: changed{note}")
+        placing.put_in_place(place, moves)
     return done
 
 
-def bring_copy_up_to_date(copy: Path) -> list[str]:
-    """Update the copy of the package; return a line for each change."""
-    if not out_of_date(copy):
-        return []
-    renamed = package_copy.write_copy(copy)
+def new_copy(place: Path) -> tuple[list[placing.Move], list[str]]:
+    """Build a new copy of the package; return its move, and a line for each change."""
+    new, copy = place / package_copy.NAME, place.parent / package_copy.NAME
+    renamed = package_copy.build(new, copy, package_copy.package_files())
     notes = [f"{copy / name}: your version, kept beside the new one" for name in renamed]
-    return [f"{copy}: {size_of_package()}", *notes]
+    return [(new, copy)], [f"{copy}: {size_of_package()}", *notes]
 
 
 def out_of_date(copy: Path) -> bool:
     """Return whether a copy lacks files of this package; a copy cannot repair itself."""
     if not copy.exists() or not copy.samefile(features.ROOT):
-        return bool(package_copy.stale(copy))
+        return not package_copy.is_current(copy)
     for name in package_copy.missing(copy):
         raise UsageError(f"{copy / name}: is missing; run install from the package itself, "
                          "not from this copy of it")  # fmt: skip

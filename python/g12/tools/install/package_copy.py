@@ -2,16 +2,15 @@
 """The package's own copy inside a machine config: folder ``g12`` with a list of its files."""
 
 import hashlib
+import os
 import re
 import shutil
-import tempfile
-from collections.abc import Iterable
-from itertools import chain, count
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import ROOT
-from g12.tools.machine.files import take_owner, write
+from g12.tools.machine.files import free_name, take_owner
 
 NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
@@ -77,143 +76,92 @@ def listed(folder: Path) -> dict[str, str]:
     manifest = folder / MANIFEST
     content = manifest.read_bytes() if manifest.is_file() else b""
     lines = content.decode("utf-8", "replace").splitlines()
-    entries, here = [MANIFEST_ENTRY.fullmatch(line) for line in lines], folder.resolve()
+    entries = [MANIFEST_ENTRY.fullmatch(line) for line in lines]
+    folders = {os.path.dirname(entry[2]) for entry in entries if entry}
+    inside = {name for name in folders if is_inside(folder, name)}
     for number, (line, entry) in enumerate(zip(lines, entries), start=1):
-        if not entry or not is_below(here, entry[2]):
+        if not entry or os.path.dirname(entry[2]) not in inside:
             raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
                              "take that line out")  # fmt: skip
     return {entry[2]: entry[1] for entry in entries}
 
 
-def is_below(folder: Path, name: str) -> bool:
-    """Return whether a file's name is below a folder with all its links followed."""
-    above = (folder / name).parent
-    return ".." not in above.parts and above.resolve().is_relative_to(folder)
+def is_inside(folder: Path, name: str) -> bool:
+    """Return whether a name is that of a folder in another one, with all its links followed."""
+    found = (folder / name).resolve()
+    return ".." not in Path(name).parts and found.is_relative_to(folder.resolve())
+
+
+def differing(folder: Path) -> dict[str, str]:
+    """Return the files of a copy that are not as they were installed, with their digests now."""
+    found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
+    return {name: present for name, value, present in found if present != value}
 
 
 def edited(folder: Path) -> list[str]:
-    """Return the files of a copy that were changed since their installation."""
-    found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
-    return [name for name, value, present in found if present not in ("", value)]
+    return [name for name, found in differing(folder).items() if found not in LOST_DIGESTS]
 
 
 def missing(folder: Path) -> list[str]:
     """Return the missing files of a copy, and those that have become empty."""
-    return [name for name, value in listed(folder).items() if is_damaged(folder / name, value)]
+    return [name for name, found in differing(folder).items() if found in LOST_DIGESTS]
 
 
-def is_damaged(path: Path, value: str) -> bool:
-    """Return whether a file is missing, or empty with another digest in the list."""
-    found = digest_of(path)
-    return found in LOST_DIGESTS and found != value
+def digests(files: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: digest(content) for name, content in files.items()}
 
 
-def stale(folder: Path) -> list[str]:
-    """Return the files of this package that a copy lacks or has in another version."""
-    installed = listed(folder)
-    return [
-        name
-        for name, content in package_files().items()
-        if installed.get(name) != digest(content) or is_damaged(folder / name, digest(content))
-    ]
+def is_current(folder: Path) -> bool:
+    """Return whether a copy is one of this package, with all its files."""
+    return listed(folder) == digests(package_files()) and not missing(folder)
 
 
-def leftovers(folder: Path) -> list[str]:
-    """Return the files of a folder if all are of the kinds that `uninstall` leaves, else none."""
-    names, known = files_below(folder), package_files()
-    return names if all(name.partition(EDITED_SUFFIX)[0] in known for name in names) else []
+def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+def build(new: Path, copy: Path, files: Mapping[str, bytes]) -> list[str]:
+    """Write the next copy of the package with the user's files of the present one.
+
+    ``files`` is the package, nothing for an uninstallation. Returns the user's files that get
+    another name. There is no folder without files.
+    """
+    lines = [f"{value}  {name}\n" for name, value in digests(files).items()]
+    write_files(new, {**files, MANIFEST: "".join(lines).encode()} if files else {})
+    names = dict(users_files(copy, digests(files)))
+    for name, target in names.items():
+        (new / target).parent.mkdir(parents=True, exist_ok=True)
+        (new / target).unlink(missing_ok=True)
+        shutil.copy2(copy / name, new / target, follow_symlinks=False)
+    for path in (new, *new.rglob("*")) if new.exists() else ():
+        take_owner(path, copy.parent)
+    return [target for name, target in names.items() if target != name]
+
+
+def users_files(copy: Path, new: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """Yield the user's files of a copy, each with its name in the next one, whose list is ``new``.
+
+    A file keeps its name unless the package brings another version of it, or none any more.
+    """
+    old = listed(copy)
+    for name in files_below(copy):
+        versions, found = (old.get(name), new.get(name)), digest_of(copy / name)
+        lost = found in LOST_DIGESTS and any(versions)
+        if name == MANIFEST or found in versions or lost:
+            continue
+        aside = free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
+        yield name, name if versions[0] == versions[1] else aside
 
 
 def files_below(folder: Path) -> list[str]:
-    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
-
-
-def write_copy(folder: Path) -> list[str]:
-    """Make a copy of this package, or update it.
-
-    Returns the new names of edited files that a newer version replaces.
-    """
-    for unfinished in abandoned(folder):
-        shutil.rmtree(unfinished)
-    if folder.exists():
-        return update_copy(folder)
-    new = Path(tempfile.mkdtemp(dir=folder.parent, prefix=f".{folder.name}."))
-    try:
-        new.chmod(0o755)
-        take_owner(new)
-        update_copy(new)
-        new.rename(folder)
-    except BaseException:
-        shutil.rmtree(new)
-        raise
-    return []
-
-
-def abandoned(folder: Path) -> list[Path]:
-    """Return the unfinished copies beside a folder, of an `install` that was killed."""
-    ours = {*package_files(), MANIFEST}
-    return [
-        path
-        for path in folder.parent.glob(f".{folder.name}.????????")
-        if path.is_dir()
-        and all(name in ours or Path(name).name.startswith(".") for name in files_below(path))
-    ]
-
-
-def update_copy(folder: Path) -> list[str]:
-    """Update a copy; return the new names of edited files."""
-    files, old, outdated = package_files(), listed(folder), stale(folder)
-    new = {name: digest(content) for name, content in files.items()}
-    obsolete = [name for name in old if name not in files]
-    present = {name: digest_of(folder / name) for name in (*outdated, *obsolete)}
-    renamed = [
-        rename_edited(folder, name)
-        for name, found in present.items()
-        if found not in (*LOST_DIGESTS, old.get(name), new.get(name))
-    ]
-    write_files(folder, {name: files[name] for name in outdated})
-    lines = [f"{value}  {name}\n" for name, value in new.items()]
-    write_files(folder, {MANIFEST: "".join(lines).encode()})
-    remove_files(folder, obsolete)
-    return renamed
-
-
-def rename_edited(folder: Path, name: str) -> str:
-    """Rename an edited file to a free name; return that."""
-    first = f"{name}{EDITED_SUFFIX}"
-    names = chain([first], (f"{first}.{number}" for number in count(2)))
-    free = next(name for name in names if not (folder / name).exists())
-    (folder / name).rename(folder / free)
-    return free
-
-
-def write_files(folder: Path, files: dict[str, bytes]) -> None:
-    """Write files below a folder, each atomically, in folders with the owner of those above."""
-    for name, content in files.items():
-        path = folder / name
-        for parent in reversed(path.parents):
-            if not parent.exists():
-                parent.mkdir()
-                take_owner(parent)
-        write(path, content)
-
-
-def remove_files(folder: Path, names: Iterable[str]) -> None:
-    """Remove files, and the folders that become empty."""
-    for name in names:
-        (folder / name).unlink(missing_ok=True)
-    for cache in sorted(folder.rglob("__pycache__")):
-        shutil.rmtree(cache)
-    for path in sorted(folder.rglob("*"), reverse=True):
-        if path.is_dir() and not path.is_symlink() and not any(path.iterdir()):
-            path.rmdir()
-
-
-def remove_copy(folder: Path) -> list[str]:
-    """Remove a copy; return the names of edited or added files in it."""
-    remove_files(folder, set(listed(folder)) - set(edited(folder)))
-    (folder / MANIFEST).unlink()  # the list last: it identifies the copy until then
-    if not any(folder.iterdir()):
-        folder.rmdir()
-        return []
-    return files_below(folder)
+    """Return the files and links below a folder, but for Python's caches."""
+    found = []
+    for above, folders, files in os.walk(folder):
+        folders[:] = sorted(name for name in folders if name != "__pycache__")
+        links = [name for name in folders if os.path.islink(os.path.join(above, name))]
+        here = Path(above).relative_to(folder)
+        found += [(here / name).as_posix() for name in (*links, *sorted(files))]
+    return found

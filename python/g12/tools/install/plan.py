@@ -18,6 +18,7 @@ from g12.tools.install.config.findings import PROBLEM, ConfigFinding, problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
     END_MARK,
+    NOW,
     IniLine,
     IniText,
     InsertionPoint,
@@ -92,9 +93,9 @@ class InstallPlan:
         return any(line in block for block in self.text.blocks())
 
     def changes(self) -> dict[Path, bytes]:
-        """Return the user's files that change and their new content, the INI last."""
-        inis = {file: to_bytes(lines) for file, lines in reversed(self.text.files.items())}
-        files = {**{path: with_lines(path, new) for path, new in self.modules.items()}, **inis}
+        """Return the user's files that change and their new content, that with the codes last."""
+        modules = {path: with_lines(path, new) for path, new in self.modules.items()}
+        files = {**modules, **self.text.contents()}
         return {path: content for path, content in files.items() if content != path.read_bytes()}
 
 
@@ -121,6 +122,7 @@ def make_plan(
         add_python(plan)
         add_subroutines(plan)
         plan.add({"RS274NGC": [f"REMAP = {remap.text}" for remap in new_remaps(plan)]})
+    add_abort_command(plan)
     add_filter(plan)
     add_kinematics(plan)
     add_spindle(plan, pins)
@@ -185,13 +187,10 @@ def package_folder(config: Config) -> tuple[str, bool]:
         return package_copy.NAME, True
     if package_copy.is_package(own):
         return package_copy.NAME, False
-    edited = package_copy.leftovers(own)
-    what = f"left from an uninstall, with files you changed: {', '.join(edited)}"
-    advice = ", and put your changes into the new one afterwards" if edited else ""
     raise refuse(
         "folder",
-        f"{own} is there already, {what if edited else 'and is not this package'}",
-        f"rename that folder{advice}",
+        f"{own} is there already, and is not this package",
+        "rename that folder; what you had changed in an earlier copy can go into the new one",
     )
 
 
@@ -217,8 +216,6 @@ def new_remaps(plan: InstallPlan) -> list[features.Remap]:
 def add_subroutines(plan: InstallPlan) -> None:
     """Add the package's folder to SUBROUTINE_PATH, or that line."""
     name, ini = f"{plan.prefix}/ngc", plan.config.ini
-    if not any(features.names_of(feature) for feature in plan.codes):
-        return
     refuse_problems([*odd_folder(folder_from_ini(ini, name))])
     entries = plan.text.entries("RS274NGC", "SUBROUTINE_PATH")
     if not entries:
@@ -232,6 +229,23 @@ def add_subroutines(plan: InstallPlan) -> None:
     if missing or (line.file != plan.text.path and not plan.is_ours(line)):
         # in an included file the entry may come from another INI's installation
         plan.notes.append(f"{BLOCK_NOTE}{name}{PATH_NOTE}")
+
+
+def add_abort_command(plan: InstallPlan) -> None:
+    """Make LinuxCNC call the package after an abort, which then calls what the user has there."""
+    if not plan.codes and not plan.config.features:
+        return
+    text = f"{features.ON_ABORT} = {features.CALLS_ABORT_SUB}"
+    present = plan.text.entries("RS274NGC", features.ON_ABORT)[:1]
+    if not present:
+        plan.add({"RS274NGC": [text]})
+    for line, command in present:
+        if plan.is_ours(line):  # also one of an older package
+            plan.text.replace(line, text)
+        elif not features.is_abort_call(command):
+            plan.text.put_in_place(line, text, BEGIN_LINE)
+            users = f"{features.ON_ABORT} = {command}"
+            plan.add({SETTINGS: [NOW + users, users]})
 
 
 def add_filter(plan: InstallPlan) -> None:
@@ -315,7 +329,7 @@ def add_kinematics(plan: InstallPlan) -> None:
         for line, _ in plan.text.entries("SPINDLE_C", key):
             if plan.is_ours(line):
                 plan.text.replace(line, f"{key} = {signal}")
-    plan.add(kinematics_lines.added(config, plan.requested, plan.prefix))
+    plan.add(kinematics_lines.added(config, plan.prefix))
 
 
 def add_spindle(plan: InstallPlan, pins: spindle_c.Pins | None) -> None:

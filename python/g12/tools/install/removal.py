@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Uninstallation: removes from a machine config exactly what `install` added."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
-from g12.tools.install import package_copy
-from g12.tools.install.config import forms
-from g12.tools.install.config.features import model_of
+from g12.tools.install import package_copy, placing
+from g12.tools.install.config import features, forms
 from g12.tools.install.config.filters import FILTER_LINE
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
@@ -27,7 +27,7 @@ from g12.tools.install.config.loaded import codes_of, remaps_in
 from g12.tools.install.lathe import kinematics_lines, spindle_c
 from g12.tools.install.lathe.rules import GEOMETRY_LINE
 from g12.tools.install.plan import BLOCK_NOTE, MODULE_MARK, MODULE_NOTE, PATH_NOTE, names_copy
-from g12.tools.machine.files import difference, drop_backup, require_writable, write_all
+from g12.tools.machine.files import backups_of, difference, drop_backups
 
 OWN_ENDS = {
     "SUBROUTINE_PATH": "/ngc",
@@ -38,7 +38,9 @@ OWN_ENDS = {
 HEADERS = ("[PYTHON]", "[FILTER]", "[HAL]", "[G12]", "[AXIS_Y]")
 OWN, HEADER, EDITED, USERS = "own", "header", "edited", "user's"  # what a line of a block is
 EDITED_NOTE = "# before uninstall: "
+ABORT_LINE = re.compile(rf"{features.ON_ABORT} = ({features.CALLS_ABORT_SUB}|G\S+ P)")
 OWN_LINES = (
+    ABORT_LINE,
     FILTER_LINE,
     GEOMETRY_LINE,
     forms.FORM_LINE,
@@ -48,18 +50,22 @@ OWN_LINES = (
 
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
-    blocks, copy = text.blocks(), text.path.parent / package_copy.NAME
+    blocks, folder = text.blocks(), text.path.parent
+    copy, stopped = folder / package_copy.NAME, placing.left_beside(folder)
+    if not dry_run:
+        yield from placing.tidy(folder)
     package_copy.listed(copy)  # raises for a damaged list before anything is written
     notes = remove_blocks(text, blocks)
     shared = still_installed(text)
-    if not blocks and (shared or not package_copy.is_copy(copy)):
+    if not blocks and not stopped and (shared or not package_copy.is_copy(copy)):
         yield f"{text.path}: nothing that install put in"
         return
-    modules = remove_noted(text, notes_in(blocks), shared)
+    noted = [*notes_in(blocks), *(MODULE_NOTE + name for name in stopped if name.endswith(".py"))]
+    modules = remove_noted(text, noted, shared)
     if package_copy.is_copy(copy):
         remove_path(text, f"{package_copy.NAME}/ngc", shared)
-    inis = {path: to_bytes(lines) for path, lines in text.files.items()}
-    changes = {path: new for path, new in {**inis, **modules}.items() if new != path.read_bytes()}
+    files = {**dict(reversed(text.contents().items())), **modules}  # install's order, reversed
+    changes = {path: content for path, content in files.items() if content != path.read_bytes()}
     for path, content in changes.items():
         yield from difference(path, content)
     yield from notes
@@ -70,11 +76,41 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     if dry_run:
         yield "dry run: nothing was written"
         return
-    require_writable(changes)
-    write_all(changes)
+    stays = why_stays(copy, shared, bool(needing))
+    restore(files, changes, copy, bool(stays))
     for path in changes:
-        yield from after_change(path)
-    yield from after_all(copy, shared, bool(needing))
+        backups = ", ".join(backup.name for backup in backups_of(path))
+        since = f"; you changed it since, so {backups} stays" if backups else ""
+        yield f"{path}: changed{since}"
+    if copy.is_dir() and stays:
+        yield f"{copy}: stays, {stays}"
+    elif not stays:
+        users = ", ".join(package_copy.files_below(copy))
+        yield f"{copy}: taken away" + (f" but for what you changed: {users}" if users else "")
+
+
+def restore(
+    files: Mapping[Path, bytes], changes: Mapping[Path, bytes], copy: Path, stays: bool
+) -> None:
+    """Put the changes in place, then the user's files of a copy that does not stay."""
+    with placing.folder_beside(copy.parent) as place:
+        moves = [placing.stage(place, path, content, path) for path, content in changes.items()]
+        if not stays:
+            package_copy.build(place / copy.name, copy, {})
+            moves.append((place / copy.name, copy))
+        for path, content in files.items():
+            drop_backups(path, content)
+        placing.put_in_place(place, moves)
+
+
+def why_stays(copy: Path, shared: bool, needed: bool) -> str:
+    """Return why the copy of the package is not removed, "" if it is."""
+    if shared:
+        return "another INI of this folder uses it"
+    if not package_copy.is_copy(copy):
+        return f"it has no list of what install copied ({package_copy.MANIFEST})"
+    needs = "lines need it that are yours; take them out and run uninstall again"
+    return needs if needed else ""
 
 
 def remove_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
@@ -108,10 +144,10 @@ def remove_blocks(text: IniText, blocks: list[list[IniLine]]) -> list[str]:
 def kinds_of(block: list[IniLine]) -> Iterator[tuple[IniLine, str]]:
     """Yield the lines of a block, each with what it is."""
     texts = [line.text for line in block]
-    replaced = {key_and_value(text[len(WAS) :])[0] for text in texts if text.startswith(WAS)}
-    replaced |= set(kinematics_lines.LIMIT_KEYS) if "[AXIS_Y]" in texts else set()
     notes = [text[len(NOW) :] for text in texts if text.startswith(NOW)]
-    inserted = {text for note in notes for text in note.split(NEXT)}
+    inserted = {text for note in notes for text in (note, *note.split(NEXT))}
+    before = (text[len(WAS) :] for text in texts if text.startswith(WAS))
+    replaced = {key_and_value(text)[0] for text in (*before, *inserted)}
     for line in block:
         replaces = key_and_value(line.text)[0] in replaced - {""}
         if line.text.startswith(WAS):
@@ -129,7 +165,7 @@ def is_by_install(line: IniLine) -> bool:
     if any(rule.fullmatch(line.text) for rule in OWN_LINES):
         return True
     if key == "REMAP":
-        return model_of(remap_from_value(value)) is not None
+        return features.model_of(remap_from_value(value)) is not None
     if key:
         return ":" not in value and value.endswith(OWN_ENDS.get(key, "\n"))
     return line.text.startswith((BEGIN_MARK, BLOCK_NOTE, NOW, END_MARK))
@@ -173,24 +209,3 @@ def remove_noted(text: IniText, notes: list[str], shared: bool) -> dict[Path, by
         elif not shared and module.is_file():
             modules[module] = without_imports(module)
     return modules
-
-
-def after_change(path: Path) -> Iterator[str]:
-    """Delete the backup if the file equals it again; yield a line for it."""
-    backups = ", ".join(backup.name for backup in drop_backup(path))
-    yield f"{path}: changed" + (f"; you changed it since, so {backups} stays" if backups else "")
-
-
-def after_all(copy: Path, shared: bool, needed: bool) -> Iterator[str]:
-    """Remove the copy of the package if no INI uses it; yield a line for it."""
-    if shared:
-        yield f"{copy}: stays, another INI of this folder uses it"
-    elif copy.is_dir() and not package_copy.is_copy(copy):
-        yield f"{copy}: stays, it has no list of what install copied ({package_copy.MANIFEST})"
-    elif needed:
-        yield f"{copy}: stays, lines need it that are yours; take them out and run uninstall again"
-    elif package_copy.is_copy(copy):
-        remaining = ", ".join(package_copy.remove_copy(copy))
-        yield f"{copy}: taken away" + (
-            f" but for what you changed: {remaining}" if remaining else ""
-        )

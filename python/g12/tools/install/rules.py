@@ -14,7 +14,7 @@ from g12.ini_sections import INCLUDE, key_and_value
 from g12.machine_ini import m_codes_of, remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
-from g12.tools.install import package_copy
+from g12.tools.install import package_copy, placing
 from g12.tools.install.config import features
 from g12.tools.install.config.filters import filter_findings, installed_programs, shortened
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
@@ -206,6 +206,7 @@ def halves(config: Config) -> Iterator[ConfigFinding]:
 def wrong_subs(config: Config) -> Iterator[ConfigFinding]:
     """Find NGC subs of the codes that LinuxCNC does not find, or finds in another file."""
     names = [name for feature in config.features for name in features.names_of(feature)]
+    names += [features.ABORT_SUB] * calls_abort_sub(config)
     subs = {name: subs_named(config.ini, name) for name in names}
     missing = [f"{name}.ngc" for name, files in subs.items() if not files]
     if missing:
@@ -239,6 +240,25 @@ def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
             f"{folder}: LinuxCNC finds no NGC subs in a folder with {odd[0]!r} in its path",
             "rename the folder: letters, digits, - and _ only",
         )
+
+
+def calls_abort_sub(config: Config) -> bool:
+    """Return whether LinuxCNC calls the package after an abort."""
+    return features.is_abort_call(config.ini.get("RS274NGC", features.ON_ABORT) or "")
+
+
+def abort_not_handled(config: Config) -> Iterator[ConfigFinding]:
+    """Find codes after whose abort LinuxCNC does not call the package."""
+    command = config.ini.get("RS274NGC", features.ON_ABORT)
+    if not config.codes or calls_abort_sub(config):
+        return
+    users = f", and [{INI_SECTION}] {features.ON_ABORT} = {command}" if command else ""
+    yield problem(
+        "on-abort",
+        f"[RS274NGC] {features.ON_ABORT} {f'= {command}' if command else 'is missing'}: after an "
+        "abort modes and kinematics of a code that did not end stay as they are",
+        f"have {features.ON_ABORT} = {features.CALLS_ABORT_SUB}{users}; or run install again",
+    )
 
 
 def shadowing_functions(config: Config) -> Iterator[ConfigFinding]:
@@ -288,6 +308,7 @@ def handlers_missing(config: Config) -> Iterator[ConfigFinding]:
     if not config.codes or not python or any(python_not_loaded(config)):
         return
     needed = {name for code in config.codes for name in code.model.handlers}
+    needed |= {features.ABORT_SUB} if calls_abort_sub(config) else set()
     missing = sorted(needed - set(python.remap))
     if missing and not python.remap and not python.remap_file:
         toplevel = config.ini.get("PYTHON", "TOPLEVEL")
@@ -414,6 +435,16 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
+def stopped_command(config: Config) -> Iterator[ConfigFinding]:
+    place = config.folder / placing.BESIDE
+    if place.exists():
+        yield warning(
+            "unfinished",
+            f"{place}: an install or uninstall was stopped before its end, or is at work",
+            "run the same command again: it ends what was begun and removes that folder",
+        )
+
+
 CONFIG_RULES: tuple[Rule, ...] = (
     other_linuxcnc,
     codes_missing,
@@ -425,6 +456,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     wrong_lines,
     halves,
     wrong_subs,
+    abort_not_handled,
     shadowing_functions,
     python_not_loaded,
     handlers_missing,
@@ -434,6 +466,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     tools,
     filter_findings,
     changed_copy,
+    stopped_command,
     form_findings,
     kinematics_findings,
     lathe_findings,

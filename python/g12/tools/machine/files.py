@@ -3,12 +3,12 @@
 
 import contextlib
 import difflib
-import filecmp
 import os
 import re
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator
+from itertools import chain, count
 from pathlib import Path
 
 from g12.tools.errors import UsageError
@@ -60,13 +60,6 @@ def write(path: Path, content: bytes) -> None:
         raise
 
 
-def require_writable(paths: Iterable[Path]) -> None:
-    """Raise OSError for the first file that its owner protects from being changed."""
-    for path in paths:
-        with open(path, "r+b"):
-            pass
-
-
 def take_after(new: Path, path: Path) -> None:
     """Give a new file the mode and owner of the one at ``path``, if there is one."""
     if path.exists():
@@ -80,43 +73,30 @@ def take_owner(new: Path, model: Path | None = None) -> None:
     """Give a new file the owner of another, or of its folder: the user may be root."""
     owner = (model or new.parent).stat()
     with contextlib.suppress(PermissionError):
-        os.chown(new, owner.st_uid, owner.st_gid)
-
-
-def write_all(changes: Mapping[Path, bytes]) -> None:
-    """Write several files; if one cannot be written, restore the others."""
-    old = {path: path.read_bytes() for path in changes}
-    written: list[Path] = []
-    try:
-        for path, content in changes.items():
-            write(path, content)
-            written.append(path)
-    except BaseException:
-        for path in written:
-            write(path, old[path])
-        raise
+        os.chown(new, owner.st_uid, owner.st_gid, follow_symlinks=False)
 
 
 def backups_of(path: Path) -> list[Path]:
     return sorted(path.parent.glob(f"{path.name}{BACKUP}*"))
 
 
-def back_up(path: Path) -> Path:
-    """Copy the file to a backup, and return the backup's path."""
-    backups = backups_of(path)
-    for backup in backups:
-        if filecmp.cmp(path, backup, shallow=False):
-            return backup
-    number = f".{len(backups) + 1}" if backups else ""
-    backup = path.with_name(f"{path.name}{BACKUP}{number}")
-    shutil.copy2(path, backup)
-    take_after(backup, path)
-    return backup
+def free_name(path: Path) -> Path:
+    """Return a path that nothing has: this one, or with a number behind it."""
+    numbered = (path.with_name(f"{path.name}.{number}") for number in count(2))
+    return next(each for each in chain([path], numbered) if not os.path.lexists(each))
 
 
-def drop_backup(path: Path) -> list[Path]:
-    """Delete the backup that equals the file; return the remaining ones."""
-    for backup in backups_of(path):
-        if filecmp.cmp(path, backup, shallow=False):
-            backup.unlink()
-    return backups_of(path)
+def backup_of(path: Path) -> Path:
+    """Return the backup that equals the file, or the place for one."""
+    equal = equal_backups(path, path.read_bytes())
+    return equal[0] if equal else free_name(path.with_name(f"{path.name}{BACKUP}"))
+
+
+def equal_backups(path: Path, content: bytes) -> list[Path]:
+    return [backup for backup in backups_of(path) if backup.read_bytes() == content]
+
+
+def drop_backups(path: Path, content: bytes) -> None:
+    """Delete the backups of a file that gets their content back."""
+    for backup in equal_backups(path, content):
+        backup.unlink()

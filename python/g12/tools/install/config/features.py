@@ -60,6 +60,9 @@ FIRST_STEPS = {  # what to try of a feature, besides a code
     KINEMATICS: "home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back",
     FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
 }
+ON_ABORT = "ON_ABORT_COMMAND"  # of [RS274NGC], and of [G12] for the user's own command
+ABORT_SUB = "g12_on_abort"
+CALLS_ABORT_SUB = f"O <{ABORT_SUB}> call"
 SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
 CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
@@ -133,6 +136,11 @@ def first_step(feature: str) -> str:
         block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0"
         return f"{block:6} does nothing, and is no error"
     return f"{codes[0]:6} is refused, a word is missing: it works"
+
+
+def is_abort_call(command: str) -> bool:
+    """Return whether LinuxCNC calls the package after an abort."""
+    return "".join(command.lower().split()) == "".join(CALLS_ABORT_SUB.lower().split())
 
 
 def functions_of(feature: str) -> list[str]:

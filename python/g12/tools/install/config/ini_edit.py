@@ -121,6 +121,12 @@ class IniText:
         texts = (line.text if line.file == self.path else as_included(line.text) for line in kept)
         return Ini(self.path, tuple(texts))
 
+    def contents(self) -> dict[Path, bytes]:
+        """Return the content of each file, that with the codes last: it needs the others."""
+        codes = {line.file for line in self.section("RS274NGC")}
+        files = sorted(self.files, key=lambda file: (file in codes, file == self.path))
+        return {file: to_bytes(self.files[file]) for file in files}
+
     def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
         return [line for line in self.lines() if line.text.lstrip().startswith(f"[{section}]")]
@@ -183,6 +189,8 @@ class IniText:
 
     def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
         """Insert an entry between markers instead of a line, which becomes a comment."""
+        if CONTINUED.search(self.files[line.file][line.row]):
+            raise IniError(f"{line.location}: goes on in the next line; write it in one line")
         self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END_MARK])
         self.replace(line, WAS + line.text)
         self.insert(InsertionPoint(line.file, line.row), [begin])

@@ -14,7 +14,7 @@ from g12.ini_sections import leading_number
 from g12.machine_ini import FACE_KINEMATICS, coordinates_of
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, problem
-from g12.tools.install.config.ini_edit import CONTINUED, NEXT, NOW, IniText
+from g12.tools.install.config.ini_edit import NEXT, NOW, IniText
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe.hal import hal_files
 from g12.tools.install.lathe.kinematics_rules import (
@@ -23,7 +23,6 @@ from g12.tools.install.lathe.kinematics_rules import (
     OFFSET_HAL,
     SHARE,
     are_of_lathe,
-    codes_off,
 )
 
 LIMIT_KEYS = ("MIN_LIMIT", "MAX_LIMIT", "MAX_VELOCITY", "MAX_ACCELERATION")
@@ -38,13 +37,13 @@ LOADS_MODULE = re.compile(r"loadrt\s+\[KINS\]\(?KINEMATICS\)?(\s|$)")
 ADDS_CONTROLLER = re.compile(r"addf\s+motion-controller\s+servo-thread(\s|$)")
 KINEMATICS_LINE = re.compile(
     r"HALFILE = \S+/configs/kinematics/polar_(kinematics|tool_offset)\.hal"
-    r"|ON_ABORT_COMMAND = G\S+ P|POLAR_KINEMATICS = 1"
+    r"|POLAR_KINEMATICS = 1|(MIN_LIMIT|MAX_(LIMIT|VELOCITY|ACCELERATION)) = \S+"
 )
 CURE = f"by hand: the steps in {KINEMATICS_PAGE}, and check reports what is missing or wrong"
 
 
 def obstacles(config: Config, text: IniText, requested: Sequence[str]) -> Iterator[ConfigFinding]:
-    if not code_off(config, requested):
+    if not {*config.features, *requested}.intersection(features.POLAR_FEATURES):
         yield problem(
             "kinematics", "there is no G12.1 here", "install --with polar polar-kinematics"
         )
@@ -52,13 +51,6 @@ def obstacles(config: Config, text: IniText, requested: Sequence[str]) -> Iterat
     for reason in chain(*rules, wrong_hal(config)):
         alone = f"{reason}: install leaves the kinematics of this machine alone"
         yield problem("kinematics", alone, CURE)
-
-
-def code_off(config: Config, requested: Sequence[str]) -> str:
-    """Return the code that ends a section, "" where there is none."""
-    new = [name for name in requested if name in features.POLAR_FEATURES]
-    codes = [*codes_off(config), *(features.remaps_of(name)[1].code for name in new)]
-    return next(iter(codes), "")
 
 
 def joints(config: Config) -> str:
@@ -99,15 +91,11 @@ def wrong_limits(config: Config) -> Iterator[str]:
 
 
 def wrong_entries(config: Config, text: IniText) -> Iterator[str]:
-    """Yield unusual forms of the lines that would change."""
-    if config.ini.get("RS274NGC", "ON_ABORT_COMMAND"):
-        yield "[RS274NGC] has an ON_ABORT_COMMAND"
+    """Yield lines that would change in an included file."""
     for section, key in CHANGED_ENTRIES:
         for line, _ in text.entries(section, key)[:1]:
             if line.file != text.path:
                 yield f"{line.location}: {key} is in an included file"
-            elif CONTINUED.search(text.files[line.file][line.row]):
-                yield f"{line.location}: {key} goes on in the next line"
 
 
 def wrong_hal(config: Config) -> Iterator[str]:
@@ -146,13 +134,12 @@ def limits(config: Config) -> dict[str, str]:
     return {key: f"{value:.10g}" for key, value in values}
 
 
-def added(config: Config, requested: Sequence[str], prefix: str) -> dict[str, list[str]]:
+def added(config: Config, prefix: str) -> dict[str, list[str]]:
     """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
     files = [GUARD_HAL, *([OFFSET_HAL] if config.ini.tool_beside else [])]
     face = [] if config.ini.get("G12", "POLAR_KINEMATICS") else ["POLAR_KINEMATICS = 1"]
     axis = [f"{key} = {value}" for key, value in limits(config).items()]
     return {
-        "RS274NGC": [f"ON_ABORT_COMMAND = {code_off(config, requested)} P"],
         "HAL": [f"HALFILE = {prefix}/{file}" for file in files],
         "G12": face,
         "AXIS_Y": [NOW + NEXT.join(axis), *axis],

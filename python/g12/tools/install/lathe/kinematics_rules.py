@@ -268,22 +268,6 @@ def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def codes_off(config: Config) -> list[str]:
-    """Return the codes of the REMAP lines that end a polar section."""
-    return [remap.code for _, remap in config.remaps if "polar_off" in remap.handlers]
-
-
-def abort_wrong(config: Config) -> Iterator[ConfigFinding]:
-    off, found = codes_off(config), config.ini.get("RS274NGC", "ON_ABORT_COMMAND")
-    if off and (found or "").upper().split() != [off[0], "P"]:
-        state = f" = {found}" if found else " is missing"
-        yield problem(
-            "abort",
-            f"[RS274NGC] ON_ABORT_COMMAND{state}: an abort would leave the machine on the face",
-            f"ON_ABORT_COMMAND = {off[0]} P; what you have there now: {KINEMATICS_PAGE}",
-        )
-
-
 KINEMATICS_RULES = (
     module_missing,
     not_used,
@@ -293,7 +277,6 @@ KINEMATICS_RULES = (
     hal_wrong,
     periods_differ,
     offset_wrong,
-    abort_wrong,
 )
 
 
