@@ -82,6 +82,11 @@ def entries_of(lines: Sequence[str], section: str) -> Iterator[Entry]:
         index += len(group)
 
 
+def value_in(lines: Sequence[str], section: str, key: str) -> str | None:
+    """Return the first value of a key, "" where nothing is behind the ``=``; None without one."""
+    return next((entry.value for entry in entries_of(lines, section) if entry.key == key), None)
+
+
 def key_and_value(line: str) -> tuple[str, str]:
     """Return key and value of a line inside a section; two empty texts for a comment."""
     key, _, value = line.strip().partition("=")

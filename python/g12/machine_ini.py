@@ -8,6 +8,7 @@ also reads texts that are in no file.
 
 from __future__ import annotations
 
+import math
 import os
 import re
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
@@ -25,12 +26,9 @@ FindAll = Callable[[str, str], Sequence[str]]
 AXIS_LETTERS = "XYZABCUVW"
 NO_LIMIT = 1e99  # LinuxCNC's default of a travel limit
 KINEMATICS_PARAMETER = b"_kins_type"  # a library symbol of interpreters that have G12.1 themselves
-AXIS_KEYS = (  # with LinuxCNC's defaults
-    ("MIN_LIMIT", -NO_LIMIT),
-    ("MAX_LIMIT", NO_LIMIT),
-    ("MAX_VELOCITY", 1.0),
-    ("MAX_ACCELERATION", 1.0),
-)
+TRAVEL_KEYS = ("MIN_LIMIT", -NO_LIMIT), ("MAX_LIMIT", NO_LIMIT)  # with LinuxCNC's defaults
+SPEED_KEYS = ("MAX_VELOCITY", 1.0), ("MAX_ACCELERATION", 1.0)
+SPINDLE_C_SECONDS, LONGEST_SPINDLE_C = 30.0, 3600.0  # [SPINDLE_C] TIMEOUT
 MM_OF_UNIT = {  # with their lengths in mm
     "mm": 1.0,
     "metric": 1.0,
@@ -127,7 +125,7 @@ def face_of(find: Find) -> FaceAxes | None:
         _axis("AXIS_X", find),
         _axis("AXIS_Y", find),
         _axis(f"JOINT_{joints.index('X')}", find),
-        number_in(find, "DISPLAY", "MAX_FEED_OVERRIDE", 1.0),
+        positive_in(find, "DISPLAY", "MAX_FEED_OVERRIDE", 1.0),
     )
 
 
@@ -141,21 +139,23 @@ def face_joints(find: Find) -> str:
 
 
 def _axis(section: str, find: Find) -> Axis:
-    low, high, *speeds = (number_in(find, section, *key) for key in AXIS_KEYS)
-    for (key, _), speed in zip(AXIS_KEYS[2:], speeds):
-        if speed <= 0.0:
-            raise Refusal(f"[{section}] {key} = {number(speed)}: must be above 0")
-    return Axis(low, high, *speeds)
+    speeds = (positive_in(find, section, *key) for key in SPEED_KEYS)
+    return Axis(*_range(section, find), *speeds)
+
+
+def _range(section: str, find: Find) -> tuple[float, float]:
+    """Return the lowest and the highest position of an axis or a joint."""
+    low, high = (number_in(find, section, *key) for key in TRAVEL_KEYS)
+    if low > high:
+        least, most = (key for key, _ in TRAVEL_KEYS)
+        rule = f"must not be above {most} = {number(high)}"
+        raise Refusal(f"[{section}] {least} = {number(low)}: {rule}")
+    return low, high
 
 
 def ranges_of(find: Find, letters: Iterable[str]) -> dict[str, tuple[float, float]]:
     """Return the lowest and the highest position of axes by their letters, in machine units."""
-    low, high = AXIS_KEYS[:2]
-    sections = {letter: f"AXIS_{letter}" for letter in letters}
-    return {
-        letter: (number_in(find, section, *low), number_in(find, section, *high))
-        for letter, section in sections.items()
-    }
+    return {letter: _range(f"AXIS_{letter}", find) for letter in letters}
 
 
 def number_in(find: Find, section: str, key: str, default: float) -> float:
@@ -165,6 +165,22 @@ def number_in(find: Find, section: str, key: str, default: float) -> float:
     if value is None:
         raise Refusal(f"[{section}] {key} = {text:.40}: must be a number")
     return value
+
+
+def positive_in(
+    find: Find, section: str, key: str, default: float, most: float = math.inf
+) -> float:
+    """Return the number above 0, and up to ``most``, at the start of a value."""
+    value = number_in(find, section, key, default)
+    if not 0.0 < value <= most:
+        rule = "must be above 0" if math.isinf(most) else f"must be above 0, {number(most)} at most"
+        raise Refusal(f"[{section}] {key} = {number(value)}: {rule}")
+    return value
+
+
+def spindle_c_timeout(find: Find) -> float:
+    """Return how long the spindle may take to become C, in seconds."""
+    return positive_in(find, "SPINDLE_C", "TIMEOUT", SPINDLE_C_SECONDS, LONGEST_SPINDLE_C)
 
 
 def remap_lines(find_all: FindAll) -> list[Remap]:

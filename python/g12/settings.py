@@ -21,6 +21,7 @@ from g12.lengths import is_inch
 
 INI_SECTION = "G12"
 CLAMP_CODES = range(3, 10)  # of LinuxCNC's own M codes, those that may serve a clamp
+MOST_FEED = 1e9  # program units per minute: a block of LinuxCNC can have its digits
 M_CODE = re.compile(r"M\d{1,3}")
 TOLERANCE_MM, TOLERANCE_INCH = 0.005, 0.0002  # defaults of POLAR_TOLERANCE
 
@@ -82,11 +83,11 @@ class Settings:
     entry: str = setting("plunge", words("plunge", "helix"))
     entry_angle: float = setting(3.0, number_rule(most=45.0))
     plunge_feed: float = setting(100.0, number_rule(most=100.0))
-    yasnac_traverse: float = setting(0.0, number_rule(least=0.0))
+    yasnac_traverse: float = setting(0.0, number_rule(least=0.0, most=MOST_FEED))
     polar_x: str = setting("inherit", words("inherit", "diameter", "radius"))
     polar_z: str = setting("refuse", words("refuse", "allow"))
     polar_g0: str = setting("refuse", words("refuse", "feed"))
-    polar_g0_feed: float | None = setting(None, number_rule())
+    polar_g0_feed: float | None = setting(None, number_rule(most=MOST_FEED))
     # From 0.00001 on: that is below the resolution of any machine.
     polar_tolerance: float | None = setting(None, number_rule(least=0.00001))
     polar_pole: str = setting("rotate", words("rotate", "refuse"))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from g12.tools.commands import check, install, run, uninstall
+from g12.tools.preview.tracer import Tracer
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -123,7 +124,7 @@ def test_everything_in_one_program(lathe):
         ([f"o<side_holes> call [3] [-9] [0] [-9999] [40] {HOLE}"], f"side_holes {NOT_C}"),
         (
             ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
-            "G12.1 line 6: M255 line 7: the section needs C to its end",
+            "G12.1 line 6: M255 line 6: the section needs C to its end",
         ),
         (["M255", "G0 C30"], "Linear move on line 4 would exceed C's positive limit"),
         (["G1 X30 C-30 F100"], "Linear move on line 3 would exceed C's negative limit"),
@@ -174,16 +175,36 @@ def test_m3_on_the_screen_while_it_is_c_turns_nothing_afterwards(lathe):
     assert abs(lathe.get("spindle-rps")) < 0.001
 
 
-def test_a_spindle_that_cannot_become_c():
-    slow = {"SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1}}
+def test_a_spindle_that_cannot_become_c(tmp_path):
+    paths = f"{tmp_path}:../../ngc:subs"
+    slow = {
+        "SPINDLE_C": {"INDEX_SPEED": 0, "TIMEOUT": 1},
+        "RS274NGC": {"SUBROUTINE_PATH": paths},
+    }
     with Machine(SPINDLE_LATHE, overrides=slow) as machine:
         machine.mdi("M254")
-        assert machine.errors()[0].text == (
-            "M254: the spindle did not become C within 1 s: it has to stop, to find its index and "
+        rule = (
+            "the spindle did not become C within 1 s: it has to stop, to find its index and "
             "to reach the angle of C (spindle_c.md)"
         )
+        assert machine.errors()[0].text == f"M254: {rule}"
         assert not machine.get("spindle-c-holds")
         assert not machine.get("spindle.0.orient")
+        (tmp_path / "change.ngc").write_text("o<change> sub\n\nM254\no<change> endsub\n")
+        for text, line in (
+            ("G21 G90\nM254\nM2", "2"),
+            ("G21\no<s> sub\n(to C)\nM254\no<s> endsub\no<s> call\nM2", "4"),
+            ("G21\no<change> call\nM2", "3 of change.ngc"),
+        ):
+            assert machine.run_text(text.splitlines()).error.text == f"M254 line {line}: {rule}"
+
+
+@pytest.mark.parametrize("time", ["0", "", "soon", "-5"])
+def test_a_timeout_that_cannot_be_is_refused_at_the_start(time):
+    rule = "must be a number" if time in ("", "soon") else "must be above 0, 3600 at most"
+    with Tracer(SPINDLE_LATHE, overrides={"SPINDLE_C": {"TIMEOUT": time}}) as lathe:
+        traced = lathe.trace_text(["G21", "M254", "M2"])
+    assert traced.error.text == f"[SPINDLE_C] TIMEOUT = {time}: {rule}"
 
 
 @pytest.mark.parametrize("interrupt", INTERRUPTS)

@@ -46,6 +46,11 @@ REFUSED = [  # what is changed of the INI or the HAL file, what is said
 ]
 MISTAKES = [  # what is changed of an installed machine's INI, what is found
     ("JOINT = 2\n", "", "spindle-c"),
+    *((f"{key} = {usual}", f"{key} = {wrong}", "spindle-c") for key, usual, wrong in (
+        ("TIMEOUT", 30, 0), ("TIMEOUT", 30, -5), ("TIMEOUT", 30, "soon"), ("TIMEOUT", 30, ""),
+        ("TIMEOUT", 30, 3601), ("ORIENT_SPEED", 0.5, "fast"), ("INDEX_SPEED", 0.25, 0),
+        ("JOINT", 2, 1), ("JOINT", 2, "C"),
+    )),
     ("TURNS = turns", "TURNS = other", "spindle-c-signal"),
     ("HALFILE = g12/configs/include/spindle_c.hal", "", "spindle-c-hal"),
     ("HALCMD = net spindle-c-holds => drive.mode\n", "", "spindle-c-drive"),
@@ -193,6 +198,9 @@ def test_refused_for_what_the_machine_has(tmp_path, old, new, said):
         ("velocity = 'a'", "position, holds: missing"),
         (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
         (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (f"{PINS}\ntimeout = -5", "timeout = -5: must be above 0"),
+        (f"{PINS}\nindex_speed = 0", "index_speed = 0: must not be 0"),
+        (f"{PINS}\ntolerance = inf", "tolerance = inf: must be finite"),
         (PINS.replace('"drive.mode"', "3"), "holds is the name of a pin, not 3"),
         ("velocity", "Expected .=. after a key"),
     ],

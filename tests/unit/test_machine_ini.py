@@ -14,8 +14,10 @@ from g12.machine_ini import (
     coordinates_of,
     millimetres_of,
     owns_g12_1,
+    ranges_of,
     refuse_owned_codes,
     remap_lines,
+    spindle_c_timeout,
 )
 from g12.tools.machine.ini import Ini
 
@@ -39,9 +41,40 @@ def ini_of(text):
     return Ini(Path("machine.ini"), tuple(text.splitlines()))
 
 
-def test_an_axis_that_cannot_be():
-    with pytest.raises(Refusal, match=r"\[AXIS_C\] MAX_ACCELERATION = 0: must be above 0"):
-        axes_of(ini_of("[AXIS_C]\nMAX_ACCELERATION = 0\n").get, "C")
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ("MAX_ACCELERATION = 0", "[AXIS_C] MAX_ACCELERATION = 0: must be above 0"),
+        (
+            "MIN_LIMIT = 5\nMAX_LIMIT = -5",
+            "[AXIS_C] MIN_LIMIT = 5: must not be above MAX_LIMIT = -5",
+        ),
+        ("MAX_LIMIT = far", "[AXIS_C] MAX_LIMIT = far: must be a number"),
+    ],
+)
+def test_an_axis_that_cannot_be(lines, message):
+    ini = ini_of(f"[AXIS_C]\n{lines}\n")
+    for read in (axes_of, ranges_of) if "LIMIT" in lines else (axes_of,):
+        with pytest.raises(Refusal) as refused:
+            read(ini.get, "C")
+        assert refused.value.message == message
+
+
+def test_no_feed_override_and_a_time_that_cannot_be():
+    face = "[KINS]\nKINEMATICS = polar_xzc\n[DISPLAY]\nMAX_FEED_OVERRIDE = 0\n"
+    with pytest.raises(Refusal, match=r"\[DISPLAY\] MAX_FEED_OVERRIDE = 0: must be above 0"):
+        axes_of(ini_of(face).get, "X")
+    assert spindle_c_timeout(ini_of("").get) == 30
+    assert spindle_c_timeout(ini_of("[SPINDLE_C]\nTIMEOUT = 5 # s\n").get) == 5
+    for text, rule in (
+        ("", "must be a number"),
+        ("soon", "must be a number"),
+        ("0", "must be above 0, 3600 at most"),
+        ("-5", "must be above 0, 3600 at most"),
+        ("1e9", "must be above 0, 3600 at most"),
+    ):
+        with pytest.raises(Refusal, match=r"\[SPINDLE_C\] TIMEOUT = .*: " + rule):
+            spindle_c_timeout(ini_of(f"[SPINDLE_C]\nTIMEOUT = {text}\n").get)
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,11 @@ from __future__ import annotations
 import ctypes
 import functools
 import os
+from pathlib import Path
 
 import linuxcnc
 
-from g12.ini_sections import leading_number
+from g12.ini_sections import value_in, with_included
 from g12.machine_ini import (
     Axis,
     FaceAxes,
@@ -21,6 +22,7 @@ from g12.machine_ini import (
     m_codes_of,
     ranges_of,
     remap_lines,
+    spindle_c_timeout,
 )
 from g12.settings import Settings, settings_from_ini
 
@@ -98,7 +100,9 @@ class RunningMachine:
     @functools.cached_property
     def spindle_c_timeout(self) -> float:
         """How long the spindle may take to become C, in seconds."""
-        return leading_number(self._ini.find("SPINDLE_C", "TIMEOUT") or "") or 30.0
+        path = ini_file()  # LinuxCNC 2.9 hands out no empty value
+        lines = list(with_included(Path(path))) if path else []
+        return spindle_c_timeout(functools.partial(value_in, lines))
 
 
 MACHINE = RunningMachine()

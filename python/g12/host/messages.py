@@ -52,11 +52,18 @@ def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
     if mdi and interp.call_level == (1 if own else 2):
         return None
     if own:
-        filename, offset = interp.filename, interp.blocks[interp.remap_level].offset
+        filename, offset = file_of_block(interp), interp.blocks[interp.remap_level].offset
     else:
         frame = interp.sub_context[interp.call_level - 2]
         filename, offset = frame.filename, frame.position - 1
     return line_at(interp, filename, offset, in_program=not mdi)
+
+
+def file_of_block(interp: Interp) -> str:
+    """Return the file of the block being remapped; in an epilog the sub's own file is open."""
+    remap = interp.blocks[interp.remap_level].executing_remap
+    in_sub = remap.remap_ngc and Path(interp.filename).name == f"{remap.remap_ngc}.ngc"
+    return interp.sub_context[interp.call_level - 1].filename if in_sub else interp.filename
 
 
 def in_mdi(interp: Interp) -> bool:

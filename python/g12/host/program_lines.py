@@ -85,7 +85,8 @@ def line_at(interp: Interp, filename: str, offset: int, *, in_program: bool) -> 
             line = file.read(max(0, offset)).count(b"\n") + 1
     except OSError:  # an initial block of the INI is in no file
         return None
-    own = in_program and filename == running_file(interp)
+    # at the first level the block is the program's, whichever file is open
+    own = in_program and (interp.call_level < 2 or filename == running_file(interp))
     return line if own else LineOfFile(line, os.path.basename(filename))
 
 
@@ -176,6 +177,7 @@ class ProgramLines:
         """Let the interpreter execute a block that is remapped to a sub; return its status."""
         self.catch_up()
         self.interp.read(text)
+        self.interp.blocks[0].offset = self.source.starts[self.line - 1]
         status = self.interp.execute(None)
         self._locate()
         return status

@@ -18,6 +18,10 @@ INPUT = 2  # of motion, as in spindle_c.hal and spindle_c_on.ngc
 SECTION_HANDLERS = ("polar_on", "cylinder_mode")
 
 
+def check_at_start() -> None:
+    MACHINE.read("spindle_c_timeout")
+
+
 @messages.handler
 def spindle_c_on(self, **words):
     """Let `ngc/spindle_c_on.ngc` run: prolog of M254."""

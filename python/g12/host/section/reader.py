@@ -35,11 +35,11 @@ from g12.section.block_rules import NO_CODE, GGroup, SectionBlock
 from g12.section.line import BlockLocation, TextLine
 from g12.section.modes import SectionModes
 from g12.section.start import SectionStart, WordRules
+from g12.settings import MOST_FEED
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 SECTION_MOTIONS = (block_rules.G0, block_rules.G1, block_rules.G2, block_rules.G3)
 WITHOUT_COMPENSATION = 40
-MOST_FEED = 1e9  # program units per minute
 
 SECTION_WORDS, PLAIN_LETTERS = "XCZIJRKFSPQLE", "XCZIJR"
 PLAIN_FIELDS = chain.from_iterable(WORD_FIELDS[letter] for letter in PLAIN_LETTERS)

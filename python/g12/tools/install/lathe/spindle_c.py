@@ -9,11 +9,12 @@ import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
+from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from g12.ini_sections import leading_number
-from g12.machine_ini import face_joints
+from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints
 from g12.settings import INI_SECTION
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import KINEMATICS, ROOT
@@ -64,12 +65,13 @@ OWN_PINS = (
     "ini.c.min_limit",
     "ini.c.max_limit",
 )
+SIGNED = ("INDEX_SPEED", "VELOCITY_SCALE", "POSITION_SCALE")  # of NUMBERS, others are above 0
 NUMBERS = {  # keys of [SPINDLE_C], each in the pins' file in lower case
     "TOLERANCE": 0.02,
     "ORIENT_SPEED": 0.5,
     "ORIENT_ACCELERATION": 1.0,
     "INDEX_SPEED": 0.25,
-    "TIMEOUT": 30.0,
+    "TIMEOUT": SPINDLE_C_SECONDS,
     "VELOCITY_SCALE": 1.0,
     "POSITION_SCALE": 1.0,
 }
@@ -123,6 +125,9 @@ def read_pins(path: Path) -> Pins:
         if not isinstance(value, known[key]) or isinstance(value, bool):
             kind = "the name of a pin" if key in DRIVE else "a number"
             raise UsageError(f"{path}: {key} is {kind}, not {value!r}")
+        fault = wrong_number(key.upper(), value) if key not in DRIVE else ""
+        if fault:
+            raise UsageError(f"{path}: {key} = {value}: {fault}")
     missing = [key for key in REQUIRED_PINS if key not in entries]
     if missing:
         raise UsageError(f"{path}: {', '.join(missing)}: missing")
@@ -251,6 +256,42 @@ def keys_missing(config: Config) -> Iterator[ConfigFinding]:
                 f"[SPINDLE_C] {key} = {signal}, but {pin} is on {found.get(pin, 'no signal')}",
                 f"{key} = {found[pin]}" if pin in found else f"net {signal} … => {pin}",
             )
+
+
+def joint_wrong(config: Config) -> Iterator[ConfigFinding]:
+    """Find another joint than C's, whose feedback and homing the HAL file would take."""
+    text, joint = config.ini.get("SPINDLE_C", "JOINT", ""), letters_of_joints(config).find("C")
+    if text and joint >= 0 and leading_number(text) != joint:
+        yield problem(
+            "spindle-c",
+            f"[SPINDLE_C] JOINT = {text:.40}: C is joint {joint}",
+            f"JOINT = {joint}",
+        )
+
+
+def numbers_wrong(config: Config) -> Iterator[ConfigFinding]:
+    """Find numbers that HAL or the code refuse, or with which the spindle cannot become C."""
+    for key, usual in NUMBERS.items():
+        text = config.ini.get("SPINDLE_C", key, f"{usual:g}")
+        value = leading_number(text)
+        fault = "must be a number" if value is None else wrong_number(key, value)
+        if fault and (text or key == "TIMEOUT"):  # `keys_missing` has the other empty ones
+            yield problem(
+                "spindle-c",
+                f"[SPINDLE_C] {key} = {text:.40}: {fault}",
+                f"usual is {key} = {usual:g} ({SPINDLE_C_PAGE})",
+            )
+
+
+def wrong_number(key: str, value: float) -> str:
+    """Return the rule that a value of `NUMBERS` breaks, "" if none."""
+    if not isfinite(value):
+        return "must be finite"
+    if key in SIGNED:
+        return "" if value else "must not be 0"
+    if key == "TIMEOUT" and value > LONGEST_SPINDLE_C:
+        return f"must be {LONGEST_SPINDLE_C:g} at most"
+    return "" if value > 0.0 else "must be above 0"
 
 
 def not_connected(config: Config) -> Iterator[ConfigFinding]:
@@ -418,6 +459,8 @@ def after_own(config: Config) -> list[HalLine]:
 
 SPINDLE_C_RULES = (
     keys_missing,
+    joint_wrong,
+    numbers_wrong,
     not_connected,
     feedback_wrong,
     index_shared,
