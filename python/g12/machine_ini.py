@@ -39,7 +39,7 @@ MM_OF_UNIT = {  # with their lengths in mm
 }
 KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in LinuxCNC's order
 HANDLERS = ("prolog", "epilog", "python")
-CODE_PATTERN = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
+CODE_PATTERN = re.compile(r"([A-Za-z])(\d{0,9})(?:\.(\d{1,9}))?\Z")
 
 
 FACE_KINEMATICS = "polar_xzc"  # configs/kinematics
