@@ -19,7 +19,7 @@ PIECES = [
     b'"', b"'", b"%", b"/", b";", b"-", b".", b"\t", b" ", b"e", b"nan", b"inf", b"1e400", b"-1e17",
     b"9" * 400, b"9" * 5000, b"0", b"-1", b"\xc2\x85", b"\xe2\x80\xa8", b"\xf4\x90\x80\x80",
     b"#INCLUDE ", b"#INCLUDE .\n", b"[RS274NGC]\n", b"[FILTER]\n", b"true", b"{}", b"[1, 2]",
-    b"null", b"x" * 300, b"[" * 300, b"(" * 300, b"$", b"~", b"..", b"/", b"\x1b[2J",
+    b"null", b"x" * 300, b"[" * 300, b"(" * 300, b"[" * 5000, b"$", b"~", b"..", b"/", b"\x1b[2J",
 ]  # fmt: skip
 NUMBER = re.compile(rb"-?\d+(\.\d*)?|-?\.\d+")
 NUMBERS = [

@@ -192,7 +192,9 @@ def test_refused_for_what_the_machine_has(tmp_path, old, new, said):
     [
         ("velocity = 'a'", "position, holds: missing"),
         (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
-        (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (PINS.replace("60", "'fast'"), "velocity_scale is a number, 1e9 at most, not 'fast'"),
+        (PINS.replace("60", "9" * 400), "velocity_scale is a number, 1e9 at most, not 999"),
+        (PINS.replace("60", "nan"), "velocity_scale is a number, 1e9 at most, not nan"),
         (PINS.replace('"drive.mode"', "3"), "holds is the name of a pin, not 3"),
         ("velocity", "Expected .=. after a key"),
     ],

@@ -33,6 +33,7 @@ from g12.tools.install.lathe.hal_pins import missing_pin, modules_of, owners_of,
 from g12.tools.install.lathe.kinematics_lines import joints
 from g12.tools.install.lathe.kinematics_rules import GUARD_HAL, uses_face_kinematics
 from g12.tools.machine.files import existing
+from g12.tools.machine.tables import MAX_MEASURE
 from g12.tools.units import counted_as
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
@@ -113,16 +114,17 @@ def read_pins(path: Path) -> Pins:
     """Return the data of a file of pins; refuse unknown and missing entries."""
     try:
         entries = tomllib.loads(existing(path).read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: {error}") from None
     known: dict[str, Any] = dict.fromkeys(DRIVE, str)
     known |= {key.lower(): (int, float) for key in NUMBERS}
     for key, value in entries.items():
         if key not in known:
             raise UsageError(f"{path}: {key} is none of {', '.join(known)}")
-        if not isinstance(value, known[key]) or isinstance(value, bool):
-            kind = "the name of a pin" if key in DRIVE else "a number"
-            raise UsageError(f"{path}: {key} is {kind}, not {value!r}")
+        is_measure = key in DRIVE or isinstance(value, str) or abs(value) <= MAX_MEASURE
+        if not (isinstance(value, known[key]) and is_measure) or isinstance(value, bool):
+            kind = "the name of a pin" if key in DRIVE else "a number, 1e9 at most"
+            raise UsageError(f"{path}: {key} is {kind}, not {value!r:.40}")
     missing = [key for key in REQUIRED_PINS if key not in entries]
     if missing:
         raise UsageError(f"{path}: {', '.join(missing)}: missing")
