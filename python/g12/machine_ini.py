@@ -40,7 +40,7 @@ KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in 
 HANDLERS = ("prolog", "epilog", "python")
 M_FILES = tuple(f"M{code}" for code in range(100, 200))  # names of the user's own commands
 M_FILES_FOLDER, MOST_M_FOLDERS = "nc_files", 5  # LinuxCNC's default; of USER_M_PATH
-CODE_PATTERN = re.compile(r"([A-Za-z])(\d*)(?:\.(\d+))?\Z")
+CODE_PATTERN = re.compile(r"([A-Za-z])(\d{0,9})(?:\.(\d{1,9}))?\Z")
 
 
 FACE_KINEMATICS = "polar_xzc"  # configs/kinematics

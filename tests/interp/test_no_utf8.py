@@ -34,7 +34,7 @@ def shop(tmp_path, monkeypatch):
     folder = named(tmp_path, b"Dr\xe4hen")
     folder.mkdir()
     machines = copy_of_machines(folder)
-    ini = (machines / "mill_mm.ini").read_bytes().replace(b"MACHINE = ", b"MACHINE = M\xfchle ")
+    ini = (machines / "mill_mm.ini").read_bytes()
     named(machines, b"M\xfchle.ini").write_bytes(b"# K\xf6ln\n" + ini)
     named(folder, b"t\xe4ble.tbl").write_bytes(b"; \xe4\nT4 P4 D10 ;Fr\xe4ser\n")
     named(folder, b"v\xe4r.var").write_bytes(b"# \xe4\n5220\t1\n5221\t10\n")
@@ -111,3 +111,15 @@ def test_an_installation_keeps_every_byte(tmp_path, capfd):
     assert main.main(["check", str(ini)]) == 0
     assert main.main(["uninstall", str(ini)]) == 0
     assert content_of(tmp_path) == before
+
+
+def test_a_value_of_the_ini_that_is_no_utf8_is_refused_by_its_key(tmp_path, capfd):
+    """LinuxCNC 2.9 reads such an INI, 2.10 does not."""
+    machines = copy_of_machines(tmp_path)
+    part = machines / "parts" / "mill_mm.inc"
+    part.write_bytes(part.read_bytes().replace(b"MAX_LIMIT = 300", b"MAX_LIMIT = \xe4300", 1))
+    program = tmp_path / "part.ngc"
+    program.write_bytes(PROGRAM)
+    assert main.main(["trace", str(program), "--ini", str(machines / "mill_mm.ini")]) == 2
+    said = capfd.readouterr().err
+    assert "[AXIS_Z] MAX_LIMIT: has a byte that is no UTF-8" in said or "does not read it" in said

@@ -390,7 +390,7 @@ def test_wrong_uses_of_an_empty_directory(shop):
     assert wrong(shop, "record", "no.ngc", "--ini", INI) == "no.ngc: no such file"
     assert wrong(shop, "record", program, "--ini", "no.ini") == "no.ini: no such file"
     assert wrong(shop, "record", empty, "--ini", INI) == (
-        f"{empty}: no programs in this folder (.ngc, .nc, .tap, .gcode)"
+        f"{empty}: no programs in this folder (.ngc, .nc, .tap, .gcode, .min, .eia)"
     )
     assert wrong(shop, "record", program, "--ini", INI, "--tools", "no.tbl") == (
         "no.tbl: no such file"

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from pathlib import Path
 from random import Random
@@ -18,7 +19,12 @@ PIECES = [
     b'"', b"'", b"%", b"/", b";", b"-", b".", b"\t", b" ", b"e", b"nan", b"inf", b"1e400", b"-1e17",
     b"9" * 400, b"9" * 5000, b"0", b"-1", b"\xc2\x85", b"\xe2\x80\xa8", b"\xf4\x90\x80\x80",
     b"#INCLUDE ", b"#INCLUDE .\n", b"[RS274NGC]\n", b"[FILTER]\n", b"true", b"{}", b"[1, 2]",
-    b"null", b"x" * 300, b"[" * 300, b"(" * 300, b"$", b"~", b"..", b"/", b"\x1b[2J",
+    b"null", b"x" * 300, b"[" * 300, b"(" * 300, b"[" * 5000, b"$", b"~", b"..", b"/", b"\x1b[2J",
+]  # fmt: skip
+NUMBER = re.compile(rb"-?\d+(\.\d*)?|-?\.\d+")
+NUMBERS = [
+    b"9" * 5000, b"1e400", b"-1e17", b"nan", b"inf", b"0", b"-0", b"-1", b"1e-400", b"99999999999",
+    b"4294967296", b"0x10", b"1_0", b"\xd9\xa3", b"1.2.3", b".", b"", b"1e9", b"0.0000001",
 ]  # fmt: skip
 PINS = b"""\
 velocity = "drive.velocity"
@@ -36,8 +42,12 @@ CONTROLS = shipped_controls()
 
 
 def damaged(chance: Random, content: bytes) -> bytes:
-    """Return a file's content with some stretches replaced, repeated or lost."""
-    for _ in range(chance.randint(1, 5)):
+    """Return a file's content with some numbers or stretches replaced, repeated or lost."""
+    for _ in range(chance.choice([0, 0, 1, 2])):
+        numbers = [each.span() for each in NUMBER.finditer(content)]
+        start, end = chance.choice(numbers or [(0, 0)])
+        content = content[:start] + chance.choice(NUMBERS) + content[end:]
+    for _ in range(chance.randint(0, 4)):
         at, length = chance.randint(0, len(content)), chance.choice([0, 0, 1, 4, 40])
         piece = chance.choice([*PIECES, chance.randbytes(6), content[at : at + 30]])
         content = content[:at] + piece + content[at + length :]

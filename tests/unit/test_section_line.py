@@ -68,6 +68,12 @@ def test_what_the_parser_does_not_know_is_rewritten(raw, text):
     assert line.rewritten
 
 
+def test_a_line_that_the_parser_refuses_for_its_length_is_not_split():
+    raw = f"{'#' * 5000}1=1"
+    assert split_line(raw, POLAR_WORDS).letters == ()
+    assert split_line(f"G1 X1 ({'a' * 5000})", POLAR_WORDS).letters == ("G", "X")
+
+
 def test_parts_of_a_line():
     line = split_line(
         "/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)", POLAR_WORDS

@@ -64,6 +64,9 @@ def test_a_comment_can_take_words_with_it(control):
         ("[variables]\n3020 = 'time'\n", 3, '3020 = "time" must be a number, and a parameter'),
         ("[variables]\n3020 = 5\n", 3, '3020 = "5" must be a number, and a parameter of LinuxCNC'),
         ("g_codes = 5\n", 2, "g_codes is a table: [g_codes]"),
+        ("extensions = 'NC'\n", 2, 'extensions = "NC" must be extensions in small letters'),
+        ("start = ['G17']\n", 2, "start = \"['G17']\" must be codes such as G17"),
+        ("[variables]\n3901 = ['#500']\n", 3, "3901 = \"['#500']\" must be a number"),
     ],
 )
 def test_a_wrong_file_is_refused_with_its_line(control, tmp_path, text, line, rule):
@@ -82,6 +85,11 @@ def test_a_control_that_is_nowhere():
         read_control("hass-mill")
     with pytest.raises(ControlError, match=r"nowhere\.toml"):
         read_control("nowhere.toml")
+
+
+def test_the_extensions_of_a_controls_programs(control):
+    assert control("").extensions == ("nc",)
+    assert control("extensions = 'min ssb'\n").extensions == ("min", "ssb")
 
 
 def test_a_control_that_is_based_on_itself(tmp_path):

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import functools
 import os
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import linuxcnc
 
+from g12.errors import Refusal
 from g12.ini_sections import value_in, with_included
 from g12.machine_ini import (
     Axis,
@@ -38,6 +41,29 @@ def ini_file() -> str | None:
     return os.fsdecode(name) if name else None
 
 
+class Values:
+    """LinuxCNC's reader of the INI; of 2.9 it fails with a value that is no UTF-8."""
+
+    def __init__(self, path: str) -> None:
+        self._ini = linuxcnc.ini(path)
+
+    def find(self, section: str, key: str) -> str | None:
+        with refusing(section, key):
+            return self._ini.find(section, key)
+
+    def findall(self, section: str, key: str) -> Sequence[str]:
+        with refusing(section, key):
+            return self._ini.findall(section, key)
+
+
+@contextlib.contextmanager
+def refusing(section: str, key: str) -> Iterator[None]:
+    try:
+        yield
+    except UnicodeDecodeError:
+        raise Refusal(f"[{section}] {key}: has a byte that is no UTF-8") from None
+
+
 class RunningMachine:
     def read(self, *parts: str) -> None:
         """Read properties now, so that a value that cannot be used raises its Refusal here."""
@@ -61,8 +87,8 @@ class RunningMachine:
         return self.settings.polar_kinematics == "1"
 
     @functools.cached_property
-    def _ini(self) -> linuxcnc.ini:
-        return linuxcnc.ini(ini_file() or os.devnull)
+    def _ini(self) -> Values:
+        return Values(ini_file() or os.devnull)
 
     @functools.cached_property
     def remaps(self) -> dict[str, Remap]:

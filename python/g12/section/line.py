@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from g12.errors import Refusal
+from g12.errors import LONGEST_BLOCK, Refusal
 from g12.section.words import SectionWords
 
 _NUMBER = r"[-+]?[\d.]+"
@@ -102,7 +102,7 @@ def split_line(raw: str, known: SectionWords) -> TextLine:
     control = _CONTROL.match(bare)
     if control:
         return TextLine(bare, comments, _kind(bare, control))
-    if "(" in bare:  # an unclosed or nested comment: the parser refuses it
+    if "(" in bare or len(bare) > LONGEST_BLOCK:  # the parser refuses it, and a nested comment
         return TextLine(bare)
     words = list(split_words(bare.lstrip("/")))
     letters = tuple(letter.upper() for letter, _ in words)

@@ -42,6 +42,7 @@ def usage() -> str:
 def main(arguments: list[str]) -> int:
     """Run the command named first; return its exit code."""
     name, *rest = arguments or ["--help"]
+    sys.set_int_max_str_digits(0)  # a file's number of 5,000 digits is no error of Python's
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a file's name may be no UTF-8

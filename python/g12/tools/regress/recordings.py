@@ -112,7 +112,7 @@ def load(directory: Path) -> Baseline:
         if not (paths["ini"] and paths["programs"] and all(isinstance(f, str) for f in folders)):
             raise TypeError
         baseline = Baseline(directory, folders=folders, **paths)
-    except (ValueError, KeyError, TypeError, AttributeError):
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
         raise UsageError(f"{about}: not a file of g12 regress") from None
     if not known:
         raise UsageError(f"{about}: written by another version of g12")

@@ -9,7 +9,6 @@ import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from difflib import get_close_matches
-from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,6 +33,7 @@ from g12.tools.install.lathe.hal_pins import missing_pin, modules_of, owners_of,
 from g12.tools.install.lathe.kinematics_lines import joints
 from g12.tools.install.lathe.kinematics_rules import GUARD_HAL, uses_face_kinematics
 from g12.tools.machine.files import existing
+from g12.tools.machine.tables import MAX_MEASURE
 from g12.tools.units import counted_as
 
 SPINDLE_C_PAGE = "configs/spindle_c.md"
@@ -115,7 +115,7 @@ def read_pins(path: Path) -> Pins:
     """Return the data of a file of pins; refuse unknown and missing entries."""
     try:
         entries = tomllib.loads(existing(path).read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: {error}") from None
     known: dict[str, Any] = dict.fromkeys(DRIVE, str)
     known |= {key.lower(): (int, float) for key in NUMBERS}
@@ -124,10 +124,10 @@ def read_pins(path: Path) -> Pins:
             raise UsageError(f"{path}: {key} is none of {', '.join(known)}")
         if not isinstance(value, known[key]) or isinstance(value, bool):
             kind = "the name of a pin" if key in DRIVE else "a number"
-            raise UsageError(f"{path}: {key} is {kind}, not {value!r}")
+            raise UsageError(f"{path}: {key} is {kind}, not {value!r:.40}")
         fault = wrong_number(key.upper(), value) if key not in DRIVE else ""
         if fault:
-            raise UsageError(f"{path}: {key} = {value}: {fault}")
+            raise UsageError(f"{path}: {key} = {value!s:.40}: {fault}")
     missing = [key for key in REQUIRED_PINS if key not in entries]
     if missing:
         raise UsageError(f"{path}: {', '.join(missing)}: missing")
@@ -285,8 +285,8 @@ def numbers_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 def wrong_number(key: str, value: float) -> str:
     """Return the rule that a value of `NUMBERS` breaks, "" if none."""
-    if not isfinite(value):
-        return "must be finite"
+    if not abs(value) <= MAX_MEASURE:  # nor is nan
+        return f"must be {MAX_MEASURE:g} at most"
     if key in SIGNED:
         return "" if value else "must not be 0"
     if key == "TIMEOUT" and value > LONGEST_SPINDLE_C:

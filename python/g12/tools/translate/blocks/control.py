@@ -18,7 +18,6 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from math import inf
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -125,8 +124,9 @@ OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that n
 )
 TYPE_NAMES = {
     str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts",
-    float: "a number above 0",
+    float: "a number above 0, 1e9 at most",
 }  # fmt: skip
+MAX_NUMBER = 1e9
 COMMENT = re.compile(r"comment( [A-Z])*")
 
 
@@ -252,7 +252,7 @@ def _data(path: Path) -> dict:
         raise ControlError(f"{path}: {problem}") from None
     try:
         data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
+    except (tomllib.TOMLDecodeError, RecursionError) as problem:
         raise ControlError(f"{path}: {problem}") from None
     return _Checked(path, text).data(data)
 
@@ -305,7 +305,7 @@ class _Checked:
                 self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
             return
         if kind is float:
-            is_good = type(value) in (int, float) and 0 < value < inf
+            is_good = type(value) in (int, float) and 0 < value <= MAX_NUMBER
         else:
             texts = value if kind is list and isinstance(value, list) else ()
             is_good = type(value) is kind and all(isinstance(text, str) for text in texts)
