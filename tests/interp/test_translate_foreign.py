@@ -186,6 +186,35 @@ def test_words_before_any_g0_run_as_g0_and_say_so(tracers, control, words, own):
     assert message.text.strip() == "line 2: no G0 or G1 before it, it runs as G0"
 
 
+NATIVE = """\
+%
+(OWN)
+G21 G90 G64 P0.01
+o100 sub
+G0 X#1
+o100 endsub
+o100 call [5]
+#<_high> = 1
+o<loop> while [#<_high> lt 3]
+G0 Z#<_high> ; up
+#<_high> = [#<_high> + 1]
+o<loop> endwhile
+M2
+%
+"""
+
+
+def test_a_program_of_linuxcnc_stays_as_it_is(tracers):
+    result = translate_program(NATIVE, control_of("fanuc-mill"))
+    lines = zip(result.text.splitlines(), NATIVE.splitlines())
+    assert [line for line, as_it_was in lines if line != as_it_was] == [
+        "(OWN) (MSG, this is a program of LinuxCNC: it runs as it is)"
+    ]
+    traced = tracers("fanuc-mill").trace_text(result.text, alone=True)
+    assert path_of(traced) == path_of(tracers("fanuc-mill").trace_text(NATIVE, alone=True))
+    assert len(path_of(traced)) == 3 and len(traced.messages) == 1
+
+
 def test_an_offset_that_the_program_sets_to_0_is_set(tracers, tmp_path):
     path = tmp_path / "offsets.nc"
     sub = "O5\nG10 L20 P3 X0. Y0. Z0.\nM99\n"

@@ -406,6 +406,22 @@ def test_every_refused_block_is_named_with_its_reason():
     )
 
 
+@pytest.mark.parametrize(
+    ("own", "named"),
+    [("G64 P.01", "G64P"), ("G33.1 Z1. K1.", "G33.1"), ("G38.2 Z0 F9.", "G38.2"),
+     ("#<_a> = 5", "#<_A"), ("o<a> call", "O<a>CALL"), ("O5 SUB", "O5SUB")],
+)  # fmt: skip
+@pytest.mark.parametrize("other", ["G154 P1", "IF[#1EQ2]GOTO5", "N5 WHILE[#1LT2]DO1", "M97 P5"])
+def test_a_mixture_of_two_languages_is_refused(own, named, other):
+    line, sentence = refusal(HAAS, f"G0 X1.\n{own} (G64)\n{other}")
+    name = other.partition("#")[0].removeprefix("N5 ").partition(" ")[0].partition("P")[0]
+    text = f"{named.upper()} is LinuxCNC's, {name} in line 5 another control's: write the program"
+    assert (line, sentence[: len(text)]) == (2, text)
+    assert translate_program(f"{own}\nM2\n", HAAS).text.startswith(f"{own} (MSG, ") == (
+        "CALL" not in named and "SUB" not in named
+    )
+
+
 @pytest.mark.parametrize("refused", ["G1 G9.9 X40. F9.", "G1 X?"])
 def test_a_refused_block_sets_its_modes(refused):
     text = f"G98 G0 X60. Z2. C0\nG12.1\n{refused}\nX30. Y5.\nG13.1\nM30\n"
