@@ -28,6 +28,7 @@ from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
 from g12.tools.translate.variables import unset_locals, without_clocks
+from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
 
@@ -61,6 +62,7 @@ def translate_program(
     if not control.onto and (own := next(own_constructs(rows), None)):
         return _native_program(rows, own)
     blocks = _read_blocks(rows, control, progress)
+    control = control_of_program(control, blocks)
     structure = structure_of(blocks, control)
     followed = followed_program(
         structure,
