@@ -122,10 +122,12 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def put_in(ini: Path, *names: str, pins: Pins | None = None, **python) -> list[str]:
+def put_in(
+    ini: Path, *names: str, pins: Pins | None = None, numbers: str = "", **python
+) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
     config = config_of(ini, **python)
-    return installation.write_changes(make_plan(config, names, pins), config.folder)
+    return installation.write_changes(make_plan(config, names, pins, numbers), config.folder)
 
 
 def take_out(ini: Path) -> list[str]:

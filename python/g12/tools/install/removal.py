@@ -39,7 +39,7 @@ HEADERS = ("[PYTHON]", "[FILTER]", "[HAL]", "[G12]", "[AXIS_Y]")
 OWN, HEADER, EDITED, USERS = "own", "header", "edited", "user's"  # what a line of a block is
 EDITED_NOTE = "# before uninstall: "
 OF_PROGRAMS = re.compile(
-    r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S+"
+    r"PROGRAM_EXTENSION = \.nc Programs of \S+|nc = python3 \S+/python/g12 translate --control \S.*"
     r"|(POLAR_Z|CYLINDER_X) = allow|LIVE_SPINDLE = [01]"
 )
 
