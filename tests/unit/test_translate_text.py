@@ -649,6 +649,29 @@ def test_the_pages_own_control_is_one(tmp_path):
     assert (own.decimals, own.meanings["M51"]) == ("whole", "M64 P0")
 
 
+REFUSED_OFTEN = [
+    (FANUC, "G21 G90|G0 X1", "X1 has no decimal point"),
+    (FANUC, "M137", "M137 is not known of "),
+    (replace(FANUC, machine_codes=frozenset()), "M88", "M88 is the machine builder's"),
+    (FANUC, "M98 P9810", "O9810 is not in this file"),
+    (FANUC, "G0 A90.", "A90.: "),
+    (LATHE, "T30303", "T30303 has 5 digits"),
+    (LATHE, "G90\nX40. Z1.", "G90 is a cycle here"),
+    (LATHE, "G95\nG90 X9. Z1.", "G95: feed per revolution"),
+    (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
+    (FANUC, "#1=#4001", "#4001 means something else"),
+    (FANUC, "G31 Z1.", "G31: a skip function"),
+    (LATHE, "G68", "G68: mirror image"),
+]
+
+
+@pytest.mark.parametrize(("control", "text", "sentence"), REFUSED_OFTEN)
+def test_the_page_has_the_commonest_refusals(control, text, sentence):
+    assert refusal(control, text)[1].startswith(sentence)
+    table = PAGE.read_text(encoding="utf-8").partition("refused most often")[2].partition("##")[0]
+    assert sentence in table
+
+
 # ---------------------------------------------------------------- hostile text
 
 PARTS = """
