@@ -17,7 +17,7 @@ from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import control_of
 from support.growth import growth
-from support.sim_machines import ROOT
+from support.sim_machines import ROOT, SIM
 
 HAAS, FANUC = control_of("haas-mill"), control_of("fanuc-mill")
 LATHE, HAAS_LATHE = control_of("fanuc-lathe"), control_of("haas-lathe")
@@ -537,6 +537,18 @@ def machine_of(tmp_path):
         return on_machine(control_of(name), read_ini(tmp_path / "m.ini"))
 
     return with_ini
+
+
+@pytest.mark.parametrize(
+    ("name", "ini", "axes"),
+    [
+        ("haas-mill", "mill_mm", "XYZ"), ("fanuc-lathe", "lathe_mm", "XZC"),
+        ("fanuc-lathe", "lathe_mm_kinematics", "XZC"),  # whose Y is the face's
+        ("mazak-integrex", "mill_mm", "XYZ"), ("mill-on-face", "lathe_mm", "XYZC"),
+    ],
+)  # fmt: skip
+def test_the_axes_are_those_of_the_machine(name, ini, axes):
+    assert on_machine(control_of(name), read_ini(SIM / f"{ini}.ini")).axes == axes
 
 
 @pytest.mark.parametrize(("name", "text", "expected"), LIVE_TOOLS)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from g12.machine_ini import Remap, remap_lines
+from g12.machine_ini import Remap, face_joints, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
@@ -38,7 +38,8 @@ def on_machine(control: Control, ini: Ini) -> Control:
     of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}
     polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))
     cylinder = _code_of(remaps, "cylinder_mode", "G")
-    axes = "".join(axis for axis in AXIS_NUMBERS if axis in ini.axes)
+    own_axes = ini.axes.replace("Y", "") if face_joints(ini.get) else ini.axes  # Y is the face's
+    axes = "".join(axis for axis in AXIS_NUMBERS if axis in own_axes)
     return replace(
         control,
         axes=control.axes if control.onto else axes,
