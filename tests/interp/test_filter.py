@@ -243,3 +243,21 @@ def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(reported, 
     assert errors.endswith(
         "PROGRAM: lines are those of the program that the INI's [FILTER] makes of it\n"
     )
+
+
+def test_what_install_is_told_of_numbers_rules_the_programs(tmp_path, capsys):
+    machines = copy_of_machines(tmp_path / "machines")
+    part = machines / "parts" / "lathe_mm.inc"
+    part.write_text(part.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
+    ini, program = machines / "lathe_mm.ini", tmp_path / "part.nc"
+    program.write_text("G0 X1500 Z5.\nM30\n")
+    words = ["install", str(ini), "--with", "programs-fanuc-lathe"]
+    assert main.main([*words, "--dry-run"]) == 0
+    assert capsys.readouterr().out.startswith("asked: X1500 has no decimal point. With --decimals")
+    assert main.main([*words, "--decimals", "least", "--units", "inch"]) == 0
+    assert "asked:" not in capsys.readouterr().out
+    assert main.main(["trace", str(program), "--ini", str(ini), "--digits", "3"]) == 0
+    assert capsys.readouterr().out == "     1 rapid X1.905 Z127.000\n"
+    assert main.main(["install", str(ini), "--with", "polar", "--units", "mm"]) == 2
+    assert main.main(["uninstall", str(ini)]) == 0
+    assert "translate" not in ini.read_text()

@@ -48,6 +48,7 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
+    ("fanuc-mill", "G83 X2. Z.5 R.9 Q2000\nG80", "G83 X2 Z.5 R.9 Q.2\nG80\nG0"),
     *((control, f"G81 Z.5 R.9 {none}0\nX2.\nG91 X.5 {none}2\nG80 G90",
        "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0")
       for control in ("fanuc-mill", "mitsubishi-mill") for none in "KL"),

@@ -186,6 +186,75 @@ def test_words_before_any_g0_run_as_g0_and_say_so(tracers, control, words, own):
     assert message.text.strip() == "line 2: no G0 or G1 before it, it runs as G0"
 
 
+MODES = "G90 G18 G40\nG91 G28 U0\nG90 G50 S2000\nT0101\nG97 S500 M3\nG0 X50. Z2.\nG95 G1 Z-5. F.2\n"
+MODES_SAID = "G90, G91, G94, G95 are modes in this program, not cycles"
+
+
+def test_modes_of_system_b_in_a_program_of_system_a(tracers):
+    foreign = f"O1\nG21\n{MODES}U2.\nG91 X3. Z1.\nG90 G94 X60. F90.\nG0 W3.\nM30\n"
+    own = (
+        "G7 G18 G21 G90\nG53 G0 X0\nT1 M6\nS500 M3\nG0 X50 Z2\nG95 G1 Z-5 F.2\nX52\n"
+        "X55 Z-4\nG94 X60 F90\nG0 Z-1\nM30\n"
+    )
+    result = translate_program(foreign.replace("94 X60", "94\nX60"), control_of("fanuc-lathe"))
+    traced = tracers("fanuc-lathe").trace_text(result.text, alone=True)
+    assert path_of(traced) == path_of(tracers("fanuc-lathe").trace_text(own, alone=True))
+    assert [message.text.strip() for message in traced.messages] == [MODES_SAID]
+
+
+@pytest.mark.parametrize(
+    "uncertain",
+    ["G90 X40. Z-9.", "G98 G1 X60. F9.", "G92 S900", "G94 X40. Z-1.", "G33 Z-9. F1.", "G77 X9."],
+)
+def test_what_could_be_a_cycle_leaves_the_modes_to_the_user(uncertain):
+    refused = translate_program(
+        f"O1\nG21\n{MODES}{uncertain}\nM30\n", control_of("fanuc-lathe")
+    ).refused
+    assert refused[0].line == 4
+    assert "fanuc-lathe-b" in refused[0].sentence
+
+
+@pytest.mark.parametrize(("decimals", "x"), [("least", 3.0), ("whole", 3000.0)])
+def test_numbers_with_and_without_a_point_are_said(tracers, tmp_path, decimals, x):
+    path = tmp_path / "part.nc"
+    path.write_text("G21 G0 X5. Y2\nG4 X1.\nZ1.\nX3000 Y0\nM30\n")
+    text = translation(path, "fanuc-mill", "--decimals", decimals)
+    traced = tracers("fanuc-mill").trace_text(text, alone=True)
+    assert traced.moves[-1].end[0] == near(x)
+    assert [message.text.strip() for message in traced.messages] == [
+        "X has a decimal point in line 1, none in line 4: look at both"
+    ]
+
+
+NATIVE = """\
+%
+(OWN)
+G21 G90 G64 P0.01
+o100 sub
+G0 X#1
+o100 endsub
+o100 call [5]
+#<_high> = 1
+o<loop> while [#<_high> lt 3]
+G0 Z#<_high> ; up
+#<_high> = [#<_high> + 1]
+o<loop> endwhile
+M2
+%
+"""
+
+
+def test_a_program_of_linuxcnc_stays_as_it_is(tracers):
+    result = translate_program(NATIVE, control_of("fanuc-mill"))
+    lines = zip(result.text.splitlines(), NATIVE.splitlines())
+    assert [line for line, as_it_was in lines if line != as_it_was] == [
+        "(OWN) (MSG, this is a program of LinuxCNC: it runs as it is)"
+    ]
+    traced = tracers("fanuc-mill").trace_text(result.text, alone=True)
+    assert path_of(traced) == path_of(tracers("fanuc-mill").trace_text(NATIVE, alone=True))
+    assert len(path_of(traced)) == 3 and len(traced.messages) == 1
+
+
 def test_an_offset_that_the_program_sets_to_0_is_set(tracers, tmp_path):
     path = tmp_path / "offsets.nc"
     sub = "O5\nG10 L20 P3 X0. Y0. Z0.\nM99\n"

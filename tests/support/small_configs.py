@@ -122,9 +122,11 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def put_in(ini: Path, *names: str, pins: Pins | None = None, **python) -> list[str]:
+def put_in(
+    ini: Path, *names: str, pins: Pins | None = None, numbers: str = "", **python
+) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
-    plan = make_plan(config_of(ini, **python), names, pins)
+    plan = make_plan(config_of(ini, **python), names, pins, numbers)
     old_copy = plan.copied and installation.out_of_date(ini.parent / package_copy.NAME)
     return installation.write_changes(plan.changes(), ini.parent, old_copy)
 

@@ -3,9 +3,20 @@
 
 import pytest
 
+from g12.tools.install.config.bare_numbers import question_of
 from g12.tools.install.config.filters import filter_findings, installed_programs, wrong_filters
 from g12.tools.install.plan import Refused, make_plan
-from support.small_configs import LATHE, config_of, package_of, put_in, restored, write_config
+from g12.tools.translate.blocks.control import read_control
+from support.small_configs import (
+    LATHE,
+    MILL,
+    config_of,
+    package_of,
+    put_in,
+    restored,
+    with_lines,
+    write_config,
+)
 
 COMMAND = "python3 g12/python/g12 translate --control"
 FILTER = f"""\
@@ -158,3 +169,36 @@ def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings
             put_in(ini, f"programs-{control}")
             assert settings in ini.read_text()
             assert ini.read_text().count("LIVE_SPINDLE") == 1
+
+
+def test_what_numbers_are_is_written_into_the_filter(tmp_path):
+    ini = write_config(tmp_path)
+    numbers = " --decimals least --units inch"
+    with restored(ini):
+        put_in(ini, "programs-haas-mill", numbers=numbers)
+        command = f"{COMMAND} haas-mill{numbers}"
+        assert f"nc = {command}\nNC = {command}\n" in ini.read_text()
+        put_in(ini, "programs-haas-mill")
+        with pytest.raises(Refused) as refused:
+            make_plan(config_of(ini), ["programs-haas-mill"], numbers=" --decimals whole")
+        assert (
+            refused.value.args[0].cure == "write --decimals whole behind --control haas-mill in it"
+        )
+
+
+@pytest.mark.parametrize(
+    ("program", "asked"),
+    [
+        ("G21\n(X5000)G0 X0 Y2.;Z7\nX-0250 (A)\n", "X-0250 (part.NC, line 3) has no decimal point. "
+         "With --decimals least it is -0.25 mm or -0.025 in, with --decimals whole -250 mm or in."),
+        ("G0 X1.\n", "X1500 has no decimal point. With --decimals least it is 1.5 mm or 0.15 in"),
+    ],
+)  # fmt: skip
+def test_numbers_without_a_point_are_asked_for_with_one_of_the_users(tmp_path, program, asked):
+    ini = write_config(
+        tmp_path, with_lines(f"{MILL}\n[DISPLAY]\n", "DISPLAY", "PROGRAM_PREFIX = .")
+    )
+    (tmp_path / "part.NC").write_text(program)
+    (question,) = question_of(read_control("fanuc-lathe"), config_of(ini))
+    assert question.startswith(f"asked: {asked}")
+    assert list(question_of(read_control("mill-on-face"), config_of(ini))) == []

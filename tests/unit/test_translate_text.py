@@ -17,7 +17,7 @@ from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import control_of
 from support.growth import growth
-from support.sim_machines import ROOT
+from support.sim_machines import ROOT, SIM
 
 HAAS, FANUC = control_of("haas-mill"), control_of("fanuc-mill")
 LATHE, HAAS_LATHE = control_of("fanuc-lathe"), control_of("haas-lathe")
@@ -406,6 +406,22 @@ def test_every_refused_block_is_named_with_its_reason():
     )
 
 
+@pytest.mark.parametrize(
+    ("own", "named"),
+    [("G64 P.01", "G64P"), ("G33.1 Z1. K1.", "G33.1"), ("G38.2 Z0 F9.", "G38.2"),
+     ("#<_a> = 5", "#<_A"), ("o<a> call", "O<a>CALL"), ("O5 SUB", "O5SUB")],
+)  # fmt: skip
+@pytest.mark.parametrize("other", ["G154 P1", "IF[#1EQ2]GOTO5", "N5 WHILE[#1LT2]DO1", "M97 P5"])
+def test_a_mixture_of_two_languages_is_refused(own, named, other):
+    line, sentence = refusal(HAAS, f"G0 X1.\n{own} (G64)\n{other}")
+    name = other.partition("#")[0].removeprefix("N5 ").partition(" ")[0].partition("P")[0]
+    text = f"{named.upper()} is LinuxCNC's, {name} in line 5 another control's: write the program"
+    assert (line, sentence[: len(text)]) == (2, text)
+    assert translate_program(f"{own}\nM2\n", HAAS).text.startswith(f"{own} (MSG, ") == (
+        "CALL" not in named and "SUB" not in named
+    )
+
+
 @pytest.mark.parametrize("refused", ["G1 G9.9 X40. F9.", "G1 X?"])
 def test_a_refused_block_sets_its_modes(refused):
     text = f"G98 G0 X60. Z2. C0\nG12.1\n{refused}\nX30. Y5.\nG13.1\nM30\n"
@@ -523,6 +539,18 @@ def machine_of(tmp_path):
     return with_ini
 
 
+@pytest.mark.parametrize(
+    ("name", "ini", "axes"),
+    [
+        ("haas-mill", "mill_mm", "XYZ"), ("fanuc-lathe", "lathe_mm", "XZC"),
+        ("fanuc-lathe", "lathe_mm_kinematics", "XZC"),  # whose Y is the face's
+        ("mazak-integrex", "mill_mm", "XYZ"), ("mill-on-face", "lathe_mm", "XYZC"),
+    ],
+)  # fmt: skip
+def test_the_axes_are_those_of_the_machine(name, ini, axes):
+    assert on_machine(control_of(name), read_ini(SIM / f"{ini}.ini")).axes == axes
+
+
 @pytest.mark.parametrize(("name", "text", "expected"), LIVE_TOOLS)
 def test_the_live_tool_is_a_spindle_of_the_machine(machine_of, name, text, expected):
     second = machine_of(name, f"{TWO}[G12]\nLIVE_SPINDLE = 1\n")
@@ -631,6 +659,29 @@ def test_the_pages_own_control_is_one(tmp_path):
     (tmp_path / "my_lathe.toml").write_text(re.sub("^ {4}", "", text, flags=re.MULTILINE))
     own = read_control(str(tmp_path / "my_lathe.toml"))
     assert (own.decimals, own.meanings["M51"]) == ("whole", "M64 P0")
+
+
+REFUSED_OFTEN = [
+    (FANUC, "G21 G90|G0 X1", "X1 has no decimal point"),
+    (FANUC, "M137", "M137 is not known of "),
+    (replace(FANUC, machine_codes=frozenset()), "M88", "M88 is the machine builder's"),
+    (FANUC, "M98 P9810", "O9810 is not in this file"),
+    (FANUC, "G0 A90.", "A90.: "),
+    (LATHE, "T30303", "T30303 has 5 digits"),
+    (LATHE, "G90\nX40. Z1.", "G90 is a cycle here"),
+    (LATHE, "G95\nG90 X9. Z1.", "G95: feed per revolution"),
+    (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
+    (FANUC, "#1=#4001", "#4001 means something else"),
+    (FANUC, "G31 Z1.", "G31: a skip function"),
+    (LATHE, "G68", "G68: mirror image"),
+]
+
+
+@pytest.mark.parametrize(("control", "text", "sentence"), REFUSED_OFTEN)
+def test_the_page_has_the_commonest_refusals(control, text, sentence):
+    assert refusal(control, text)[1].startswith(sentence)
+    table = PAGE.read_text(encoding="utf-8").partition("refused most often")[2].partition("##")[0]
+    assert sentence in table
 
 
 # ---------------------------------------------------------------- hostile text

@@ -26,6 +26,7 @@ features:
 examples:
   g12 install ~/linuxcnc/configs/mill/mill.ini --with haas circle-mill
   g12 install lathe.ini --with polar --dry-run
+  g12 install lathe.ini --with polar programs-fanuc-lathe --decimals least
   g12 install lathe.ini --with polar polar-kinematics
 
 exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
@@ -43,6 +44,10 @@ def command_parser() -> Parser:
     words: dict[str, Any] = {"dest": "features", "nargs": "+", "default": [], "metavar": "FEATURE"}
     parser.add_argument("--with", **words, help="what to install (see below)")
     parser.add_argument("--pins", type=Path, metavar="TOML", help="inputs of the drive: spindle-c")
+    reading = "of programs-…: what numbers without a decimal point are"
+    parser.add_argument("--decimals", choices=("least", "whole"), help=reading)
+    units = "of programs-…: units of a program that says neither G20 nor G21"
+    parser.add_argument("--units", choices=("inch", "mm"), help=units)
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     return parser
 
@@ -73,9 +78,13 @@ def main(arguments: list[str]) -> int:
         parser.error(wrong)
     for pair in excluding(requested):
         raise UsageError(f"{pair} exclude each other: choose one")
+    values = {name: getattr(options, name) for name in ("decimals", "units")}
+    numbers = "".join(f" --{name} {value}" for name, value in values.items() if value)
+    if numbers and not any(name in features.CONTROLS for name in requested):
+        raise UsageError(f"{numbers.split()[0]} is for --with programs-…")
     pins = read_pins(options.pins) if options.pins else None
     try:
-        print_all(install(read_config_text(ini), requested, options.dry_run, pins))
+        print_all(install(read_config_text(ini), requested, options.dry_run, pins, numbers))
     except Refused as refused:
         for finding in refused.args:
             text = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"

@@ -7,6 +7,7 @@ from pathlib import Path
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy, placing
 from g12.tools.install.config import features
+from g12.tools.install.config.bare_numbers import question_of
 from g12.tools.install.config.filters import installed_programs, shortened
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
 from g12.tools.install.config.loaded import load_config
@@ -22,12 +23,17 @@ from g12.tools.install.rules import STOPPING, findings_of
 from g12.tools.install.trial import try_out
 from g12.tools.machine.files import backup_of, difference
 from g12.tools.system import COMMAND
+from g12.tools.translate.blocks.control import read_control
 
 PREVENTING = {"python-fails", "does-not-load"}  # kinds: what the config does is unknown
 
 
 def install(
-    text: IniText, requested: Sequence[str], dry_run: bool, pins: Pins | None = None
+    text: IniText,
+    requested: Sequence[str],
+    dry_run: bool,
+    pins: Pins | None = None,
+    numbers: str = "",
 ) -> Iterator[str]:
     if not dry_run:
         yield from placing.tidy(text.path.parent)
@@ -45,8 +51,11 @@ def install(
     programs = [f"programs-{control}" for control in installed_programs(config)]
     for pair in excluding([*config.features, *programs, *requested]):
         raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
-    plan = make_plan(config, requested, pins)
+    plan = make_plan(config, requested, pins, numbers)
     changes = plan.changes()
+    if "--decimals" not in numbers:
+        for name in filter(None, map(features.CONTROLS.get, requested)):
+            yield from question_of(read_control(name), config)
     old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
     if not changes and not old_copy:
         yield f"{text.path}: {', '.join(requested)}: installed already, nothing to do"

@@ -67,7 +67,8 @@ class InstallPlan:
 
     ``text`` is the edited INI with its includes, ``modules`` are the user's own Python modules with
     the lines added. ``prefix`` is the package's folder as the INI names it; ``copied``: it is the
-    copy that `install` makes. ``added`` are the lines for each section.
+    copy that `install` makes. ``numbers`` are the options of `translate` for units and numbers
+    without a decimal point. ``added`` are the lines for each section.
     """
 
     config: Config
@@ -75,6 +76,7 @@ class InstallPlan:
     text: IniText
     prefix: str
     copied: bool
+    numbers: str = ""
     modules: dict[Path, list[str]] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
     added: dict[str, list[str]] = field(default_factory=lambda: {"RS274NGC": []})
@@ -113,10 +115,10 @@ def marked(path: Path, statement: str) -> bool:
 
 
 def make_plan(
-    config: Config, requested: Sequence[str], pins: spindle_c.Pins | None = None
+    config: Config, requested: Sequence[str], pins: spindle_c.Pins | None = None, numbers: str = ""
 ) -> InstallPlan:
     prefix, copied = package_folder(config)
-    plan = InstallPlan(config, requested, IniText(config.text.path), prefix, copied)
+    plan = InstallPlan(config, requested, IniText(config.text.path), prefix, copied, numbers)
     update_remaps(plan)
     if plan.codes:
         add_python(plan)
@@ -255,7 +257,7 @@ def add_filter(plan: InstallPlan) -> None:
         add_settings(plan, control)
         present = {suffix: find("FILTER", suffix) for suffix in filters.suffixes_of(control)}
         refuse_other_filters(plan, name, present)
-        command = f"python3 {plan.prefix}/python/g12 translate --control {name}"
+        command = f"python3 {plan.prefix}/python/g12 translate --control {name}{plan.numbers}"
         command = next(filter(None, present.values()), command)
         missing = [suffix for suffix, value in present.items() if not value]
         plan.add({"FILTER": filters.filter_lines(control, command, missing)})
@@ -274,6 +276,12 @@ def refuse_other_filters(
                 f"[FILTER] {suffix} = {value} is there already",
                 "take that line out, or give your programs another suffix and add the line by hand "
                 "(python/g12/tools/translate/README.md)",
+            )
+        if value and plan.numbers and not value.endswith(plan.numbers):
+            raise refuse(
+                "filter",
+                f"[FILTER] {suffix} = {value} is there already",
+                f"write{plan.numbers} behind --control {control} in it",
             )
 
 

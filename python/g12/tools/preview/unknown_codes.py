@@ -6,16 +6,8 @@ from collections.abc import Container
 from g12.tools.system import COMMAND
 from g12.tools.translate.blocks.control import read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import blocks_of
+from g12.tools.translate.native import CODES
 
-LINUXCNC_CODES = frozenset(
-    f"G{n}"
-    for n in (
-        *range(9), 10, *range(17, 22), 28, 30, 33, *range(40, 44), 49, *range(52, 60), 61, 64,
-        *range(70, 75), 76, *range(80, 100), 5.1, 5.2, 5.3, 6.1, 6.2, 6.3, 17.1, 18.1, 19.1, 28.1,
-        30.1, 33.1, 38.2, 38.3, 38.4, 38.5, 41.1, 42.1, 43.1, 43.2, 59.1, 59.2, 59.3, 61.1, 71.1,
-        71.2, 72.1, 72.2, 90.1, 91.1, 92.1, 92.2, 92.3,
-    )
-)  # fmt: skip
 CONTROLS_NAMED = 3  # controls
 COMMONEST = ("fanuc", "haas")
 
@@ -24,7 +16,7 @@ def unknown_code(block: str, remapped: Container[str]) -> str:
     """Return the first G code of a block that LinuxCNC lacks; "" if that is not certain."""
     words = [word for part in blocks_of(1, block) for word in part.words]
     codes = [word.code for word in words if word.code[:1] == "G" and word.code not in remapped]
-    lacking = [code for code in codes if code not in LINUXCNC_CODES]
+    lacking = [code for code in codes if code not in CODES]
     return next(iter(lacking or codes * (len(codes) == 1)), "")
 
 

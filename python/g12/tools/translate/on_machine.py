@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from g12.machine_ini import Remap, m_codes_of, remap_lines
+from g12.machine_ini import Remap, face_joints, m_codes_of, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
@@ -35,7 +35,8 @@ def on_machine(control: Control, ini: Ini) -> Control:
     m_codes = m_codes_of(ini.get, remaps, ini.directory)
     polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))
     cylinder = _code_of(remaps, "cylinder_mode", "G")
-    axes = "".join(axis for axis in AXIS_NUMBERS if axis in ini.axes)
+    own_axes = ini.axes.replace("Y", "") if face_joints(ini.get) else ini.axes  # Y is the face's
+    axes = "".join(axis for axis in AXIS_NUMBERS if axis in own_axes)
     return replace(
         control,
         axes=control.axes if control.onto else axes,

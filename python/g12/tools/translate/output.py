@@ -80,6 +80,8 @@ def output_lines(
         lines = _lines_of_row(rows[line - 1], indices, followed, ends)
         if number == 1 and start:
             lines = _with_start_codes(start, lines)
+        if number == 1:
+            lines[1:1] = followed.control.notes
         in_place = in_place and number == line
         yield from lines[:in_place]
         yield from (_with_mark(text, line) for text in lines[in_place:])

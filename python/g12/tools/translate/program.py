@@ -17,11 +17,18 @@ from g12.tools.translate.blocks.lexer import (
 )
 from g12.tools.translate.follow import FollowedProgram, followed_program
 from g12.tools.translate.listing import missing_lines
+from g12.tools.translate.native import (
+    Construct,
+    lacking_constructs,
+    own_constructs,
+    with_message,
+)
 from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
 from g12.tools.translate.variables import unset_locals, without_clocks
+from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
 
@@ -52,7 +59,10 @@ def translate_program(
     ``progress`` is called with the finished share, 0 to 1.
     """
     rows = source_lines(text)
+    if not control.onto and (own := next(own_constructs(rows), None)):
+        return _native_program(rows, own)
     blocks = _read_blocks(rows, control, progress)
+    control = control_of_program(control, blocks)
     structure = structure_of(blocks, control)
     followed = followed_program(
         structure,
@@ -68,6 +78,18 @@ def translate_program(
     if order.circular:
         return Translation("", sorted(_circular_calls(followed, order.circular)))
     return Translation("\n".join([*output_lines(rows, order.rows, followed), ""]), [])
+
+
+def _native_program(rows: Sequence[str], own: Construct) -> Translation:
+    """Return a program of LinuxCNC as it is; a mixture with another control's is refused."""
+    other = next(lacking_constructs(rows), None)
+    if not other:
+        return Translation(with_message(rows), [])
+    sentence = (
+        f"{own.text} is LinuxCNC's, {other.text} in line {other.line} another control's: write the "
+        "program for one of them"
+    )
+    return Translation("", [RefusedBlock(own.line, sentence)])
 
 
 def _read_blocks(

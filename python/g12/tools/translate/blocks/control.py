@@ -156,6 +156,7 @@ class Control:
     live_spindle: str = "1"  # LinuxCNC's spindle that drives the tool, "" unknown
     polar_codes: tuple[str, str] = ("G12.1", "G13.1")  # LinuxCNC's, on and off
     cylinder_code: tuple[str, str] = ("G7.1", "radius")  # and what its C is: radius or diameter
+    notes: tuple[str, ...] = ()  # messages about a program, as lines
     c_axis_on: frozenset[str] = frozenset()  # codes that stop the main spindle and make it C
 
     @property

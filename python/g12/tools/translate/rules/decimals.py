@@ -54,7 +54,8 @@ def _quantity_of(draft: Draft, word: ForeignWord) -> str:
 def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
     if float(word.value) == 0:
         return word
-    least, rule = least_increment(draft, kind), draft.control.decimals
+    least = least_increment(draft, kind)
+    rule = "least" if _is_increment(draft, word) else draft.control.decimals
     if rule == "whole" or least == 1:
         return word
     if rule == "" and not least and 1 in _both_increments(draft, kind):
@@ -64,8 +65,9 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
         )
     if rule == "":
         raise NotSaid(
-            f"{word.text} has no decimal point, and the control does not say what it is then: "
-            'set decimals = "least" or "whole" (--decimals)',
+            f"{word.text} has no decimal point: is it {_increments_text(draft, word, kind)} or "
+            f"{word.value}.? write --decimals least, or whole, behind --control "
+            f"{draft.control.name}, in the [FILTER] line too",
             "",
             'decimals = "least" # or "whole"',
         )
@@ -73,6 +75,18 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
         raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
     text = f"{Decimal(word.value) * Decimal(str(least)):f}"
     return word._replace(value=text if "." in text else f"{text}.")
+
+
+def _is_increment(draft: Draft, word: ForeignWord) -> bool:
+    """Whether a word of a drilling cycle is in least increments whatever ``decimals`` says."""
+    drills = draft.state.cycle or "drilling cycle" in draft.meanings
+    return bool(drills) and word.letter == "Q" and draft.control.value("holes", "q") == "increments"
+
+
+def _increments_text(draft: Draft, word: ForeignWord, kind: str) -> str:
+    """Return a number in least increments, as the units allow it to be said."""
+    least = least_increment(draft, kind)
+    return f"{Decimal(word.value) * Decimal(str(least)):f}" if least else "a least increment"
 
 
 def least_increment(draft: Draft, kind: str) -> float:
