@@ -256,13 +256,23 @@ def test_run_from_line_runs_the_section_where_it_begins(lathe, line):
     assert not on_the_face(lathe)
 
 
-@pytest.mark.parametrize("away", ["X46", "Z3", "C1"])
-def test_run_from_line_is_refused_elsewhere(lathe, away):
-    lathe.mdi("G0 X45 Z2 C0")
+FROM_IN_INCHES = [
+    "G20 G18 G8 G64 P0.002 Q0", "G0 X1.7716535433 Z.0787401575 C0", "F60", "G12.1", "G1 X1.2",
+    "C-.5", "G13.1", "G0 Z.2", "M2",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("program", "away"),
+    [(RUN_FROM, "X46"), (RUN_FROM, "Z3"), (RUN_FROM, "C1"), (RUN_FROM, "X45.005"),
+     (FROM_IN_INCHES, "X45.005"), (FROM_IN_INCHES, "Z2.02")],
+)  # fmt: skip
+def test_run_from_line_is_refused_elsewhere(lathe, program, away):
+    lathe.mdi("G21 G0 X45 Z2 C0")
     lathe.mdi(f"G0 {away}")
-    lathe.open_text(RUN_FROM)
+    lathe.open_text(program)
     lathe.sample()
-    lathe.start(10)
+    lathe.start(6)
     lathe.wait_for(lambda status: status.interp == "idle" and lathe.stat().idle)
     time.sleep(0.5)
     lathe.wait_for_error("the tool is not where the section begins")

@@ -28,7 +28,7 @@ REQUEST_PIN, END_PIN = "polar-xzc.request", "polar-xzc.end-request"  # this is t
 ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 INPUT_RESULT, TIMED_OUT = 5399, -1.0  # parameter
-SAME_OFFSET = 1e-4  # program units
+SAME_OFFSET_MM = 1e-4
 IJK_MODES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 ON_THE_FACE = "G17G91.1M52P1"
 OLDER = "the module polar_xzc is older than this package: build it again, make kinematics"
@@ -162,14 +162,15 @@ def y_offset(interp: Interp) -> float:
     return interp.origin_offset_y + interp.axis_offset_y + interp.tool_offset.y
 
 
-def other_offset(interp: Interp, beside: float) -> str:
+def other_offset(interp: Interp, beside: float, millimetre: float) -> str:
     """Return the fault of the offset that polar_xzc has, "" without one.
 
     It may have another distance of the tool from the X line than ``beside``, that of the settings
-    in program units. The machine is on the face, at the start of its motion.
+    in program units; ``millimetre`` is 1 mm in them. The machine is on the face, at the start of
+    its motion.
     """
     found = interp.current_y + y_offset(interp)
-    if abs(found - beside) <= SAME_OFFSET:
+    if abs(found - beside) <= SAME_OFFSET_MM * millimetre:
         return ""
     return (
         f"the kinematics have the tool {number(found)} beside X's line (polar-xzc.tool-offset), "

@@ -47,7 +47,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
         interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
     )
     yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, blocks)
-    wrong = kinematics_switch.other_offset(interp, beside)
+    wrong = kinematics_switch.other_offset(interp, beside, start.millimetre)
     if wrong:
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)

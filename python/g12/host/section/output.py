@@ -40,7 +40,7 @@ TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
-SWITCH_TOLERANCE = 1e-3  # program units or degrees
+SWITCH_MM, SWITCH_DEGREES = 1e-3, 1e-3  # how far the tool may be from where a section begins
 SAME_TOLERANCE = 1e-9  # program units
 ELSEWHERE = (
     "the tool is not where the section begins: "
@@ -161,6 +161,7 @@ class SectionOutput:
         self.interp, self.code = interp, start.location.code
         self.x_factor, self.absolute, self.canon = 1.0 + start.diameter, absolute, canon
         self.machine_unit, self.beside = start.machine_unit, setup.words.beside
+        self.millimetre = start.millimetre
         initial = INITIAL_TOLERANCE * start.millimetre
         self.path = PathControl(interp, setup.tolerance / 2, initial)
         self._wrapped = interp.c_axis_wrapped
@@ -283,10 +284,11 @@ class SectionOutput:
 
     def _wrong_position(self, position: tuple[float, float, float]) -> str:
         """Return why the machine's actual position is not the planned one, "" if it is."""
-        off = (abs(there - planned) for there, planned in zip(self._machine_position(), position))
-        if max(off) > SWITCH_TOLERANCE:
+        length = SWITCH_MM * self.millimetre
+        compared = zip(self._machine_position(), position, (length, SWITCH_DEGREES, length))
+        if any(abs(there - planned) > most for there, planned, most in compared):
             return ELSEWHERE
-        return kinematics_switch.other_offset(self.interp, self.beside)
+        return kinematics_switch.other_offset(self.interp, self.beside, self.millimetre)
 
     def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
         """Execute a line, an arc or a move of Z on the face."""
