@@ -143,7 +143,7 @@ def children(process: int) -> list[int]:
     return found
 
 
-def ended(child: int, descriptor: int) -> int:
+def exit_code_of(child: int, descriptor: int) -> int:
     """Let the command end, as it does when its screen ends, or end it; return its exit code."""
     for number in (signal.SIGTERM, signal.SIGKILL):
         if not select.select([descriptor], [], [], CLEAN_UP)[0]:
@@ -182,7 +182,7 @@ def run(command: list[str], environment: dict[str, str]) -> int:
     select.select([descriptor, sys.stdin], [], [])
     memory = own_shared_memory()
     try:
-        return ended(child, descriptor)
+        return exit_code_of(child, descriptor)
     finally:
         memory |= own_shared_memory()
         end_all()

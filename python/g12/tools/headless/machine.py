@@ -43,7 +43,7 @@ FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the s
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"
-SAMPLES = "samples"  # file of the scratch directory: rows of doubles
+SAMPLES_FILE = "samples"  # file of the scratch directory: rows of doubles
 SCREEN = {"DISPLAY": SCREEN_NAME}
 ANY_OVERRIDE = {"MAX_FEED_OVERRIDE": 100}
 
@@ -158,7 +158,7 @@ class Machine:
         self._isolated.close()
 
     def _samples(self) -> Samples:
-        columns = np.fromfile(self.folder / SAMPLES).reshape(-1, len(self.axes) + 4).T
+        columns = np.fromfile(self.folder / SAMPLES_FILE).reshape(-1, len(self.axes) + 4).T
         velocity, requested, line, kind = columns[len(self.axes) :]
         return Samples(
             time=np.arange(len(velocity)) * self.ini.servo_period,
@@ -208,7 +208,7 @@ class Machine:
             folders=self.screen_folders,
             module=self.screen_module,
             descriptor=descriptor,
-            samples=str(self.folder / SAMPLES),
+            samples=str(self.folder / SAMPLES_FILE),
             pins=[*self._pins.values()],
         )
         self._isolated.install(SCREEN_NAME, screen)

@@ -29,7 +29,7 @@ from g12.tools.system import PYTHON
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 CONTAINED = Path(__file__).with_name("contained_init.py")
 TURNS = "/tmp/g12-turns-{}"  # without namespaces: a user's folder, whose lock marks the turn
-LONGEST_WAIT = 3600.0  # s, for the turn
+LONGEST_QUEUE = 3600.0  # s, for the turn
 TURN_POLL = 0.1  # s
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
@@ -126,14 +126,14 @@ class Isolated:
 def next_turn() -> int:
     """Wait for this user's other runs; return the descriptor whose lock marks the turn."""
     folder = folder_of_turns()
-    end = time.monotonic() + LONGEST_WAIT
+    end = time.monotonic() + LONGEST_QUEUE
     while True:
         with contextlib.suppress(BlockingIOError):
             fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
             return folder
         if time.monotonic() > end:
             os.close(folder)
-            raise StartupError(f"another run of yours has not ended in {LONGEST_WAIT:g} s")
+            raise StartupError(f"another run of yours has not ended in {LONGEST_QUEUE:g} s")
         time.sleep(TURN_POLL)
 
 
