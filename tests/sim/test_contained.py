@@ -2,6 +2,7 @@
 """Real runs in a plain container: no right to mount, no namespaces; it is the isolation itself."""
 
 import os
+import re
 import subprocess
 
 import pytest
@@ -13,6 +14,7 @@ CONTAINER = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "--ip
 PLAIN = ["setpriv", "--bounding-set", "-sys_admin", "--inh-caps", "-sys_admin", "sh", "-c"]
 RUN = f"{PYTHON} {ROOT}/python/g12 run {{}} --ini {SIM}/mill_mm.ini"
 LEFT = "cat /proc/sysvipc/shm; ps -eo comm=; ls /tmp/linuxcnc.lock"
+LISTENING = "grep -q ' 0A ' /proc/net/tcp && echo listens"
 GONE = "for n in $(seq 70); do ps -eo comm= | grep -qE 'milltask|rtapi' || break; sleep 0.5; done"
 
 
@@ -49,6 +51,23 @@ def test_one_that_is_killed_leaves_nothing(contained, tmp_path):
     done = contained(killed)
     assert "milltask" not in done.stdout and "rtapi" not in done.stdout
     assert "/tmp/linuxcnc.lock" not in done.stdout
+
+
+def test_only_its_own_shared_memory_is_freed(contained, tmp_path):
+    """LinuxCNC frees its own, unless it is killed."""
+    up = "until ps -eo comm= | grep -q milltask; do sleep 0.1; done; sleep 1; ipcmk --shmem 4321"
+    killed = "kill -KILL $(pidof -x linuxcnc)"
+    done = contained(f"{run_of(tmp_path, 'G4 P60')} & {up}; {killed}; wait; {LEFT}")
+    assert "LinuxCNC ended" in done.stderr
+    segments = re.findall(r"^ *-?\d+ +\d+ +\d+ +(\d+) ", done.stdout, re.MULTILINE)
+    assert segments == ["4321"]
+
+
+def test_nobody_commands_its_linuxcnc_over_the_network(contained, tmp_path):
+    listens = f"while kill -0 $!; do {LISTENING}; ps -eo comm=; sleep 0.2; done"
+    done = contained(f"{run_of(tmp_path, 'G4 P2')} & {listens}")
+    assert "milltask" in done.stdout
+    assert "listens" not in done.stdout
 
 
 def test_another_linuxcnc_is_left_alone(contained, tmp_path):

@@ -79,7 +79,8 @@ class Machine(machine.Machine):
 
     def samples(self) -> Samples:
         """Stop recording, which ``sample`` started, and return the motion."""
-        return self._samples(self._request("samples"))
+        self._request("samples")
+        return self._samples()
 
     def run_text(self, text, timeout=600.0) -> Run:
         """Run a program given as text or as lines; see ``run``."""

@@ -112,8 +112,8 @@ class OperatedScreen(RecordingScreen):
         self.sampler.start()
 
     def samples(self):
-        return self.sampler.stop()
+        self.sampler.stop()
 
 
-def serve_runner(address, positions):
-    recording_screen.serve_runner(address, positions, OperatedScreen)
+def serve_runner(descriptor, samples, positions):
+    recording_screen.serve_runner(descriptor, samples, positions, OperatedScreen)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Errors of a headless run; the screen inside LinuxCNC sends all but the first one."""
+"""Errors of a headless run; the screen inside LinuxCNC sends those of ``SENT``, by name."""
 
 
 class StartupError(RuntimeError):
@@ -12,3 +12,6 @@ class MachineError(RuntimeError):
 
 class Timeout(MachineError):
     """The machine did not reach a state in time."""
+
+
+SENT = {kind.__name__: kind for kind in (MachineError, Timeout)}

@@ -13,16 +13,15 @@ the kinematics changes the meaning of the axes (`polar_xzc`).
 import re
 import shutil
 import socket
-import time
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Self
 
 import numpy as np
 
 from g12.machine_ini import face_joints
-from g12.tools.headless.errors import MachineError, StartupError, Timeout
+from g12.tools.headless.channel import Channel
+from g12.tools.headless.errors import SENT, MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
@@ -45,6 +44,7 @@ NOISE = "Running with fallback_uid"  # for each module that is loaded
 SHUTTING_DOWN = ("Shutting down", "Note: Using POSIX")
 
 SCREEN_NAME = "g12-recording-screen"
+SAMPLES_FILE = "samples"  # file of the scratch directory: rows of doubles
 SCREEN = {"DISPLAY": SCREEN_NAME}
 ANY_OVERRIDE = {"MAX_FEED_OVERRIDE": 100}
 
@@ -66,7 +66,7 @@ RECORDING_SCREEN = """\
 import sys
 sys.path[:0] = {folders!r}
 from {module} import serve_runner
-serve_runner({address!r}, {pins!r})
+serve_runner({descriptor}, {samples!r}, {pins!r})
 """
 
 
@@ -107,7 +107,7 @@ class Machine:
         parameters: Parameters = None,
     ) -> None:
         self._isolated = Isolated()
-        self._connection: Connection | None = None
+        self._channel: Channel | None = None
         try:
             self.ini = self._private_ini(read_ini(ini).replaced(overrides or {}), tools, parameters)
             self.mm, self._pins = self.ini.mm, position_pins(self.ini)
@@ -141,25 +141,25 @@ class Machine:
         copy = self.folder / "programs" / Path(program).name
         shutil.copyfile(program, copy)
         answer = self._request("run", str(copy), timeout, timeout=timeout)
-        samples, errors = self._samples(answer["recorded"]), answer["errors"]
+        samples, errors = self._samples(), answer["errors"]
         moving = samples.time[samples.moving()]
         return Run(
             samples=samples,
             messages=[Message(line, text) for text, line in answer["messages"]],
             error=Error(*errors[0]) if errors else None,
             modes=modes(*answer["modes"]),
-            position=answer["position"],
+            position=tuple(answer["position"]),
             seconds=float(moving[-1] - moving[0]) if len(moving) else 0.0,
         )
 
     def close(self) -> None:
         """End LinuxCNC and everything it started, at once."""
-        if self._connection:
-            self._connection.close()
+        if self._channel:
+            self._channel.close()
         self._isolated.close()
 
-    def _samples(self, rows: bytes) -> Samples:
-        columns = np.frombuffer(rows).reshape(-1, len(self.axes) + 4).T
+    def _samples(self) -> Samples:
+        columns = np.fromfile(self.folder / SAMPLES_FILE).reshape(-1, len(self.axes) + 4).T
         velocity, requested, line, kind = columns[len(self.axes) :]
         return Samples(
             time=np.arange(len(velocity)) * self.ini.servo_period,
@@ -187,27 +187,32 @@ class Machine:
         )
 
     def _start(self) -> None:
-        address = str(self.folder / "run" / "socket")
-        screen = RECORDING_SCREEN.format(
-            folders=self.screen_folders,
-            module=self.screen_module,
-            address=address,
-            pins=[*self._pins.values()],
-        )
-        self._isolated.install(SCREEN_NAME, screen)
-        dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
-        real_dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
-        path = self.ini.path
-        with socket.socket(socket.AF_UNIX) as listener:
-            listener.bind(address)
-            listener.listen(1)
+        here, there = socket.socketpair()
+        self._channel = Channel(here)
+        with there:
+            self._install_screen(there.fileno())
+            dialogue = self._isolated.install(TOOL_CHANGE_DIALOGUE, TOOL_CHANGE)
+            real_dialogue = shutil.which(TOOL_CHANGE_DIALOGUE)
+            path = self.ini.path
             self._isolated.launch(
                 ["linuxcnc", "-r", str(path)],
                 copies={path.parent: {path.name: self.ini.text}},
                 covers={real_dialogue: dialogue} if real_dialogue else None,
+                inherited=(there.fileno(),),
             )
-            self._connection = self._accept(listener, time.monotonic() + START)
+        if not self._channel.is_ready(START):
+            raise self._startup_error("LinuxCNC did not come up in time")
         self._receive(START)
+
+    def _install_screen(self, descriptor: int) -> None:
+        screen = RECORDING_SCREEN.format(
+            folders=self.screen_folders,
+            module=self.screen_module,
+            descriptor=descriptor,
+            samples=str(self.folder / SAMPLES_FILE),
+            pins=[*self._pins.values()],
+        )
+        self._isolated.install(SCREEN_NAME, screen)
 
     def _get_ready(self) -> None:
         try:
@@ -215,16 +220,6 @@ class Machine:
             self._request("home")
         except MachineError as error:
             raise self._startup_error(str(error)) from error
-
-    def _accept(self, listener: socket.socket, end: float) -> Connection:
-        listener.settimeout(0.2)
-        while time.monotonic() < end:
-            try:
-                return Connection(listener.accept()[0].detach())
-            except TimeoutError:
-                if self._isolated.exit_code() is not None:
-                    raise self._startup_error("LinuxCNC ended") from None
-        raise self._startup_error("LinuxCNC did not come up in time")
 
     def _startup_error(self, what: str) -> StartupError:
         return StartupError(
@@ -235,20 +230,21 @@ class Machine:
 
     def _request(self, name: str, *arguments, timeout: float = 60.0):
         try:
-            self._connection.send((name, *arguments))
+            self._channel.send([name, *arguments])
         except OSError as error:
             raise self._startup_error("LinuxCNC ended") from error
         return self._receive(timeout)
 
     def _receive(self, timeout: float):
         try:
-            answered = self._connection.poll(timeout + ANSWER_MARGIN)
-            result = self._connection.recv() if answered else Timeout("hangs")
+            if not self._channel.is_ready(timeout + ANSWER_MARGIN):
+                raise Timeout("hangs")
+            answer = self._channel.receive()
         except (EOFError, ConnectionError) as error:
             raise self._startup_error("LinuxCNC ended") from error
-        if isinstance(result, MachineError):
-            raise result
-        return result
+        if "error" in answer:
+            raise SENT[answer["error"]](answer["text"])
+        return answer["result"]
 
 
 def position_pins(ini: Ini) -> dict[str, str]:

@@ -2,7 +2,7 @@
 """A LinuxCNC in namespaces of its own, with scratch directories, log and clean-up.
 
 The namespaces are made by ``namespaces_init.py``, a process that ends with everything inside when
-this one closes its standard input, also by dying.
+this one closes its standard input, also by dying. No other user can enter the scratch directory.
 """
 
 from __future__ import annotations
@@ -14,19 +14,23 @@ import json
 import os
 import shlex
 import shutil
+import stat
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import IO, Any
 
+from g12.tools.headless.errors import StartupError
 from g12.tools.system import PYTHON
 
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 CONTAINED = Path(__file__).with_name("contained_init.py")
-LOCK = Path("/tmp/g12-linuxcnc.lock")  # without namespaces
-NOBODY = "65534"  # LinuxCNC's realtime part refuses to be plain root
+TURNS = "/tmp/g12-turns-{}"  # without namespaces: a user's folder, whose lock marks the turn
+LONGEST_QUEUE = 3600.0  # s, for the turn
+TURN_POLL = 0.1  # s
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
 
 
@@ -41,10 +45,8 @@ class Isolated:
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="g12-", dir="/tmp"))
-        for name in ("bin", "home", "programs", "run"):
+        for name in ("bin", "home", "programs"):
             (self.folder / name).mkdir()
-        self.folder.chmod(0o711)
-        (self.folder / "run").chmod(0o777)
         self._process: subprocess.Popen | None = None
 
     def install(self, name: str, code: str) -> Path:
@@ -62,12 +64,13 @@ class Isolated:
         command: Sequence[str],
         copies: Mapping[Path, Mapping[str, str]],
         covers: Mapping[str, Path] | None = None,
+        inherited: tuple[int, ...] = (),
     ) -> None:
         """Start ``command``.
 
         ``copies`` are directories that are replaced by private copies, with texts for some of their
-        files. ``covers`` are files that replace others. Without namespaces it waits until another
-        program's turn ends.
+        files. ``covers`` are files that replace others. ``inherited`` are descriptors that the
+        command gets. Without namespaces it waits for its turn among the user's runs.
         """
         job: dict[str, Any] = {
             "command": list(command),
@@ -78,14 +81,13 @@ class Isolated:
         }
         with open(self.folder / "log.txt", "wb") as log:
             if has_namespaces():
-                self._process = started(ISOLATE, job, log)
+                self._process = started(ISOLATE, job, log, inherited)
                 return
-            with self._turn() as turn:
-                job["turn"] = turn.fileno()
-                self._process = started(CONTAINED, job, log, turn.fileno())
-
-    def exit_code(self) -> int | None:
-        return self._process.poll()
+            turn = job["turn"] = self._turn()
+            try:
+                self._process = started(CONTAINED, job, log, (*inherited, turn))
+            finally:
+                os.close(turn)
 
     def wait(self, timeout: float) -> int:
         """Wait up to ``timeout`` seconds for the end and return the exit code."""
@@ -103,33 +105,50 @@ class Isolated:
             Isolated._contained = None
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def _turn(self) -> IO:
+    def _turn(self) -> int:
         if Isolated._contained:
             raise OneAtATime("one LinuxCNC at a time: there are no namespaces here")
-        lock = lock_file()
-        fcntl.flock(lock, fcntl.LOCK_EX)
+        turn = next_turn()
         Isolated._contained = self
-        return lock
+        return turn
 
     def _environment(self) -> dict[str, str]:
         kept = {key: value for key, value in os.environ.items() if key not in NO_SCREEN}
         private = {
             "HOME": str(self.folder / "home"),
             "PATH": f"{self.folder / 'bin'}:{os.environ.get('PATH', os.defpath)}",
-            "RTAPI_FIFO_PATH": str(self.folder / "run" / "rtapi"),
             "TMPDIR": "/tmp",
             "PYTHONDONTWRITEBYTECODE": "1",
         }
-        return {**kept, **private, **({"RTAPI_UID": NOBODY} if os.geteuid() == 0 else {})}
+        return {**kept, **private}
 
 
-def lock_file() -> IO:
-    """Open the file whose lock marks the turn; it may be another user's."""
+def next_turn() -> int:
+    """Wait for this user's other runs; return the descriptor whose lock marks the turn."""
+    folder = folder_of_turns()
+    end = time.monotonic() + LONGEST_QUEUE
     while True:
-        with contextlib.suppress(FileNotFoundError):
-            return LOCK.open("rb")
-        with contextlib.suppress(FileExistsError), LOCK.open("xb"):
-            LOCK.chmod(0o444)
+        with contextlib.suppress(BlockingIOError):
+            fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return folder
+        if time.monotonic() > end:
+            os.close(folder)
+            raise StartupError(f"another run of yours has not ended in {LONGEST_QUEUE:g} s")
+        time.sleep(TURN_POLL)
+
+
+def folder_of_turns() -> int:
+    """Open a folder that this user alone can open, and so lock; refuse anyone else's."""
+    path, user = TURNS.format(os.geteuid()), os.geteuid()
+    with contextlib.suppress(FileExistsError):
+        os.mkdir(path, 0o700)
+    with contextlib.suppress(OSError):
+        folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+        status = os.fstat(folder)
+        if (status.st_uid, stat.S_IMODE(status.st_mode)) == (user, 0o700):
+            return folder
+        os.close(folder)
+    raise StartupError(f"{path}: not a folder that only you can enter; remove it")
 
 
 @functools.cache
@@ -148,14 +167,13 @@ def has_namespaces() -> bool:
     return not refused
 
 
-def started(script: Path, job: Mapping[str, object], log: IO, *kept: int) -> subprocess.Popen:
-    """Start a script with its job; it ends when its standard input is closed.
-
-    ``kept`` are open files that it inherits.
-    """
+def started(
+    script: Path, job: Mapping[str, object], log: IO, inherited: tuple[int, ...] = ()
+) -> subprocess.Popen:
+    """Start a script with its job; it ends when its standard input is closed."""
     streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": log, "stderr": log}
     command = [PYTHON, str(script)]
-    process = subprocess.Popen(command, **streams, pass_fds=kept, start_new_session=True)
+    process = subprocess.Popen(command, **streams, pass_fds=inherited, start_new_session=True)
     process.stdin.write(json.dumps(job).encode() + b"\n")
     process.stdin.flush()
     return process

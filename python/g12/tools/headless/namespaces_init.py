@@ -27,7 +27,9 @@ MS_BIND, MS_REC, MS_PRIVATE = 4096, 16384, 1 << 18
 PR_SET_PDEATHSIG = 1
 LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
 REFUSED = 125  # exit code: the kernel refuses a namespace or a mount
-PRIVATE_IN_TMP = "linuxcnc."  # LinuxCNC's lock and log files
+PRIVATE_IN_TMP = "linuxcnc."  # LinuxCNC's lock and log files, and the folder of its realtime part
+REALTIME_FOLDER = f"/tmp/{PRIVATE_IN_TMP}realtime"
+TRANSIENT_USERS = range(61184, 65520)  # of no user and of no service for good, says systemd
 
 libc = ctypes.CDLL(None, use_errno=True)
 
@@ -121,6 +123,22 @@ def prepare(job: dict) -> None:
         mirror(directory, files, copy=True)
     for covered, file in job["covers"].items():
         bind(file, covered)
+    os.mkdir(REALTIME_FOLDER, 0o700)
+    job["environment"] |= realtime_environment(REALTIME_FOLDER)
+
+
+def realtime_environment(folder: str) -> dict[str, str]:
+    """Return what LinuxCNC's realtime part needs, and give it a folder.
+
+    It refuses to be plain root: root's becomes a user of its own. So no other user can enter the
+    folder, connect to a socket there or use its shared memory.
+    """
+    environment = {"RTAPI_FIFO_PATH": os.path.join(folder, "rtapi")}
+    if os.geteuid() == 0:
+        user = TRANSIENT_USERS[int.from_bytes(os.urandom(4), "big") % len(TRANSIENT_USERS)]
+        os.chown(folder, user, -1)
+        environment["RTAPI_UID"] = str(user)
+    return environment
 
 
 def first_process(job: dict) -> int:

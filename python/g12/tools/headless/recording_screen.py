@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The screen program of a headless run: takes the runner's requests over a socket.
+"""The screen program of a headless run: takes the runner's requests.
 
-LinuxCNC starts it instead of the INI's screen.  A request is a tuple of a method's name and
-its arguments, the answer its result or its error.
+LinuxCNC starts it instead of the INI's screen.  A request is a list of a method's name and its
+arguments, the answer its result or its error. The samples of the motion are in a file.
 """
 
 import array
+import os
 import socket
 import subprocess
 import time
-from multiprocessing.connection import Connection
 
 import hal
 
+from g12.tools.headless.channel import Channel
 from g12.tools.headless.errors import MachineError
 from g12.tools.headless.operator_panel import Panel
 
@@ -28,9 +29,10 @@ MOTION_PINS = (
 
 
 class Sampler:
-    """Records positions, by their pins, and motion at the servo rate, into rows of doubles."""
+    """Records positions, by their pins, and motion at the servo rate: rows of doubles in a file."""
 
-    def __init__(self, positions: list[str]) -> None:
+    def __init__(self, file: str, positions: list[str]) -> None:
+        self._file = open(file, "wb")  # noqa: SIM115 (as long as the screen)
         pins = [("f", pin) for pin in positions] + list(MOTION_PINS)
         kinds = "".join(kind for kind, _ in pins)
         self._component = hal.component("g12-recording-screen")
@@ -41,33 +43,33 @@ class Sampler:
             connect(pin, f"sampler.0.pin.{number}", kind)
         halcmd("addf", "sampler.0", THREAD)
         self._stream = hal.stream(self._component, hal.sampler_base, kinds)
-        self.rows = array.array("d")
 
     def start(self) -> None:
         """Discard the samples so far and record from now on."""
         self._halt()
-        self.rows = array.array("d")
+        self._file.seek(0)
+        self._file.truncate()
         hal.set_p("sampler.0.overruns", "0")
         hal.set_p("sampler.0.enable", "1")
 
-    def stop(self, complete: bool = True) -> bytes:
-        """Stop and return the rows; if they have to be ``complete``, a gap is an error."""
+    def stop(self, complete: bool = True) -> None:
+        """Stop; if the rows have to be ``complete``, a gap is an error."""
         self._halt()
         lost = int(hal.get_value("sampler.0.overruns"))
         if lost and complete:
             raise MachineError(f"{lost} samples of the motion are lost: run it on an idle computer")
-        return self.rows.tobytes()
 
     def _halt(self) -> None:
         hal.set_p("sampler.0.enable", "0")
         time.sleep(DRAIN)
         self.drain()
+        self._file.flush()
 
     def drain(self) -> None:
-        row = self._stream.read()
-        while row is not None:
-            self.rows.extend(row)
-            row = self._stream.read()
+        rows = array.array("d")
+        while (row := self._stream.read()) is not None:
+            rows.extend(row)
+        rows.tofile(self._file)
 
 
 class RecordingScreen:
@@ -75,8 +77,8 @@ class RecordingScreen:
 
     panel_kind = Panel
 
-    def __init__(self, positions: list[str]) -> None:
-        self.sampler = Sampler(positions)
+    def __init__(self, samples: str, positions: list[str]) -> None:
+        self.sampler = Sampler(samples, positions)
         self._drained = 0.0
         self.panel = self.panel_kind(self.tick)
 
@@ -86,11 +88,17 @@ class RecordingScreen:
             self.sampler.drain()
             self._drained = time.monotonic()
 
-    def answer(self, name: str, *arguments):
-        return getattr(self if hasattr(self, name) else self.panel, name)(*arguments)
+    def answer(self, name: str, *arguments) -> dict:
+        try:
+            method = getattr(self if hasattr(self, name) else self.panel, name)
+            return {"result": method(*arguments)}
+        except MachineError as error:
+            return {"error": type(error).__name__, "text": str(error)}
+        except Exception as error:
+            return {"error": MachineError.__name__, "text": f"{type(error).__name__}: {error}"}
 
     def run(self, program: str, timeout: float) -> dict:
-        """Run a program to its end; return samples, messages and how it ended."""
+        """Run a program to its end; return messages and how it ended."""
         panel = self.panel
         panel.open(program)
         panel.errors(), panel.messages()
@@ -98,9 +106,8 @@ class RecordingScreen:
         panel.start()
         panel.finish(timeout)
         errors, stat = panel.errors(), panel.poll()
-        recorded = self.sampler.stop(complete=not errors)
+        self.sampler.stop(complete=not errors)
         return {
-            "recorded": recorded,
             "position": tuple(stat.position),
             "modes": modes_of(stat),
             "errors": [*errors, *panel.errors()],
@@ -132,23 +139,19 @@ def signals_by_pin() -> dict[str, str]:
     return {line[4]: line[6] for line in words if len(line) > 6}
 
 
-def serve_runner(address: str, positions: list[str], kind: type = RecordingScreen) -> None:
+def serve_runner(
+    descriptor: int, samples: str, positions: list[str], kind: type = RecordingScreen
+) -> None:
     """Answer requests until the runner closes the connection, by a screen of that kind."""
-    with socket.socket(socket.AF_UNIX) as client:
-        client.connect(address)
-        connection = Connection(client.detach())
-    screen = kind(positions)
-    connection.send("ready")
+    os.set_inheritable(descriptor, False)
+    channel = Channel(socket.socket(fileno=descriptor))
+    screen = kind(samples, positions)
+    channel.send({"result": "ready"})
     while True:
-        while not connection.poll(DRAIN):
+        while not channel.is_ready(DRAIN):
             screen.tick()
         try:
-            request = connection.recv()
+            request = channel.receive()
         except EOFError:
             return
-        try:
-            connection.send(screen.answer(*request))
-        except MachineError as error:
-            connection.send(error)
-        except Exception as error:
-            connection.send(MachineError(f"{type(error).__name__}: {error}"))
+        channel.send(screen.answer(*request))

@@ -3,6 +3,7 @@
 
 import contextlib
 import difflib
+import glob
 import os
 import re
 import shutil
@@ -47,7 +48,8 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
 def write(path: Path, content: bytes) -> None:
     """Write a file atomically; mode and owner stay."""
     path = path.resolve()  # replaces a link's target, not the link
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    remove_unfinished(path)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=unfinished(path))
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
@@ -58,6 +60,17 @@ def write(path: Path, content: bytes) -> None:
     except BaseException:
         os.unlink(name)
         raise
+
+
+def unfinished(path: Path) -> str:
+    """Return how the names begin under which a file's new content is written."""
+    return f".{path.name}.g12-"
+
+
+def remove_unfinished(path: Path) -> None:
+    """Remove what a `write` left that was killed."""
+    for left in path.parent.glob(f"{glob.escape(unfinished(path))}????????"):
+        left.unlink(missing_ok=True)
 
 
 def take_after(new: Path, path: Path) -> None:
