@@ -22,6 +22,7 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
 from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
@@ -83,7 +84,21 @@ def plan_pocket(
     message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
     radius = cutter.radius if with_d else None
-    return CyclePlan(numbers | links | down, extent, message, other, radius)
+
+    def cut() -> PocketCut:
+        last = LOADED if context.last_radius is None else BY_LAST_D
+        return PocketCut(
+            plane=XY,
+            centre=(x, y, z),
+            wall=finished,
+            first=first,
+            step=stepover if outward else 0.0,
+            inner=first_radius - cutter.radius,
+            levels=tuple(z + z_step * level for level in range(levels)),
+            cutter=UsedCutter(cutter.radius, BY_D if with_d else last, cutter.number),
+        )
+
+    return CyclePlan(numbers | links | down, extent, cut, message, other, radius)
 
 
 def links_outward(

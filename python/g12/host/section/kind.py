@@ -12,7 +12,7 @@ from interpreter import MODE_ABSOLUTE
 
 from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
-from g12.host import messages, modes
+from g12.host import messages, modes, reported
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
@@ -40,13 +40,14 @@ class SectionKind(NamedTuple, Generic[Planning]):
 
     ``letters`` are those that the block that switches on may have. ``setup`` returns a section's
     settings, or refuses to begin it, ``codes`` its codes for the one that began it. ``plan`` turns
-    the contour into moves.
+    the contour into moves. ``surface`` is the radius of its cylinder, 0 on the face.
     """
 
     letters: str
     setup: Callable[[SectionStart], SectionSetup[Planning]]
     codes: Callable[[str], SectionCodes]
     plan: Callable[[Contour, SectionSetup[Planning], SectionStart], SectionPlan]
+    surface: Callable[[Planning], float] = lambda _: 0.0
 
 
 def check_ini() -> None:
@@ -129,4 +130,7 @@ def _section(
         SectionReader(interp, start, setup.words, program),
         output,
         first="".join(f"M{code}" for code in drag),
+        report=lambda contour: reported.begin_section(
+            interp, start, contour, kind.surface(setup.plan), setup.words.diameter
+        ),
     )

@@ -22,10 +22,11 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Self
 
+from g12.cut_report import read_report
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
-from g12.tools.preview.moves import Error, Event, Move, ToolTable, Trace, modes
+from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -86,6 +87,7 @@ class Tracer:
         timeout: float = 60.0,
         alone: bool = False,
         watch_offsets: bool = False,
+        reports: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
@@ -95,6 +97,7 @@ class Tracer:
         ``alone`` discards the state of the machine's Python modules after the program. With
         ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
         G92, that have changed since the previous message; ``Trace.tables`` has those at messages.
+        With ``reports`` the package's planners report their cuts, for ``Trace.cuts``.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -102,6 +105,7 @@ class Tracer:
             "setup": list(setup),
             "alone": alone,
             "watch_offsets": watch_offsets,
+            "reports": reports,
         }
         if not self._process:
             self._start()
@@ -254,4 +258,14 @@ def _trace(answer: dict, mm: float) -> Trace:
         **{key: answer[key] for key in ("state", "printed", "position", "globals")},
         tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
         files=tuple(answer["files"]),
+        cuts=[_reported_cut(len(answer["moves"]), *cut) for cut in answer["cuts"]],
     )
+
+
+def _reported_cut(
+    moves: int, at: int, end: int | None, line: int, c_commanded: str, texts: Sequence[str]
+) -> ReportedCut:
+    """Return a cut of the worker's; without an end it is the last, in which the program failed."""
+    report = read_report(*texts)
+    own_line = line if report.file else report.line  # in a section the interpreter has read on
+    return ReportedCut(at, moves if end is None else end, own_line, c_commanded, report)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Reports of cuts as comments, for a preview that asks: `g12.cut_report` says what they hold.
+
+`tools/preview/worker` asks by an attribute of the interpreter, a dict that is the memory of this
+module. On a machine and in a screen's preview it is missing, and nothing here does anything.
+"""
+
+from __future__ import annotations
+
+from cmath import rect
+from collections.abc import Callable
+from math import radians
+from typing import Any
+
+import emccanon
+
+from g12 import cut_report
+from g12.compensation.contour import Contour, PlaneMove, Plunge
+from g12.cut_report import (
+    BY_D,
+    BY_LAST_D,
+    CutElement,
+    CutReport,
+    PlannedCut,
+    PocketCut,
+    ProgramFrame,
+    SectionCut,
+)
+from g12.errors import BlockRefusal
+from g12.geometry.curve import Arc
+from g12.host import messages
+from g12.host.interp import PER_REVOLUTION, Interp
+from g12.host.modes import millimetres_per_unit
+from g12.lengths import ROUNDING_MM
+from g12.section.start import SectionStart
+
+SECTION_BEGAN = "section"  # key: its first part has been reported
+
+
+def begin_cut(interp: Interp, code: str, cut: Callable[[], PlannedCut]) -> None:
+    """Report the cut of the block, or of the sub ``code`` that calls it."""
+    memory = asked(interp)
+    if memory is not None:
+        planned = cut()
+        if isinstance(planned, PocketCut):
+            planned = with_last_d(interp, memory, planned)
+        line = messages.line_of_refusal(interp, BlockRefusal(code, "")) or 0
+        emccanon.COMMENT(cut_report.report_text(_report(interp, code, line, planned)))
+
+
+def begin_section(
+    interp: Interp, start: SectionStart, contour: Contour, surface: float, diameters: bool
+) -> None:
+    """Report a section, or the part of it that follows M66; ``surface`` is 0 on the face."""
+    memory = asked(interp)
+    if memory is None:
+        return
+    elements = tuple(element for each in contour.elements if (element := _element(each)))
+    if memory.get(SECTION_BEGAN):
+        emccanon.COMMENT(cut_report.more_text(elements))
+        return
+    memory[SECTION_BEGAN] = True
+    cut = SectionCut(surface, diameters, elements)
+    report = _report(interp, start.location.code, start.location.line, cut)
+    emccanon.COMMENT(cut_report.report_text(report))
+
+
+def end_cut(interp: Interp) -> None:
+    memory = asked(interp)
+    if memory is not None:
+        memory.pop(SECTION_BEGAN, None)
+        emccanon.COMMENT(cut_report.END)
+
+
+def asked(interp: Interp) -> dict[str, Any] | None:
+    """Return the memory of reports, None if nobody asks for them."""
+    return getattr(interp, cut_report.ASKED, None)
+
+
+def with_last_d(interp: Interp, memory: dict[str, Any], cut: PocketCut) -> PocketCut:
+    """Return a pocket with the number of the D last commanded, where a pocket commanded it."""
+    cutter = cut.cutter
+    if cutter.source == BY_D:
+        memory["D"] = cutter.number, cutter.radius * millimetres_per_unit(interp)
+    elif cutter.source == BY_LAST_D:
+        number, radius = memory.get("D", (0, 0.0))
+        ours = abs(cutter.radius * millimetres_per_unit(interp) - radius) < ROUNDING_MM
+        return cut._replace(cutter=cutter._replace(number=number if ours else 0))
+    return cut
+
+
+def _element(element: object) -> CutElement | None:
+    if isinstance(element, PlaneMove):
+        line, feed, offset, curve, z0, z1, side = element
+        more = (curve.centre, curve.sweep) if isinstance(curve, Arc) else (None, 0.0)
+        return CutElement(line, side, abs(offset), feed, z0, z1, curve.start, curve.end, *more)
+    if isinstance(element, Plunge):
+        return CutElement(element.line, 0, 0.0, element.feed, element.z0, element.z1)
+    return None
+
+
+def _report(interp: Interp, code: str, line: int, cut: PlannedCut) -> CutReport:
+    return CutReport(
+        code,
+        int(line),
+        getattr(line, "file", ""),
+        _frame(interp),
+        (interp.current_x, interp.current_y, interp.current_z, interp.CC_current),
+        interp.feed_rate,
+        interp.feed_mode == PER_REVOLUTION,
+        cut,
+    )
+
+
+def _frame(interp: Interp) -> ProgramFrame:
+    shift = complex(interp.axis_offset_x, interp.axis_offset_y)
+    turned = shift * rect(1.0, radians(interp.rotation_xy))
+    zero = (
+        interp.origin_offset_x + turned.real,
+        interp.origin_offset_y + turned.imag,
+        interp.origin_offset_z + interp.axis_offset_z,
+        interp.CC_origin_offset + interp.CC_axis_offset,
+    )
+    shifted = bool(shift or interp.axis_offset_z or interp.CC_axis_offset)
+    return ProgramFrame(millimetres_per_unit(interp), zero, interp.rotation_xy, shifted)
