@@ -196,7 +196,8 @@ KINDS: dict[str, type[PlannedCut]] = {
 class CutReport(NamedTuple):
     """A cut, and the state before it.
 
-    ``line`` is in ``file``, "" is the program. ``at`` is the tool's X, Y, Z and C.
+    ``line`` is in ``file``, "" is the program. ``at`` is the tool's X, Y, Z and C. ``incremental``:
+    G91. ``words`` are the block's as LinuxCNC has parsed them, or the entries of the call.
     """
 
     code: str
@@ -206,6 +207,8 @@ class CutReport(NamedTuple):
     at: tuple[float, float, float, float]
     feed: float
     per_revolution: bool
+    incremental: bool
+    words: dict[str, float]
     cut: PlannedCut
 
 

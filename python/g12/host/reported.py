@@ -13,6 +13,7 @@ from math import radians
 from typing import Any
 
 import emccanon
+from interpreter import MODE_INCREMENTAL
 
 from g12 import cut_report
 from g12.compensation.contour import Contour, PlaneMove, Plunge
@@ -26,26 +27,27 @@ from g12.cut_report import (
     ProgramFrame,
     SectionCut,
 )
-from g12.errors import BlockRefusal
 from g12.geometry.curve import Arc
 from g12.host import messages
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.modes import millimetres_per_unit
 from g12.lengths import ROUNDING_MM
+from g12.request.words import Words
 from g12.section.start import SectionStart
 
 SECTION_BEGAN = "section"  # key: its first part has been reported
 
 
-def begin_cut(interp: Interp, code: str, cut: Callable[[], PlannedCut]) -> None:
-    """Report the cut of the block, or of the sub ``code`` that calls it."""
+def begin_cut(interp: Interp, words: Words, cut: Callable[[], PlannedCut]) -> None:
+    """Report the cut of the block, or of the call of its sub."""
     memory = asked(interp)
     if memory is not None:
         planned = cut()
         if isinstance(planned, PocketCut):
             planned = with_last_d(interp, memory, planned)
-        line = messages.line_of_refusal(interp, BlockRefusal(code, "")) or 0
-        emccanon.COMMENT(cut_report.report_text(_report(interp, code, line, planned)))
+        line = messages.line_of_refusal(interp, words.refuse("")) or 0
+        report = _report(interp, words.code, line, words.given, planned)
+        emccanon.COMMENT(cut_report.report_text(report))
 
 
 def begin_section(
@@ -61,7 +63,7 @@ def begin_section(
         return
     memory[SECTION_BEGAN] = True
     cut = SectionCut(surface, diameters, elements)
-    report = _report(interp, start.location.code, start.location.line, cut)
+    report = _report(interp, start.location.code, start.location.line, start.words, cut)
     emccanon.COMMENT(cut_report.report_text(report))
 
 
@@ -99,7 +101,9 @@ def _element(element: object) -> CutElement | None:
     return None
 
 
-def _report(interp: Interp, code: str, line: int, cut: PlannedCut) -> CutReport:
+def _report(
+    interp: Interp, code: str, line: int, words: dict[str, float], cut: PlannedCut
+) -> CutReport:
     return CutReport(
         code,
         int(line),
@@ -108,6 +112,8 @@ def _report(interp: Interp, code: str, line: int, cut: PlannedCut) -> CutReport:
         (interp.current_x, interp.current_y, interp.current_z, interp.CC_current),
         interp.feed_rate,
         interp.feed_mode == PER_REVOLUTION,
+        interp.distance_mode == MODE_INCREMENTAL,
+        words,
         cut,
     )
 

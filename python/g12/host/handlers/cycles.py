@@ -42,7 +42,7 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
         cycle_state.remember_radius(interp, plan.commanded_radius)
     if plan.message:
         messages.message(plan.message)
-    reported.begin_cut(interp, words.code, plan.cut)
+    reported.begin_cut(interp, words, plan.cut)
     return INTERP_OK
 
 

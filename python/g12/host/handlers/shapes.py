@@ -62,7 +62,7 @@ def polar_shape(self, **words):
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, start, setup)
     set_locals_at(self, level, plan.locals)
-    reported.begin_cut(self, name, plan.cut)
+    reported.begin_cut(self, entries, plan.cut)
     cycle_state.note_modes(self)
     if name in HOLE_CALLS:
         state.path, state.spindle = path_control(self), self.active_spindle

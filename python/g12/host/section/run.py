@@ -244,8 +244,8 @@ class Section:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
         yield from self._emit()
-        reported.end_cut(self.reader.interp)
         self.program.catch_up()
+        reported.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)
         self._phase = Phase.DONE
 

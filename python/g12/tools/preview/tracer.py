@@ -27,6 +27,7 @@ from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
+from g12.tools.preview.told_clamp import with_told_clamp
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -57,19 +58,26 @@ class Tracer:
     gives several lines of one key, None takes the key out.  ``tools`` is a tool table file or
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
-    ``folder`` is its scratch directory.
+    ``folder`` is its scratch directory. With ``reports`` the package's planners report their cuts,
+    for ``Trace.cuts``, and events ``clamp M10`` show the codes of C's clamp that are subs.
     ``printed`` is the output of the interpreter and the machine's modules while loading.
     ``diameters`` and ``lengths`` are LinuxCNC's values of the tool table: tool number to mm.
     """
 
     def __init__(
-        self, ini: ProgramPath | Ini, *, overrides: Overrides | None = None, tools: Tools = None
+        self,
+        ini: ProgramPath | Ini,
+        *,
+        overrides: Overrides | None = None,
+        tools: Tools = None,
+        reports: bool = False,
     ) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="g12-trace-")
         self.folder = Path(self._scratch.name)
         ini = ini if isinstance(ini, Ini) else read_ini(ini)
         self.ini = ini.replaced(overrides or {})
-        self._machine = _machine(self.ini, tools, self.folder)
+        traced = with_told_clamp(self.ini, self.folder) if reports else self.ini
+        self._machine = {**_machine(traced, tools, self.folder), "reports": reports}
         self._start()
 
     def __enter__(self) -> Self:
@@ -87,7 +95,6 @@ class Tracer:
         timeout: float = 60.0,
         alone: bool = False,
         watch_offsets: bool = False,
-        reports: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
@@ -97,7 +104,6 @@ class Tracer:
         ``alone`` discards the state of the machine's Python modules after the program. With
         ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
         G92, that have changed since the previous message; ``Trace.tables`` has those at messages.
-        With ``reports`` the package's planners report their cuts, for ``Trace.cuts``.
         """
         request = {
             "program": str(Path(program).absolute()),
@@ -105,7 +111,6 @@ class Tracer:
             "setup": list(setup),
             "alone": alone,
             "watch_offsets": watch_offsets,
-            "reports": reports,
         }
         if not self._process:
             self._start()
@@ -185,10 +190,11 @@ def trace(
     *,
     overrides: Overrides | None = None,
     tools: Tools = None,
+    reports: bool = False,
     **options,
 ) -> Trace:
     """Trace one program file in an interpreter of its own; see ``Tracer``."""
-    with Tracer(ini, overrides=overrides, tools=tools) as tracer:
+    with Tracer(ini, overrides=overrides, tools=tools, reports=reports) as tracer:
         return tracer.trace(program, **options)
 
 
@@ -263,9 +269,9 @@ def _trace(answer: dict, mm: float) -> Trace:
 
 
 def _reported_cut(
-    moves: int, at: int, end: int | None, line: int, c_commanded: str, texts: Sequence[str]
+    moves: int, at: int, end: int | None, line: int, last: int, c_commanded: str, texts: list[str]
 ) -> ReportedCut:
     """Return a cut of the worker's; without an end it is the last, in which the program failed."""
     report = read_report(*texts)
     own_line = line if report.file else report.line  # in a section the interpreter has read on
-    return ReportedCut(at, moves if end is None else end, own_line, c_commanded, report)
+    return ReportedCut(at, moves if end is None else end, own_line, last, c_commanded, report)

@@ -33,6 +33,7 @@ CURRENT = (
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
+PACKAGE, CLAMP_TOLD = "g12 ", "g12 clamp "  # `told_clamp`
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
@@ -202,8 +203,8 @@ class Canon:
         self.files: set[str] = set()
         self.in_force: tuple = ()
         self.watch_offsets = request.get("watch_offsets")
-        self.reports = request.get("reports")
-        self.cuts: list[list] = []  # first move, end, line, C since the last cut, comments
+        self.reports = machine.get("reports")
+        self.cuts: list[list] = []  # first move, end, line, last line, C before, comments
         self.open_cuts = 0
         self.c_commanded = ""
         self.offsets: dict = {}
@@ -291,14 +292,17 @@ class Canon:
             self.open_cuts += 1
             if self.open_cuts == 1:
                 self._note_tools()
-                place = len(self.moves), None, self.lines.now()
-                self.cuts.append([*place, self.c_commanded, [text]])
+                line = self.lines.now()
+                self.cuts.append([len(self.moves), None, line, line, self.c_commanded, [text]])
         elif text.startswith(MORE) and self.open_cuts == 1:
             self.cuts[-1][-1].append(text)
+        elif text.startswith(CLAMP_TOLD):
+            self._note(text.removeprefix(PACKAGE))
         elif text == END:
             self.open_cuts -= 1
             if not self.open_cuts:
-                self.cuts[-1][1], self.c_commanded = len(self.moves), ""
+                self.cuts[-1][1], self.cuts[-1][3] = len(self.moves), self.lines.now()
+                self.c_commanded = ""
 
     def _note_c(self, start: float, end: float) -> None:
         """Note how a move outside of cuts commands C."""
