@@ -87,6 +87,13 @@ def test_an_element_of_a_section_has_its_side_even_with_a_cutter_of_no_size():
     )
 
 
+def test_a_section_reports_the_modes_before_its_first_line():
+    lines = [*LATHE, "F200", "G0 C30", "G12.1", "G1 X20 F300", "G91", "G95 F.2", "G13.1"]
+    report = reported("lathe_mm", lines).cuts[0].report
+    assert (report.at, report.feed) == ((30.0, 0.0, 2.0, 30.0), 200.0)
+    assert not (report.per_revolution or report.incremental)
+
+
 def test_what_follows_m66_continues_the_section():
     lines = [*LATHE, "G12.1", "G1 X20", "M66 P0 L0", "Z-1", "G13.1", "G0 Z2"]
     trace = reported("lathe_mm", lines)

@@ -64,6 +64,12 @@ def begin_section(
     memory[SECTION_BEGAN] = True
     cut = SectionCut(surface, diameters, elements)
     report = _report(interp, start.location.code, start.location.line, start.words, cut)
+    report = report._replace(  # since the lines of the section were read other modes are in force
+        at=(start.x, interp.current_y, start.z, start.c),
+        feed=start.modes.feed,
+        per_revolution=start.modes.per_revolution,
+        incremental=start.modes.incremental,
+    )
     emccanon.COMMENT(cut_report.report_text(report))
 
 
