@@ -4,6 +4,7 @@
 What each planner reports is in unit/test_cut_report.py.
 """
 
+import math
 import subprocess
 
 import pytest
@@ -85,6 +86,18 @@ def test_an_element_of_a_section_has_its_side_even_with_a_cutter_of_no_size():
         CutElement(8, -1, 0.0, 300.0, 2.0, 2.0, 20 + 0j, 20 + 5j),
         CutElement(9, 0, 0.0, 300.0, 2.0, 2.0, 20 + 5j, 30 + 5j),
     )
+
+
+def test_a_section_on_a_cylinder_is_reported_on_its_unrolled_surface():
+    """On ⌀ 36 / pi a turn is 36 mm: a degree is a tenth of one."""
+    lines = ["G0 X40 Z-10 C20", "G7.1 C[18/3.14159265358979]", "G1 X5 F200", "C50", "G2 Z-12 K-1"]
+    cut = reported("lathe_mm", [*LATHE, *lines, "G3 W-2 H20 R5", "G7.1 C0"]).cuts[0].report.cut
+    plunge, line, arc, bow = cut.elements
+    assert cut.surface == pytest.approx(18 / math.pi)
+    assert (plunge.z0, plunge.z1, plunge.end) == (40.0, 5.0, None)
+    assert (line.start, line.end) == pytest.approx((2 - 10j, 5 - 10j)) and line.z1 == 5.0
+    assert (arc.end, arc.centre) == pytest.approx((5 - 12j, 5 - 11j)) and arc.sweep < 0
+    assert bow.end == pytest.approx(7 - 14j) and 0 < bow.sweep < math.pi
 
 
 def test_a_section_reports_the_modes_before_its_first_line():

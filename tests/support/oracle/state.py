@@ -12,12 +12,12 @@ from g12.tools.units import plain
 from support.oracle.toolpath import Difference
 
 FOUND, LEFT = "found ", "left "
-MOTION, PLANE, UNITS, DISTANCE, FEED_MODE = "1", "3", "5", "6", "7"
+MOTION, PLANE, UNITS, DISTANCE, FEED_MODE, PATH = "1", "3", "5", "6", "7", "11"
 GROUPS = {  # of LinuxCNC's active codes
     **dict.fromkeys(("G0", "G1", "G2", "G3"), MOTION),
     **dict.fromkeys(("G90", "G91"), DISTANCE),
     **dict.fromkeys(("G93", "G94", "G95"), FEED_MODE),
-    **dict.fromkeys(("G61", "G61.1", "G64"), "11"),
+    **dict.fromkeys(("G61", "G61.1", "G64"), PATH),
 }
 SAME = 1e-5  # relative
 LETTERS = "XYZABC"
@@ -35,7 +35,7 @@ class Surroundings(NamedTuple):
 def surroundings_of(trace: Trace, lines: Sequence[str]) -> list[Surroundings]:
     """Return those of each cut of a trace of a `ModalTracer`; of a program by its lines.
 
-    A G10 sets its parameters before LinuxCNC reports its line.
+    G10 sets its parameters and T the next tool before LinuxCNC reports their line.
     """
     found, path, every = None, "", []
     for event in trace.events:
@@ -43,8 +43,9 @@ def surroundings_of(trace: Trace, lines: Sequence[str]) -> list[Surroundings]:
             found, begun, events = json.loads(event.text.removeprefix(FOUND)), path, []
         elif event.text.startswith(LEFT):
             left = json.loads(event.text.removeprefix(LEFT))
-            if "G10" in lines[event.line - 1] or "G92" in lines[event.line - 1]:
-                left["offsets"] = found["offsets"]
+            for word, name in (("G10", "offsets"), ("G92", "offsets"), ("T", "T")):
+                if word in lines[event.line - 1]:
+                    left[name] = found[name]
             every.append(Surroundings(found, left, events, (begun, path)))
             found = None
         elif found:
@@ -57,7 +58,7 @@ def surroundings_of(trace: Trace, lines: Sequence[str]) -> list[Surroundings]:
 def judge_state(cut, around: Surroundings, leaves: str, is_section: bool) -> Iterator[Difference]:
     """Yield what the cut leaves otherwise: ``leaves`` are codes and F that its words command.
 
-    Without them F and the motion mode of a section are not compared.
+    Without them the motion and the path mode, F and S of a section are not compared.
     """
     report, found, left = cut.report, around.found, around.left
     codes = dict(found["codes"])
@@ -76,7 +77,7 @@ def judge_state(cut, around: Surroundings, leaves: str, is_section: bool) -> Ite
         else:
             codes[GROUPS[word]] = word
     if is_section and not leaves:
-        codes[MOTION] = left["codes"][MOTION]
+        codes |= {group: left["codes"][group] for group in (MOTION, PATH)}
     for group, code in codes.items():
         if left["codes"][group] != code:
             yield otherwise(cut, left["codes"][group], code)
