@@ -39,9 +39,8 @@ class ProgramFrame(NamedTuple):
 
     def point(self, x: float, y: float) -> complex:
         """Return a program's X and Y on the machine, in mm."""
-        return (
-            complex(*self.zero[:2]) + complex(x, y) * rect(1.0, radians(self.rotation))
-        ) * self.mm
+        turned = complex(x, y) * rect(1.0, radians(self.rotation))
+        return (complex(*self.zero[:2]) + turned) * self.mm
 
 
 class UsedCutter(NamedTuple):
@@ -77,21 +76,14 @@ class PocketCut(NamedTuple):
 class EventCut(NamedTuple):
     """A circle mill event: the tool on ``side`` of a circle, -1 in it, 0 on it, 1 outside.
 
-    ``wall`` is the radius of what it clears, ``boss`` that of what stays in the middle. ``planes``
-    are the first and the second reference plane, ``levels`` those of its circles.
+    ``wall`` is the radius of what it clears, ``boss`` that of what stays in the middle.
     """
 
-    pocket: bool
     centre: tuple[float, float]
-    radius: float
     side: int
     wall: float
     boss: float
-    step: float
-    finish: float
     levels: tuple[float, ...]
-    planes: tuple[float, float]
-    feeds: tuple[float, float, float]  # plunge, rough, finish
     cutter: UsedCutter
 
 
@@ -174,11 +166,8 @@ class HolesCut(NamedTuple):
     surface: float
     places: tuple[tuple[float, float, float], ...]
     depth: float
-    retract: float
     kind: int
     feed: float
-    pecks: int
-    dwell: float
 
 
 PlannedCut = PocketCut | EventCut | SectionCut | PolygonCut | SlotCut | RoundPocketCut | HolesCut
@@ -231,7 +220,10 @@ def read_report(text: str, *further: str) -> CutReport:
     data = json.loads(text.removeprefix(CUT))
     schema, kind = data.pop("schema"), KINDS.get(data.pop("kind"))
     if schema != SCHEMA or not kind:
-        raise ValueError(f"this machine's g12 reports cuts by schema {schema}, this is {SCHEMA}")
+        raise ValueError(
+            f"the g12 of this machine reports its cuts by schema {schema}, this one reads {SCHEMA}:"
+            " let the INI load this one, or use that one's tools"
+        )
     cut = data["cut"]
     if kind is SectionCut:
         rows = chain(cut["elements"], *(json.loads(more.removeprefix(MORE)) for more in further))

@@ -11,7 +11,7 @@ import pytest
 
 from g12.cut_report import CUT, END, CutElement, ProgramFrame, UsedCutter
 from g12.tools.machine.ini import read_ini
-from g12.tools.preview.tracer import Tracer
+from g12.tools.preview.tracer import TraceFailure, Tracer
 from support.clamped import with_clamp
 from support.faulty_machines import with_fault
 from support.sim_machines import SIM
@@ -188,3 +188,12 @@ def test_no_record_is_made_where_nobody_asks(tmp_path):
         with Tracer(ini, tools=TOOLS, reports=reports) as tracer:
             tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])
         assert made.exists() is reports
+
+
+def test_a_machine_whose_package_reports_otherwise_is_named(tmp_path):
+    body = "return original().replace('schema\": 1', 'schema\": 9')"
+    fault = {"function": "g12.cut_report.report_text", "does": body}
+    ini = with_fault(read_ini(SIM / "mill_mm.ini"), fault, tmp_path)
+    says = pytest.raises(TraceFailure, match="reports its cuts by schema 9, this one reads 1")
+    with Tracer(ini, tools=TOOLS, reports=True) as tracer, says:
+        tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])

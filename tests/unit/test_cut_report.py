@@ -100,20 +100,17 @@ EVENTS = {
     # a pocket of ⌀ 40 in 3 levels and one for the bottom: W2, three times K3 from there
     "X1 Y2 Z-6 I2 E10 R20 H2 K3 J5 Q.3 P150": (
         True,
-        EventCut(True, (1.0, 2.0), 20.0, -1, 20.0, 0.0, 14.7 / 3, 0.3,
-                 (-1.0, -4.0, -5.7, -6.0), (2.0, 10.0), (150.0, 300.0, 300.0), LOADED_1),
+        EventCut((1.0, 2.0), -1, 20.0, 0.0, (-1.0, -4.0, -5.7, -6.0), LOADED_1),
     ),
     # the outside of a boss of ⌀ 40
     "X1 Y2 Z-6 I2 R20 H1": (
         False,
-        EventCut(False, (1.0, 2.0), 20.0, 1, 30.0, 20.0, 0.0, 0.0,
-                 (-6.0,), (2.0, 2.0), (300.0, 300.0, 300.0), LOADED_1),
+        EventCut((1.0, 2.0), 1, 30.0, 20.0, (-6.0,), LOADED_1),
     ),
     # on the circle
     "X0 Y0 Z-6 I2 R20 H0": (
         False,
-        EventCut(False, (0.0, 0.0), 20.0, 0, 25.0, 15.0, 0.0, 0.0,
-                 (-6.0,), (2.0, 2.0), (300.0, 300.0, 300.0), LOADED_1),
+        EventCut((0.0, 0.0), 0, 25.0, 15.0, (-6.0,), LOADED_1),
     ),
 }  # fmt: skip
 
@@ -127,7 +124,8 @@ def test_an_event(words):
 def test_the_event_of_a_call():
     entries = "G7 X1 Y2 Z-6 W2 O10 R20 C2 K3 J5 L.3 P150 F200 V100"
     cut = cut_of(plan_call, entries, None)
-    assert (cut.pocket, cut.feeds, cut.finish) == (True, (150.0, 200.0, 100.0), 0.3)
+    assert cut == EventCut((1.0, 2.0), -1, 20.0, 0.0, cut.levels, LOADED_1)
+    assert cut.levels == pytest.approx((-1.0, -4.0, -5.7, -6.0))
 
 
 def rounded(cut):
@@ -167,13 +165,13 @@ HOLE = dict(depth=8.0, retract=2.0, feed=120.0)
         (holes.plan_face_holes, holes.FACE_HOLES,
          dict(count=3, circle_diameter=30.0, first_angle=20.0, peck=3.0, dwell=0.5, **HOLE),
          HolesCut(0.0, ((15.0, 0.0, 20.0), (15.0, 0.0, 140.0), (15.0, 0.0, 260.0)),
-                  8.0, 2.0, 0, 120.0, 3, 0.5)),
+                  8.0, 0, 120.0)),
         (holes.plan_side_holes, holes.SIDE_HOLES,
          dict(count=2, z=-10.0, first_angle=30.0, step_angle=-100.0, surface_diameter=40.0, **HOLE),
-         HolesCut(20.0, ((20.0, -10.0, 30.0), (20.0, -10.0, -70.0)), 8.0, 2.0, 0, 120.0, 1, 0.0)),
+         HolesCut(20.0, ((20.0, -10.0, 30.0), (20.0, -10.0, -70.0)), 8.0, 0, 120.0)),
         (holes.plan_face_hole_at, holes.FACE_HOLE_AT,
          dict(x=0.0, c=-5.0, depth=8.0, retract=2.0, feed=1.25, kind=1),
-         HolesCut(0.0, ((5.0, 0.0, 270.0),), 8.0, 2.0, 1, 1.25, 1, 0.0)),
+         HolesCut(0.0, ((5.0, 0.0, 270.0),), 8.0, 1, 1.25)),
     ],
 )  # fmt: skip
 def test_holes(planner, names, values, cut):
@@ -204,7 +202,7 @@ CUTS = [
     PolygonCut(6, 20.0, 1.0, 30.0, 10.0, PASSES),
     SlotCut(12.0, 30.0, -40.0, PASSES),
     RoundPocketCut((8.0, 5.0), 20.0, PASSES),
-    HolesCut(20.0, ((20.0, -10.0, 30.0), (20.0, -10.0, -70.0)), 8.0, 2.0, 0, 120.0, 1, 0.0),
+    HolesCut(20.0, ((20.0, -10.0, 30.0), (20.0, -10.0, -70.0)), 8.0, 0, 120.0),
     SectionCut(0.0, True, ELEMENTS),
 ]
 
@@ -234,7 +232,7 @@ def test_further_elements_continue_a_section():
 @pytest.mark.parametrize("other", [('"schema": 1', '"schema": 2'), ('"section"', '"thread"')])
 def test_a_report_of_another_schema_is_refused(other):
     text = report_text(report(CUTS[-1])).replace(*other)
-    with pytest.raises(ValueError, match="reports cuts by schema"):
+    with pytest.raises(ValueError, match="reports its cuts by schema"):
         read_report(text)
 
 

@@ -30,7 +30,6 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 `check_start` is not needed: the first move goes to the plunge point, which X and Y name.
 """
 
-from collections.abc import Iterable
 from typing import NamedTuple
 
 from g12.cut_report import LOADED, EventCut, UsedCutter
@@ -196,30 +195,23 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     return CyclePlan(
         position | roughing | depths | side | feeds,
         CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
-        lambda: cut_of_event(entries, circle, tool, (position, roughing, depths, feeds)),
+        lambda: cut_of_event(entries, circle, tool, depths),
         uncut_material(words, roughing["roughing_width"], tool),
     )
 
 
 def cut_of_event(
-    entries: EventEntries, circle: EventCircle, tool: Tool, groups: Iterable[dict[str, float]]
+    entries: EventEntries, circle: EventCircle, tool: Tool, depths: dict[str, float]
 ) -> EventCut:
-    own: dict[str, float] = {name: value for group in groups for name, value in group.items()}
-    rough = (own["z"] - own["peck"] * level for level in range(round(own["pecks"])))
+    rough = (depths["z"] - depths["peck"] * level for level in range(round(depths["pecks"])))
     nearest, farthest = (circle.radius + (circle.side + out) * tool.radius for out in (-1, 1))
     return EventCut(
-        pocket=entries.pocket,
-        centre=(circle.x, circle.y),
-        radius=circle.radius,
-        side=circle.side,
-        wall=farthest,
-        boss=0.0 if entries.pocket else nearest,
-        step=own["roughing_width"],
-        finish=entries.finish,
-        levels=(*rough, own["rough_z"], *[own["final_z"]] * entries.bottom),
-        planes=(own["first_plane"], own["second_plane"]),
-        feeds=(own["plunge_feed"], own["feed"], own["finish_feed"]),
-        cutter=UsedCutter(tool.radius, LOADED, tool.number),
+        (circle.x, circle.y),
+        circle.side,
+        farthest,
+        0.0 if entries.pocket else nearest,
+        (*rough, depths["rough_z"], *[depths["final_z"]] * entries.bottom),
+        UsedCutter(tool.radius, LOADED, tool.number),
     )
 
 

@@ -149,7 +149,7 @@ def plan_holes(
         lambda: HolesCut(
             position.x * position.x_axis,
             places,
-            *(hole.depth, hole.retract, hole.kind, hole.feed, hole.pecks, hole.dwell),
+            *(hole.depth, hole.kind, hole.feed),
         ),
     )
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from g12.machine_ini import Remap, remap_lines
 from g12.tools.machine.ini import Ini
 
-CLAMP_TOLD = "g12 clamp "  # for the worker
+CLAMP_COMMENT = "g12 clamp "  # for the worker
 NGC = re.compile(r"\bngc=(\S+)")
 
 
@@ -29,6 +29,6 @@ def _told(remap: Remap, folder: Path) -> str:
     own, name = remap.keywords.get("ngc"), f"g12_told_{remap.code.lower()}"
     if not own:
         return remap.text
-    text = f"o<{name}> sub\n({CLAMP_TOLD}{remap.code})\no<{own}> call\no<{name}> endsub\n"
+    text = f"o<{name}> sub\n({CLAMP_COMMENT}{remap.code})\no<{own}> call\no<{name}> endsub\n"
     (folder / f"{name}.ngc").write_text(text, encoding="utf-8")
     return NGC.sub(f"ngc={name}", remap.text)

@@ -272,6 +272,9 @@ def _reported_cut(
     moves: int, at: int, end: int | None, line: int, last: int, c_commanded: str, texts: list[str]
 ) -> ReportedCut:
     """Return a cut of the worker's; without an end it is the last, in which the program failed."""
-    report = read_report(*texts)
+    try:
+        report = read_report(*texts)
+    except ValueError as error:  # of a package of another version, which the machine has
+        raise TraceFailure(str(error)) from None
     own_line = line if report.file else report.line  # in a section the interpreter has read on
     return ReportedCut(at, moves if end is None else end, own_line, last, c_commanded, report)

@@ -33,7 +33,7 @@ CURRENT = (
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
-PACKAGE, CLAMP_TOLD = "g12 ", "g12 clamp "  # `told_clamp`
+PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # `told_clamp`
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
@@ -296,7 +296,7 @@ class Canon:
                 self.cuts.append([len(self.moves), None, line, line, self.c_commanded, [text]])
         elif text.startswith(MORE) and self.open_cuts == 1:
             self.cuts[-1][-1].append(text)
-        elif text.startswith(CLAMP_TOLD):
+        elif text.startswith(CLAMP_COMMENT):
             self._note(text.removeprefix(PACKAGE))
         elif text == END:
             self.open_cuts -= 1
