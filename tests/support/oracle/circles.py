@@ -5,7 +5,6 @@ Points are seen from the circle's centre along the plane's axes, radii are those
 centre, levels are measured from the tool before the block; mm.
 """
 
-import cmath
 import math
 
 from g12.request.common import LEFT_OUT
@@ -245,7 +244,3 @@ def event_levels(top, bottom, finish, peck):
         levels.append(levels[-1] - peck)
     levels[-1] = rough
     return levels + [bottom] * (rough > bottom)
-
-
-def rotated(x, y, degrees):
-    return complex(x, y) * cmath.rect(1.0, math.radians(degrees))

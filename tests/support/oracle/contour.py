@@ -10,9 +10,6 @@ By polar.md and cylinder.md:
 4. The line that switches compensation on ends square to the start of the next element, a tool
    radius away from it; the one that switches it off begins square to the end of the last one.
 5. A move at right angles to the plane is made where the tool's centre is.
-6. Elements under compensation that are shorter than ``SHORT`` of POLAR_TOLERANCE are rounding:
-   their neighbours meet. Where a line is too short for its inside corners, so are the points of
-   lines in a row that are nearer than that to one line.
 
 The words are taken for what they are: whether the tool gouges on this path is another question.
 """
@@ -20,7 +17,7 @@ The words are taken for what they are: whether the tool gouges on this path is a
 import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from g12.cut_report import SectionCut
@@ -28,11 +25,9 @@ from g12.geometry.crossing import crossings
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line
 from support.oracle.toolpath import NO_LENGTH, Expected
 
-SHORT = 0.3  # of the tolerance
 BACK = math.pi - 1e-6  # radians: the contour goes back on itself
 COINCIDENT = 0.005  # mm: ends of parallels so near to each other meet in the middle
 ON_CURVE = 1e-5  # mm, of a crossing
-MOST_POINTS = 100  # that one line replaces
 
 
 @dataclass(frozen=True)
@@ -103,20 +98,14 @@ class ContourStep(NamedTuple):
     element: Element
 
 
-def contour_path(
-    elements: Sequence[Element], height: float, radius: float, tolerance: float
-) -> list[ContourStep]:
+def contour_path(elements: Sequence[Element], height: float, radius: float) -> list[ContourStep]:
     """Return the path of the tool's centre along elements; it begins at a height.
 
-    ``radius`` is the tool's, ``tolerance`` is POLAR_TOLERANCE; all in mm.
+    ``radius`` is the tool's.
     """
     if not radius or not any(each.side for each in elements):
         return list(as_programmed(elements, height))
-    elements = list(without_short(elements, SHORT * tolerance))
     path = parallel_path(elements, height, radius)
-    if path is None:
-        fewer = list(without_points(elements, SHORT * tolerance))
-        path = parallel_path(fewer, height, radius)
     return path or list(as_programmed(elements, height))
 
 
@@ -135,60 +124,9 @@ def step_of(
     return ContourStep(Expected(name, curve, start, end, element.feed, line=element.line), element)
 
 
-def without_short(elements: Sequence[Element], limit: float) -> Iterator[Element]:
-    """Yield elements without those under compensation that only round the end of the one before.
-
-    They are no longer than a limit.
-    """
-    kept: Element | None = None
-    for element in elements:
-        short = NO_LENGTH < element.length <= limit and is_cut(element)
-        if short and kept and is_cut(kept) and abs(element.end - kept.end) <= limit:
-            continue
-        if kept and element.start != kept.end and element.length > NO_LENGTH:
-            element = begun_at(element, kept.end)
-        kept = element if element.length > NO_LENGTH else kept
-        yield element
-
-
-def begun_at(element: Element, start: complex) -> Element:
-    """Return an element that begins at a place a little off its own start; an arc stays."""
-    return element if element.centre is not None else replace(element, start=start)
-
-
 def is_cut(element: Element) -> bool:
     """Tell whether an element is followed on its parallel."""
     return bool(element.side) and not element.ramp
-
-
-def without_points(elements: Sequence[Element], limit: float) -> Iterator[Element]:
-    """Yield elements, as one those lines in a row that are nowhere farther than a limit from it."""
-    at = 0
-    while at < len(elements):
-        last = merged_up_to(elements, at, limit) if is_cut(elements[at]) else at
-        yield replace(elements[at], end=elements[last].end)
-        at = last + 1
-
-
-def merged_up_to(elements: Sequence[Element], first: int, limit: float) -> int:
-    """Return the last element that one line from the start of the first can stand for."""
-    last = first
-    for index in range(first + 1, min(first + MOST_POINTS, len(elements))):
-        if not is_like(elements[first], elements[index]):
-            break
-        line = Line(elements[first].start, elements[index].end)
-        points = (each.end for each in elements[first:index])
-        if line.length <= limit or max(map(line.distance, points)) > limit:
-            break
-        last = index
-    return last
-
-
-def is_like(one: Element, other: Element) -> bool:
-    """Tell whether one line may stand for two elements."""
-    straight = one.centre is None and other.centre is None and other.length > NO_LENGTH
-    same = (one.side, one.feed, one.depth) == (other.side, other.feed, other.depth)
-    return straight and same and is_cut(one) and is_cut(other)
 
 
 def parallel_path(

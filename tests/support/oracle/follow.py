@@ -5,29 +5,27 @@ A cursor goes along the expected moves and never back. Each actual point takes i
 reach, which is as far as the tool can have come since the point before: to the one where neither
 the actual point nor what the cursor passes on the way is farther from the actual motion than need
 be. So it follows a path that crosses, repeats or retraces itself, a missing move is a difference,
-and the number of segments of a move does not matter. Emitted moves and the samples of a run are
-laid alike. After a difference of the path nothing is compared.
+and the number of segments of a move does not matter. After a difference of the path nothing is
+compared.
 
 Lengths are mm, in the frame of the expected moves.
 """
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import accumulate, chain
+from dataclasses import dataclass, field
+from itertools import accumulate
 from typing import Self
 
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.preview.moves import Move
 from support.oracle.toolpath import Difference, Expected, Point, distance
 
-AHEAD = 100  # moves after a difference that are searched for its size
 SLACK = 0.25  # mm that a point may be ahead: at a corner that is blended
 TIE = 1e-7  # mm: of two points as near as that the earlier one counts
 ON_ARC = (0.25, 0.5, 0.75)  # shares of an arc that are compared
 ARC_STEP = math.radians(30)  # an arc that was made is followed in steps of this
 COINCIDENT = 1e-4  # mm: a move that is no farther off as a whole is the expected one
-MOST = 0.5  # share of a move: if more is done, its end is not reached but it is not missing
 SAME_FEED = 1e-5  # relative; a trace prints feeds with nine decimals
 OFF, MISSING, EXTRA = "path-off", "path-missing", "path-extra"
 RAPID, FEED, FEED_MODE = "rapid", "feed", "feed-mode"
@@ -39,8 +37,7 @@ class Made:
 
     Between its points it follows ``curve``, straight lines without one; of a curve the start and
     the end suffice. ``index`` is that of the move in the trace. ``feed`` is in mm per minute, or
-    per revolution if ``per_rev``; None where it is not to be compared. ``sampled``: between two
-    points of a run the tool may have been beside their chord, by half its length at most.
+    per revolution if ``per_rev``; None where it is not to be compared.
     """
 
     index: int
@@ -189,10 +186,6 @@ class _Cursor:
         at = self.index if self._rest() > TIE else self.index + 1
         return self.path[min(at, len(self.path) - 1)]
 
-    def done_of_next(self) -> float:
-        """Return the share of `next_move` that is done."""
-        return self.share if self._rest() > TIE else 0.0
-
     def follow(self, move: Made) -> tuple[float, Point]:
         """Go along a move; return how far it is off at most, and where."""
         off = self._take_whole(move)
@@ -296,14 +289,11 @@ def _size(found: tuple[float, Point]) -> float:
 
 def lay(path: Sequence[Expected], made: Iterable[Made], tolerance: float) -> Laid:
     """Lay actual moves along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
-    laid, cursor, moves = Laid([[] for _ in path]), _Cursor(path), iter(made)
-    for move in moves:
-        done = cursor.done_of_next()
+    laid, cursor = Laid([[] for _ in path]), _Cursor(path)
+    for move in made:
         off = _lay_move(cursor, move, tolerance, laid)
         if off:
-            is_segment = off.kind == OFF and move.curve is None
-            rest = chain([move], moves)
-            laid.add(_at_its_worst(path, off, rest, tolerance, done) if is_segment else off)
+            laid.add(off)
             return laid
     if cursor.remaining > tolerance:
         missing = cursor.next_move()
@@ -324,40 +314,6 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Path
     laid.deviation = max(laid.deviation, farthest)
     laid.add(_difference_of_feed(cursor.path[cursor.index], move))
     return None
-
-
-def _at_its_worst(
-    path: Sequence[Expected],
-    off: PathDifference,
-    moves: Iterable[Made],
-    tolerance: float,
-    done: float,
-) -> PathDifference:
-    """Return how far the motion leaves the toolpath before it comes back.
-
-    ``moves`` are the one that is off and those after it. Where that one is on the toolpath farther
-    ahead, the moves between are missing, unless the first of them was ``done`` for the most part.
-    """
-    at = next(index for index, move in enumerate(path) if move is off.expected)
-    ahead, found = path[at : at + AHEAD], replace(off, size=0.0)
-    for move in moves:
-        is_ahead = move.index == off.index and _farthest(move, ahead[1:])[0] <= tolerance
-        if is_ahead and done < MOST:
-            return PathDifference(MISSING, off.expected, off.expected.point(1.0), index=off.index)
-        size, where = _farthest(move, ahead)
-        if size <= found.size + TIE:
-            break
-        found = replace(off, size=size, at=where, index=move.index)
-    return found if found.size > tolerance else off
-
-
-def _farthest(move: Made, path: Sequence[Expected]) -> tuple[float, Point]:
-    """Return the greatest distance of a move from the nearest of others, and its point."""
-    away = (
-        (min((distance(at, it.point(it.nearest(at))) for it in path), default=math.inf), at)
-        for at in move.points
-    )
-    return max(away, key=_size)
 
 
 def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDifference | None:

@@ -20,7 +20,7 @@ from g12.tools.path.surface import Surface
 from g12.tools.path.track import limits_of, track
 from g12.tools.preview.moves import Event, Move, ReportedCut, Trace
 from support.oracle import circles
-from support.oracle.calls import SubCall
+from support.oracle.calls import SubCall, equal_steps
 from support.oracle.circles import BlockInMm
 from support.oracle.contour import contour_path, elements_of
 from support.oracle.follow import Laid, Made, judge_path, lay
@@ -36,6 +36,7 @@ ACTS = re.compile(r"(M\d|S|G10|G4[39]|G5\d|G92|dwell (?!0$)|message (?!G[0-9.]+:
 CART_FUZZ = 1e-8
 SHARES = np.linspace(0.0, 1.0, 25)  # of an arc in another plane than the pocket's
 SAME_AXIS = 1e-9
+WHOLE_TURN = 39.0  # square of a sweep
 THIRD = {"G18": 1, "G19": 0}  # the axis across a plane
 PATHS = {
     "haas": circles.haas_path,
@@ -84,7 +85,9 @@ class Oracle:
         elif isinstance(planned, HolesCut):
             yield from self._holes(cut, around)
         else:
-            yield from judge_lathe_cut(self._shape(cut, around.found))
+            call = self._call(cut, around.found)
+            yield from judge_lathe_cut(self._shape(cut, call))
+            yield from compared(cut, call.unit, shape_of(planned), shape_of_words(planned, call))
             others = (e for e in around.events if e.text != "dwell 0" and e.text[:2] != "G6")
             yield from judge_events(cut, list(others))
         is_section = isinstance(planned, SectionCut)
@@ -141,20 +144,19 @@ class Oracle:
     ) -> Iterator[Difference]:
         """Yield the numbers of a report that are not those of the expected toolpath."""
         planned, unit = cut.report.cut, block.unit
-        rings = [move for move in path if getattr(move.curve, "sweep", 0.0) ** 2 > 39.0]
+        rings = [move for move in path if getattr(move.curve, "sweep", 0.0) ** 2 > WHOLE_TURN]
         radii = [abs(move.curve.start - move.curve.centre) for move in rings]
         here = cut.report.at[THIRD.get(getattr(planned, "plane", "G17"), 2)]
-        levels = list(dict.fromkeys(round(here + move.end_level / unit, 6) for move in rings))
-        reported = list(dict.fromkeys(round(level, 6) for level in planned.levels))
         outside = isinstance(planned, EventCut) and planned.side > 0
-        wall = ((min if outside else max)(radii) + block.cutter) / unit
-        expected = {"wall": wall, "cutter": block.cutter / unit}
-        found = {"wall": planned.wall, "cutter": planned.cutter.radius}
-        for name, value in expected.items():
-            if abs(found[name] - value) > 1e-6:
-                yield Difference("report", cut.line, f"{name} {found[name]:.6g}, not {value:.6g}")
-        if levels != reported:
-            yield Difference("report", cut.line, f"levels {reported}, not {levels}")
+        wall = (min if outside else max)(radii) + block.cutter
+        levels = dict.fromkeys(round(here + move.end_level / unit, 6) for move in rings)
+        reported = dict.fromkeys(round(level, 6) for level in planned.levels)
+        yield from compared(
+            cut,
+            unit,
+            [planned.wall, planned.cutter.radius, *planned.centre[:2], *reported],
+            [wall / unit, block.cutter / unit, *block.centre()[:2], *levels],
+        )
 
     # ------------------------------------------------------------ a lathe
 
@@ -185,15 +187,14 @@ class Oracle:
         elements = list(elements_of(planned, frame.mm))
         height = cut.report.at[0 if surface else 2] * frame.mm
         tool = self.trace.radius(cut.at)
-        steps = contour_path(elements, height, tool, shared["tolerance"])
+        steps = contour_path(elements, height, tool)
         angle = math.radians(frame.zero[3] + (0.0 if surface else cut.report.at[3]))
         zero = complex(angle * surface, frame.zero[2] * frame.mm) if surface else 0j
         axis = 1 + 0j if surface else cmath.rect(1.0, angle)
         path = [step.move for step in steps]
         return LatheCut(expected=path, zero=zero, axis=axis, steps=steps, events=events, **shared)
 
-    def _shape(self, cut: ReportedCut, found: Mapping) -> LatheCut:
-        call = self._call(cut, found)
+    def _shape(self, cut: ReportedCut, call: SubCall) -> LatheCut:
         axis = cmath.rect(1.0, math.radians(call.zero[2]))
         shared = self._on_lathe(cut, 0.0)
         return LatheCut(expected=shape_path(call), zero=0j, axis=axis, **shared)
@@ -223,6 +224,7 @@ class Oracle:
         path = HolesPath(holes, holes.call.turned).toolpath()
         laid = lay(path, made_of_holes(holes, self.moves, own), WALL)
         yield from judge_path(laid, cut.line)
+        yield from compared(cut, holes.call.unit, holes_reported(cut), holes_of_words(holes))
         passed = [move for move, made in zip(path, laid.moves) if not made]
         if passed and not laid.difference:
             yield Difference("path-missing", cut.line, passed[0].name)
@@ -235,6 +237,57 @@ class Oracle:
         known = ("dwell", "pitch", "clamp", "G6")
         others = [event for event in around.events if not event.text.startswith(known)]
         yield from judge_events(cut, others)
+
+
+def compared(
+    cut: ReportedCut, unit: float, found: Sequence[float], expected: Sequence[float]
+) -> Iterator[Difference]:
+    """Yield that the numbers of a report are not those of its words; in program units."""
+    same = len(found) == len(expected)
+    if not same or any(abs(a - b) * unit > LEVEL for a, b in zip(found, expected)):
+        yield Difference("report", cut.line, f"{[*found]}, not {[*expected]}")
+
+
+def shape_of(planned) -> list[float]:
+    """Return the numbers of a reported shape."""
+    own = [value for value in planned[:-1] if not isinstance(value, tuple)]
+    return [
+        *getattr(planned, "centre", ()),
+        *own,
+        planned.passes.cutter.radius,
+        *planned.passes.levels,
+    ]
+
+
+def shape_of_words(planned, call: SubCall) -> list[float]:
+    """Return the same numbers by the entries of the call."""
+    given, unit = call.given, call.unit
+    names = [name for name in planned._fields[:-1] if name != "centre"]
+    centre = [call.x() / unit, given.get("c", 0.0)] if hasattr(planned, "centre") else []
+    depth = given["depth"]
+    levels = equal_steps(0.0, -depth, given.get("depth_per_pass", depth), 1e-6 / unit)
+    return [*centre, *(given.get(name, 0.0) for name in names), call.cutter / unit, *levels]
+
+
+def holes_reported(cut: ReportedCut) -> list[float]:
+    """Return the numbers of reported holes; angles from 0 on, each as the length of its place."""
+    planned = cut.report.cut
+    places = [number for x, z, c in planned.places for number in (x, z, *on_circle(x, c))]
+    return [planned.surface, planned.depth, planned.kind, *places]
+
+
+def holes_of_words(holes: Holes) -> list[float]:
+    """Return the same numbers by the entries of the call."""
+    unit = holes.call.unit
+    x, z = holes.x / unit, holes.z / unit
+    angles = [holes.angle + holes.turn * number for number in range(holes.count)]
+    places = [number for angle in angles for number in (x, z, *on_circle(x, angle))]
+    return [x * holes.side, holes.depth / unit, holes.kind, *places]
+
+
+def on_circle(x: float, angle: float) -> tuple[float, float]:
+    place = cmath.rect(x, math.radians(angle))
+    return place.real, place.imag
 
 
 def made_in(
