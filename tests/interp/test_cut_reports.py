@@ -182,7 +182,7 @@ def test_another_preview_shows_nothing_of_them(tmp_path):
 def test_no_record_is_made_where_nobody_asks(tmp_path):
     made = tmp_path / "made"
     body = f"open({str(made)!r}, 'a').write('made'); return original()"
-    fault = {"function": "g12.host.reported._report", "does": body}
+    fault = {"function": "g12.host.reported.report_of", "does": body}
     ini = with_fault(read_ini(SIM / "mill_mm.ini"), fault, tmp_path)
     for reports in (False, True):
         with Tracer(ini, tools=TOOLS, reports=reports) as tracer:

@@ -10,30 +10,20 @@ from __future__ import annotations
 from cmath import rect
 from collections.abc import Callable
 from math import radians
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import emccanon
 from interpreter import MODE_INCREMENTAL
 
 from g12 import cut_report
-from g12.compensation.contour import Contour, PlaneMove, Plunge
-from g12.cut_report import (
-    BY_D,
-    BY_LAST_D,
-    CutElement,
-    CutReport,
-    PlannedCut,
-    PocketCut,
-    ProgramFrame,
-    SectionCut,
-)
-from g12.geometry.curve import Arc
+from g12.cut_report import BY_D, BY_LAST_D, CutReport, PlannedCut, PocketCut, ProgramFrame
 from g12.host import messages
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.modes import millimetres_per_unit
 from g12.lengths import ROUNDING_MM
-from g12.request.words import Words
-from g12.section.start import SectionStart
+
+if TYPE_CHECKING:  # sections load without the cycles
+    from g12.request.words import Words
 
 SECTION_BEGAN = "section"  # key: its first part has been reported
 
@@ -46,31 +36,8 @@ def begin_cut(interp: Interp, words: Words, cut: Callable[[], PlannedCut]) -> No
         if isinstance(planned, PocketCut):
             planned = with_last_d(interp, memory, planned)
         line = messages.line_of_refusal(interp, words.refuse("")) or 0
-        report = _report(interp, words.code, line, words.given, planned)
+        report = report_of(interp, words.code, line, words.given, planned)
         emccanon.COMMENT(cut_report.report_text(report))
-
-
-def begin_section(
-    interp: Interp, start: SectionStart, contour: Contour, surface: float, diameters: bool
-) -> None:
-    """Report a section, or the part of it that follows M66; ``surface`` is 0 on the face."""
-    memory = asked(interp)
-    if memory is None:
-        return
-    elements = tuple(element for each in contour.elements if (element := _element(each)))
-    if memory.get(SECTION_BEGAN):
-        emccanon.COMMENT(cut_report.more_text(elements))
-        return
-    memory[SECTION_BEGAN] = True
-    cut = SectionCut(surface, diameters, elements)
-    report = _report(interp, start.location.code, start.location.line, start.words, cut)
-    report = report._replace(  # since the lines of the section were read other modes are in force
-        at=(start.x, interp.current_y, start.z, start.c),
-        feed=start.modes.feed,
-        per_revolution=start.modes.per_revolution,
-        incremental=start.modes.incremental,
-    )
-    emccanon.COMMENT(cut_report.report_text(report))
 
 
 def end_cut(interp: Interp) -> None:
@@ -97,17 +64,7 @@ def with_last_d(interp: Interp, memory: dict[str, Any], cut: PocketCut) -> Pocke
     return cut
 
 
-def _element(element: object) -> CutElement | None:
-    if isinstance(element, PlaneMove):
-        line, feed, offset, curve, z0, z1, side = element
-        more = (curve.centre, curve.sweep) if isinstance(curve, Arc) else (None, 0.0)
-        return CutElement(line, side, abs(offset), feed, z0, z1, curve.start, curve.end, *more)
-    if isinstance(element, Plunge):
-        return CutElement(element.line, 0, 0.0, element.feed, element.z0, element.z1)
-    return None
-
-
-def _report(
+def report_of(
     interp: Interp, code: str, line: int, words: dict[str, float], cut: PlannedCut
 ) -> CutReport:
     return CutReport(

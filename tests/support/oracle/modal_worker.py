@@ -16,24 +16,40 @@ def put_in(worker):
     class ModalCanon(worker.Canon):  # type: ignore[name-defined]
         def __init__(self, *arguments):
             super().__init__(*arguments)
-            self.state, self.ended = {}, False
+            self.state, self.ended = {}, None
 
         def next_line(self, state):
             super().next_line(state)
             if self.started:
                 self.state = state_of(worker, state, self)
-            if self.ended:
+            if self.ended and self.ended != level_and_line(worker):
                 self._note(f"left {json.dumps(self.state)}")
-                self.ended = False
+                self.ended = None
 
         def comment(self, text):
             super().comment(text)
             if text.startswith(worker.CUT) and self.open_cuts == 1:
                 self._note(f"found {json.dumps(self.state)}")
             elif text == worker.END and not self.open_cuts:
-                self.ended = True
+                forget_line(worker)
+                self.ended = level_and_line(worker)
 
     worker.Canon = ModalCanon
+
+
+def level_and_line(worker):
+    this = worker.interpreter_object()
+    return this.call_level, this.sequence_number
+
+
+def forget_line(worker):
+    """Let LinuxCNC report the next line, even if its number is the last one of a cycle's sub."""
+    import emccanon
+
+    this = worker.interpreter_object()
+    number, this.sequence_number = this.sequence_number, -1
+    emccanon.COMMENT("g12 oracle")
+    this.sequence_number = number
 
 
 def state_of(worker, state, canon):

@@ -12,7 +12,7 @@ from interpreter import MODE_ABSOLUTE
 
 from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
-from g12.host import messages, modes, reported
+from g12.host import messages, modes
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
@@ -20,6 +20,7 @@ from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
 from g12.host.section.output import SectionOutput
 from g12.host.section.reader import SectionReader
+from g12.host.section.reported_contour import begin_section
 from g12.host.section.run import Section
 from g12.host.section.start import start_of_section
 from g12.lengths import DEGREES_PER_TURN
@@ -130,7 +131,7 @@ def _section(
         SectionReader(interp, start, setup.words, program),
         output,
         first="".join(f"M{code}" for code in drag),
-        report=lambda contour: reported.begin_section(
+        report=lambda contour: begin_section(
             interp, start, contour, kind.surface(setup.plan), setup.words.diameter
         ),
     )
