@@ -20,7 +20,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from g12.cut_report import SectionCut
+from g12.cut_report import CutReport, SectionCut
 from g12.geometry.crossing import crossings
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line
 from support.oracle.toolpath import NO_LENGTH, Expected
@@ -58,13 +58,12 @@ class Element:
         return self.curve.length
 
 
-def elements_of(cut: SectionCut, unit: float) -> Iterator[Element]:
+def elements_of(report: CutReport, cut: SectionCut) -> Iterator[Element]:
     """Yield the elements of a reported section; a plunge is where the one before it ends."""
-    at, side = None, 0
+    unit, at, side = report.frame.mm, start_of(report, cut), 0
     for each in cut.elements:
         place = each.line, each.z1 * unit, each.feed * unit
         if each.start is None:
-            at = at if at is not None else start_of(cut)
             yield Element(
                 place[0], at * unit, at * unit, each.side, False, *place[1:2], feed=place[2]
             )
@@ -78,9 +77,11 @@ def elements_of(cut: SectionCut, unit: float) -> Iterator[Element]:
         at, side = each.end, each.side
 
 
-def start_of(cut: SectionCut) -> complex:
-    """Return where the first line or arc of a section begins."""
-    return next((each.start for each in cut.elements if each.start is not None), 0j)
+def start_of(report: CutReport, cut: SectionCut) -> complex:
+    """Return where the first line or arc of a section begins; without one where the tool is."""
+    x, _, z, c = report.at
+    here = complex(math.radians(c) * cut.surface, z) if cut.surface else complex(x)
+    return next((each.start for each in cut.elements if each.start is not None), here)
 
 
 class Corner(NamedTuple):

@@ -184,7 +184,7 @@ class Oracle:
         planned, frame = cut.report.cut, cut.report.frame
         surface, shared = planned.surface * frame.mm, None
         shared = self._on_lathe(cut, surface)
-        elements = list(elements_of(planned, frame.mm))
+        elements = list(elements_of(cut.report, planned))
         height = cut.report.at[0 if surface else 2] * frame.mm
         tool = self.trace.radius(cut.at)
         steps = contour_path(elements, height, tool)
