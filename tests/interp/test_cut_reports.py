@@ -119,7 +119,16 @@ def test_a_cut_in_a_file_of_its_own_names_it_and_the_line_of_its_call(tmp_path):
     (tmp_path / "part.ngc").write_text("o<part> sub\nG13 I6 Z-1 D1\no<part> endsub\n")
     own = {"RS274NGC": {"SUBROUTINE_PATH": f"{SIM.parent.parent / 'ngc'}:{tmp_path}"}}
     (cut,) = reported("mill_mm", [*MILL, "o<part> call"], overrides=own).cuts
-    assert (cut.line, cut.report.file, cut.report.line) == (6, "part.ngc", 2)
+    assert (cut.line, cut.report.file, cut.report.line, cut.last_line) == (6, "part.ngc", 2, 2)
+
+
+def test_a_section_in_a_file_of_its_own_names_it_and_its_own_lines(tmp_path):
+    lines = ["o<flat> sub", "(the flat)", *SECTION, "o<flat> endsub"]
+    (tmp_path / "flat.ngc").write_text("\n".join([*lines, ""]))
+    path = read_ini(SIM / "lathe_mm.ini").get("RS274NGC", "SUBROUTINE_PATH")
+    own = {"RS274NGC": {"SUBROUTINE_PATH": f"{path}:{tmp_path}"}}
+    (cut,) = reported("lathe_mm", [*LATHE, "o<flat> call"], overrides=own).cuts
+    assert (cut.line, cut.report.file, cut.report.line, cut.last_line) == (6, "flat.ngc", 3, 7)
 
 
 def test_a_section_that_fails_on_its_way_ends_with_the_program():

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+import os
+
 import emccanon
 
 from g12.compensation.contour import Contour, PlaneMove, Plunge
 from g12.cut_report import CutElement, SectionCut, more_text, report_text
 from g12.geometry.curve import Arc
 from g12.host.interp import Interp
+from g12.host.program_lines import running_file
 from g12.host.reported import SECTION_BEGAN, asked, report_of
 from g12.section.start import SectionStart
 
@@ -27,7 +30,9 @@ def begin_section(
     memory[SECTION_BEGAN] = True
     cut = SectionCut(surface, diameters, elements)
     report = report_of(interp, start.location.code, start.location.line, start.words, cut)
+    home = interp.filename
     report = report._replace(  # since the lines of the section were read other modes are in force
+        file="" if home == running_file(interp) else os.path.basename(home),
         at=(start.x, interp.current_y, start.z, start.c),
         feed=start.modes.feed,
         per_revolution=start.modes.per_revolution,

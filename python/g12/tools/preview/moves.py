@@ -33,8 +33,9 @@ Position = tuple  # nine floats in the order of AXES: mm, degrees for A, B, C
 class ReportedCut(NamedTuple):
     """A cut of the package, from its first move ``at`` to ``end``, the move after it.
 
-    ``line`` is the program's, ``last_line`` that of the block that ends it. ``c_commanded`` is how
-    C was since the cut before: to an "angle", by an "increment", or "" not at all.
+    ``line`` is the program's; ``last_line`` is that of the block that ends it, in the report's own
+    file. ``c_commanded`` is how C was since the cut before: to an "angle", by an "increment", or ""
+    not at all.
     """
 
     at: int

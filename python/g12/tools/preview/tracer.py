@@ -22,7 +22,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Self
 
-from g12.cut_report import read_report
+from g12.cut_report import SectionCut, read_report
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
@@ -277,4 +277,5 @@ def _reported_cut(
     except ValueError as error:  # of a package of another version, which the machine has
         raise TraceFailure(str(error)) from None
     own_line = line if report.file else report.line  # in a section the interpreter has read on
+    last = max(last, report.line) if isinstance(report.cut, SectionCut) else report.line
     return ReportedCut(at, moves if end is None else end, own_line, last, c_commanded, report)

@@ -288,12 +288,13 @@ class Canon:
 
     def _note_report(self, text: str) -> None:
         """Note the outermost cuts: a shape may have a section in it."""
+        this = interpreter_object()
         if text.startswith(CUT):
             self.open_cuts += 1
             if self.open_cuts == 1:
                 self._note_tools()
-                line = self.lines.now()
-                self.cuts.append([len(self.moves), None, line, line, self.c_commanded, [text]])
+                place = [len(self.moves), None, self.lines.now(), 0]
+                self.cuts.append([*place, self.c_commanded, [text]])
         elif text.startswith(MORE) and self.open_cuts == 1:
             self.cuts[-1][-1].append(text)
         elif text.startswith(CLAMP_COMMENT):
@@ -301,7 +302,7 @@ class Canon:
         elif text == END:
             self.open_cuts -= 1
             if not self.open_cuts:
-                self.cuts[-1][1], self.cuts[-1][3] = len(self.moves), self.lines.now()
+                self.cuts[-1][1], self.cuts[-1][3] = len(self.moves), this.sequence_number
                 self.c_commanded = ""
 
     def _note_c(self, start: float, end: float) -> None:
