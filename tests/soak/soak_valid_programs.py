@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random programs in which nothing is wrong: verify has no finding in any of them."""
+"""Random programs in which nothing is wrong, for the oracle of the planners and for verify."""
 
 import random
 import re
@@ -7,6 +7,7 @@ import re
 import pytest
 
 from g12.tools.commands import main
+from interp.test_valid_cuts import check_cuts
 from interp.test_valid_programs import check_as_its_words_ask
 from soak import SEED, often
 from support.sim_machines import ROOT, copy_of_machines
@@ -27,6 +28,12 @@ def with_offset_pin(text):
 def test_programs_as_they_are_read(kind, tmp_path):
     for number in range(often(2)):
         check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_cuts_as_their_words_ask(kind, tmp_path):
+    for number in range(often(4)):
+        check_cuts(kind, tmp_path, f"{SEED} {number}")
 
 
 @pytest.mark.parametrize("kind", MACHINES)

@@ -147,7 +147,8 @@ class EmittedFault:
         for group in groups:
             starts.append(starts[-1] + len(group))
         events = [event._replace(at=starts[min(event.at, len(groups))]) for event in events]
-        return replace(trace, moves=list(chained(groups, trace.moves)), events=events)
+        cuts = [cut._replace(at=starts[cut.at], end=starts[cut.end]) for cut in trace.cuts]
+        return replace(trace, moves=list(chained(groups, trace.moves)), events=events, cuts=cuts)
 
 
 def change_groups(

@@ -27,7 +27,7 @@ class PlaneMove(NamedTuple):
 
     ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the
     left of the path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's
-    speed in program units per minute.
+    speed in program units per minute. ``side`` is 1, -1 or 0, also with a radius of 0.
     """
 
     line: int
@@ -36,6 +36,7 @@ class PlaneMove(NamedTuple):
     curve: Curve
     z0: float
     z1: float
+    side: int = 0
 
     @property
     def start(self) -> complex:
@@ -138,6 +139,7 @@ class Contour:
         self.side, self.mirrored = 40, False
         self.start = start or Start(x, 0.0, z)
         self._offset = self._radius = 0.0
+        self._hand = 0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
         self._switched_on = 0
         self.notes: list[str] = []
@@ -162,7 +164,8 @@ class Contour:
         self._check_switch(line, length)
         if length > SAME_POINT:
             curve = Line(self._end, end)
-            self.elements.append(PlaneMove(line, feed, self._offset, curve, z0, z1))
+            move = PlaneMove(line, feed, self._offset, curve, z0, z1, self._hand)
+            self.elements.append(move)
             self._end, self._level = end, z1
         elif abs(z1 - z0) > SAME_POINT:
             self.elements.append(Plunge(line, feed, z0, z1))
@@ -195,7 +198,8 @@ class Contour:
             curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), line)
         else:
             curve = self._with_radius(turn, end, radius, line)
-        self.elements.append(PlaneMove(line, feed, self._offset, curve, self._level, z1))
+        move = PlaneMove(line, feed, self._offset, curve, self._level, z1, self._hand)
+        self.elements.append(move)
         self._end, self._level = end, z1
         self.x, self.c, self.z = end.real, end.imag, z1
 
@@ -214,7 +218,8 @@ class Contour:
             )
         self._radius = abs(radius) if side != 40 else abs(self._offset)
         self.mirrored = radius < 0.0 if side != 40 else self.mirrored
-        self._offset = {40: 0.0, 41: radius, 42: -radius}[side]
+        self._hand = {40: 0, 41: 1, 42: -1}[side]
+        self._offset = self._hand * radius
         self._switched_on = line
         self._switch = line
         self.side = side

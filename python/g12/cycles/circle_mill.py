@@ -33,6 +33,7 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 
 from typing import NamedTuple
 
+from g12.cut_report import LOADED, EventCut, UsedCutter
 from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import number
 from g12.request.common import (
@@ -197,8 +198,24 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     return CyclePlan(
         position | roughing | depths | side | feeds,
         CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
+        lambda: cut_of_event(entries, circle, tool, depths),
         uncut_material(words, roughing["roughing_width"], tool),
         commanded_planes=EventPlanes(first_plane, commanded_second),
+    )
+
+
+def cut_of_event(
+    entries: EventEntries, circle: EventCircle, tool: Tool, depths: dict[str, float]
+) -> EventCut:
+    rough = (depths["z"] - depths["peck"] * level for level in range(round(depths["pecks"])))
+    nearest, farthest = (circle.radius + (circle.side + out) * tool.radius for out in (-1, 1))
+    return EventCut(
+        (circle.x, circle.y),
+        circle.side,
+        farthest,
+        0.0 if entries.pocket else nearest,
+        (*rough, depths["rough_z"], *[depths["final_z"]] * entries.bottom),
+        UsedCutter(tool.radius, LOADED, tool.number),
     )
 
 

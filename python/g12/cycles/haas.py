@@ -22,6 +22,7 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
 from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
@@ -82,9 +83,24 @@ def plan_pocket(
     message = upward(words, depth)
     message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
+
+    def cut() -> PocketCut:
+        last = LOADED if context.last_cutter is None else BY_LAST_D
+        return PocketCut(
+            plane=XY,
+            centre=(x, y, z),
+            wall=finished,
+            first=first,
+            step=stepover if outward else 0.0,
+            inner=first_radius - cutter.radius,
+            levels=tuple(z + z_step * level for level in range(levels)),
+            cutter=UsedCutter(cutter.radius, BY_D if with_d else last, cutter.number),
+        )
+
     commanded = cutter if with_d else None
     kept = None if with_d else kept_cutter(words, cutter)
-    return CyclePlan(numbers | links | down, extent, message, other, commanded, kept_cutter=kept)
+    numbers = numbers | links | down
+    return CyclePlan(numbers, extent, cut, message, other, commanded, kept_cutter=kept)
 
 
 def kept_cutter(words: Words, cutter: Tool) -> str | None:

@@ -13,6 +13,7 @@ Rules, in the order of the checks: G17, G18 or G19 and the modes of `check_modes
 greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
+from g12.cut_report import BY_D, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
 from g12.request.common import check_modes, check_start, commanded_tool, other_cutter
@@ -22,6 +23,7 @@ from g12.request.words import Words
 
 MITSUBISHI_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
+AXIS_ACROSS = {XY: "z", XZ: "y", YZ: "x"}
 
 
 def plan_circle(words: Words) -> CyclePlan:
@@ -41,7 +43,20 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
     }
     extent = CycleExtent(context.plane, context.position, radius)
-    return CyclePlan(numbers, extent, other_cutter=other)
+
+    def cut() -> PocketCut:
+        return PocketCut(
+            plane=context.plane,
+            centre=context.position,
+            wall=abs(commanded),
+            first=abs(commanded),
+            step=0.0,
+            inner=radius - tool.radius,
+            levels=(getattr(context, AXIS_ACROSS[context.plane]),),
+            cutter=UsedCutter(tool.radius, BY_D, tool.number),
+        )
+
+    return CyclePlan(numbers, extent, cut, other_cutter=other)
 
 
 def check_radius(words: Words, radius: float, tool: Tool) -> None:

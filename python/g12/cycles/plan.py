@@ -3,8 +3,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
+from g12.cut_report import PlannedCut
 from g12.request.context import Tool
 from g12.request.travel import CycleExtent
 
@@ -26,11 +28,12 @@ class CyclePlan(NamedTuple):
     Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as are
     ``other_cutter``: D is not the loaded tool, and ``kept_cutter``: without D another one counts
     than the program shows. ``commanded_cutter`` is the one that a Haas D names,
-    ``commanded_planes`` are those of later circle mill events.
+    ``commanded_planes`` are those of later circle mill events. ``cut`` returns what is reported.
     """
 
     locals: dict[str, float]
     extent: CycleExtent
+    cut: Callable[[], PlannedCut]
     message: str | None = None
     other_cutter: str | None = None
     commanded_cutter: Tool | None = None

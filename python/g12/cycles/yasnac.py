@@ -27,6 +27,7 @@ too many circles.
 from math import copysign
 from typing import NamedTuple
 
+from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import BlockRefusal, number
 from g12.request.common import (
@@ -80,7 +81,8 @@ def plan_circle(words: Words) -> CyclePlan:
     traverse = take_traverse(words)
     spiral = take_spiral(words)
     circles = words.take_whole("L", least=1, default=1)
-    tool = commanded_tool(words) or Tool(0, 0.0)
+    named = commanded_tool(words)
+    tool = named or Tool(0, 0.0)
     radii = offset_radii(words, finished, sound_tool(words, tool, f"D{tool.number}"))
 
     radius = radii.position(finished)
@@ -95,7 +97,21 @@ def plan_circle(words: Words) -> CyclePlan:
         "circles": circles,
     }
     extent = CycleExtent(XY, context.position, abs(radius))
-    return CyclePlan(numbers | turns, extent, other_cutter=other)
+
+    def cut() -> PocketCut:
+        first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
+        return PocketCut(
+            plane=XY,
+            centre=context.position,
+            wall=abs(finished),
+            first=first + tool.radius,
+            step=spiral[1] if spiral else 0.0,
+            inner=first + growth - tool.radius,
+            levels=(context.z,),
+            cutter=UsedCutter(tool.radius, NO_CUTTER if named is None else BY_D, tool.number),
+        )
+
+    return CyclePlan(numbers | turns, extent, cut, other_cutter=other)
 
 
 def take_traverse(words: Words) -> tuple[str, float] | None:

@@ -16,14 +16,14 @@ class Words:
     """The words of a block, to be taken one by one, and the state before it.
 
     ``code`` names the block in messages (``G12``), ``values`` maps upper-case letters to
-    numbers as the parser gave them: program units, expressions already resolved. A number beyond
-    any machine is refused at once.
+    numbers as the parser gave them: program units, expressions already resolved; they stay
+    ``given``. A number beyond any machine is refused at once.
     """
 
     positive_rule = "must be greater than 0"
 
     def __init__(self, code: str, values: dict[str, float], context: Context) -> None:
-        self.code, self.context = code, context
+        self.code, self.context, self.given = code, context, values
         self._remaining = dict(values)
         for letter, value in values.items():
             if not abs(value) <= LARGEST:

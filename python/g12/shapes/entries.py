@@ -6,12 +6,13 @@ Lengths are in program units.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from math import atan2, degrees, hypot
 from typing import NamedTuple
 
+from g12.cut_report import LOADED, PlannedCut, ShapePasses, UsedCutter
 from g12.errors import number
-from g12.request.common import LEFT_OUT, steps_between
+from g12.request.common import LEFT_OUT, loaded_tool, steps_between
 from g12.request.context import Context
 from g12.request.words import Words
 
@@ -110,10 +111,12 @@ class ShapePlan(NamedTuple):
     """A checked shape, or holes: the named locals of its sub beside the entries, and its extent.
 
     Lengths and feeds are in program units, X is a radius, angles are in degrees.
+    ``cut`` returns what is reported of it.
     """
 
     locals: dict[str, float]
     extent: Extent
+    cut: Callable[[], PlannedCut]
 
 
 def levels_of(entries: ShapeEntries) -> Levels:
@@ -141,6 +144,16 @@ def feed_of(entries: ShapeEntries) -> float:
 def feeds_of(entries: ShapeEntries, machine: ShapeMachine) -> Feeds:
     feed = feed_of(entries)
     return Feeds(feed, entries.take_positive("plunge_feed") or feed * machine.plunge_share)
+
+
+def passes_of(entries: ShapeEntries, levels: Levels, feeds: Feeds) -> ShapePasses:
+    """Return what is reported of the passes of a shape."""
+    tool = loaded_tool(entries)
+    return ShapePasses(
+        tuple(-levels.step_down * (level + 1) for level in range(levels.levels)),
+        UsedCutter(tool.radius, LOADED, tool.number),
+        *feeds,
+    )
 
 
 def heights_of(entries: ShapeEntries) -> Heights:

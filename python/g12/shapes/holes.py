@@ -19,6 +19,7 @@ from __future__ import annotations
 from math import atan2, ceil, degrees, sqrt
 from typing import NamedTuple
 
+from g12.cut_report import HolesCut
 from g12.errors import number
 from g12.lengths import DEGREES_PER_TURN
 from g12.request.common import steps_between
@@ -141,7 +142,16 @@ def plan_holes(
     extent = Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
     own = {"count": count, "first_turn": first_turn, "turn": turn, "travel": travel}
     at = {f"at_{name}": value for name, value in locals_of(position).items()}
-    return ShapePlan(own | at | locals_of(hole), extent)
+    places = tuple((position.x, position.z, first + turn * index) for index in range(count))
+    return ShapePlan(
+        own | at | locals_of(hole),
+        extent,
+        lambda: HolesCut(
+            position.x * position.x_axis,
+            places,
+            *(hole.depth, hole.kind, hole.feed),
+        ),
+    )
 
 
 def check_tool(entries: ShapeEntries) -> None:

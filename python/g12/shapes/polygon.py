@@ -25,6 +25,7 @@ from __future__ import annotations
 from math import acos, degrees, fmod, hypot, radians, sqrt, tan
 from typing import NamedTuple
 
+from g12.cut_report import PolygonCut
 from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
@@ -40,6 +41,7 @@ from g12.shapes.entries import (
     heights_of,
     levels_of,
     locals_of,
+    passes_of,
     rounds_between,
 )
 
@@ -125,7 +127,18 @@ def plan_polygon(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
     )
     own = {name: getattr(form, name) for name in ("inner", "side", "corner", "half_turn")}
     own |= {"start_angle": angle, "flush": FLUSH}
-    return ShapePlan(own | locals_of(rounds, levels, feeds, heights), extent)
+    return ShapePlan(
+        own | locals_of(rounds, levels, feeds, heights),
+        extent,
+        lambda: PolygonCut(
+            form.sides,
+            2 * form.apothem,
+            form.radius,
+            2 * stock,
+            angle - form.half_turn,
+            passes_of(entries, levels, feeds),
+        ),
+    )
 
 
 def lead_angle(form: PolygonForm, rounds: PolygonRounds, apothem: float) -> float:

@@ -12,6 +12,10 @@ POLAR_POLE refuses it.
 
 from __future__ import annotations
 
+from cmath import rect
+from math import radians
+
+from g12.cut_report import RoundPocketCut
 from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
@@ -24,6 +28,7 @@ from g12.shapes.entries import (
     heights_of,
     levels_of,
     locals_of,
+    passes_of,
     polar_position,
 )
 from g12.shapes.rings import ClearingRings, clearing_rings, half_turns_in_all, ramp_of
@@ -56,7 +61,14 @@ def plan_round_pocket(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan
         (angle - back, angle + onward),
     )
     own = {"away": away, "start_angle": angle}
-    return ShapePlan(own | locals_of(rings, ramp, levels, feeds, heights), extent)
+    middle = rect(away, radians(angle))
+    return ShapePlan(
+        own | locals_of(rings, ramp, levels, feeds, heights),
+        extent,
+        lambda: RoundPocketCut(
+            (middle.real, middle.imag), diameter, passes_of(entries, levels, feeds)
+        ),
+    )
 
 
 def check_centre(

@@ -13,6 +13,7 @@ through the centre where [G12] POLAR_POLE refuses it.
 
 from __future__ import annotations
 
+from g12.cut_report import SlotCut
 from g12.errors import number
 from g12.request.common import loaded_tool
 from g12.shapes.entries import (
@@ -25,6 +26,7 @@ from g12.shapes.entries import (
     heights_of,
     levels_of,
     locals_of,
+    passes_of,
 )
 from g12.shapes.rings import clearing_rings, half_turns_in_all, ramp_of
 
@@ -60,4 +62,8 @@ def plan_slot(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
         (levels.bottom, heights.start_z),
         (angle - 180.0 * to_and_fro, angle + turned),
     )
-    return ShapePlan(own | locals_of(rings, ramp, levels, feeds, heights), extent)
+    return ShapePlan(
+        own | locals_of(rings, ramp, levels, feeds, heights),
+        extent,
+        lambda: SlotCut(width, length, angle, passes_of(entries, levels, feeds)),
+    )

@@ -11,7 +11,7 @@ from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import CyclePlan
-from g12.host import messages
+from g12.host import messages, reported
 from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
@@ -46,6 +46,7 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
         cycle_state.remember_planes(interp, plan.commanded_planes)
     if plan.message:
         messages.message(plan.message)
+    reported.begin_cut(interp, words, plan.cut)
     return INTERP_OK
 
 
@@ -109,4 +110,5 @@ circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, 
 @messages.handler
 def cycle_done(self, **words):
     cycle_state.restore_modes(self)
+    reported.end_cut(self)
     return INTERP_OK

@@ -51,4 +51,5 @@ CYLINDER_SECTION = SectionKind(
     setup=_setup,
     codes=_codes,
     plan=lambda contour, setup, start: plan(contour, setup.plan),
+    surface=lambda settings: settings.radius,
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal
-from g12.host import messages, modes
+from g12.host import messages, modes, reported
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.handlers.polar import polar_section_setup
@@ -28,7 +28,7 @@ from g12.section.line import BlockLocation
 from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import holes, polygon, round_pocket, slot
-from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine
 
 check_at_start = check_ini
@@ -59,8 +59,10 @@ def polar_shape(self, **words):
     setup = polar_section_setup(start)
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
     entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
-    prepare = hole_locals if name in HOLE_CALLS else shape_locals
-    set_locals_at(self, level, prepare(self, entries, start, setup))
+    prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
+    plan = prepare(self, entries, start, setup)
+    set_locals_at(self, level, plan.locals)
+    reported.begin_cut(self, entries, plan.cut)
     cycle_state.note_modes(self)
     if name in HOLE_CALLS:
         state.path, state.spindle = path_control(self), self.active_spindle
@@ -68,9 +70,9 @@ def polar_shape(self, **words):
     return INTERP_OK
 
 
-def shape_locals(
+def plan_of_shape(
     interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
-) -> dict[str, float]:
+) -> ShapePlan:
     machine, (_, planner) = shape_machine(setup), SHAPE_CALLS[entries.code]
     plan = planner(entries, machine)
     check_nearest(entries, plan.extent, machine)
@@ -79,12 +81,12 @@ def shape_locals(
     # on a wrapped axis a sign is the direction of the turn, and 360 is refused
     if interp.c_axis_wrapped:
         own["start_angle"] = plan.locals["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
-    return {**plan.locals, **own, **section_codes(entries)}
+    return plan._replace(locals={**plan.locals, **own, **section_codes(entries)})
 
 
-def hole_locals(
+def plan_of_holes(
     interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
-) -> dict[str, float]:
+) -> ShapePlan:
     check_clamp(entries.refuse)
     close, opens = MACHINE.settings.c_clamp or (0, 0)
     machine, (_, planner) = hole_machine(interp, start, setup), HOLE_CALLS[entries.code]
@@ -92,7 +94,7 @@ def hole_locals(
     stay_in_travel(entries, plan.extent, setup)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
     x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
-    return {**plan.locals, **x_words, **own}
+    return plan._replace(locals={**plan.locals, **x_words, **own})
 
 
 def hole_machine(
@@ -120,6 +122,7 @@ def polar_shape_done(self, **words):
     if path:  # after a tap, feeds per revolution would refer to the spindle of its $ word
         self.active_spindle = state.spindle
     self.execute(f"{path}F{decimal(state.feed)}")
+    reported.end_cut(self)
     return INTERP_OK
 
 

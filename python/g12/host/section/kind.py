@@ -20,6 +20,7 @@ from g12.host.machine import MACHINE
 from g12.host.program_lines import LineOfFile, ProgramLines, running_file
 from g12.host.section.output import SectionOutput
 from g12.host.section.reader import SectionReader
+from g12.host.section.reported_contour import begin_section
 from g12.host.section.run import Section
 from g12.host.section.start import start_of_section
 from g12.lengths import DEGREES_PER_TURN
@@ -39,13 +40,14 @@ class SectionKind(NamedTuple, Generic[Planning]):
 
     ``letters`` are those that the block that switches on may have. ``setup`` returns a section's
     settings, or refuses to begin it, ``codes`` its codes for the one that began it. ``plan`` turns
-    the contour into moves.
+    the contour into moves. ``surface`` is the radius of its cylinder, 0 on the face.
     """
 
     letters: str
     setup: Callable[[SectionStart], SectionSetup[Planning]]
     codes: Callable[[str], SectionCodes]
     plan: Callable[[Contour, SectionSetup[Planning], SectionStart], SectionPlan]
+    surface: Callable[[Planning], float] = lambda _: 0.0
 
 
 def check_ini() -> None:
@@ -125,4 +127,7 @@ def _section(
         SectionReader(interp, start, setup.words, program),
         output,
         first="".join(f"M{code}" for code in MACHINE.settings.c_clamp_shapes),
+        report=lambda contour: begin_section(
+            interp, start, contour, kind.surface(setup.plan), setup.words.diameter
+        ),
     )

@@ -15,7 +15,7 @@ from typing import Any, cast
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.host import messages
+from g12.host import messages, reported
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import JUMPING
 from g12.host.section.output import PlanStep, SectionOutput
@@ -56,12 +56,16 @@ class Section:
         output: SectionOutput,
         *,
         first: str = "",
+        report: Callable[[Contour], None] = lambda _: None,
     ) -> None:
-        """``first`` is a block that acts as if it were the section's first line."""
+        """``first`` is a block that acts as if it were the section's first line.
+
+        ``report`` takes each contour before it is cut.
+        """
         self.codes, self.setup, self.plan = codes, setup, plan
         self.frame, self.program = frame, reader.program
         self.reader, self.output = reader, output
-        self._first = first
+        self._first, self._report = first, report
         self._phase = Phase.READING
         self._unended: Refusal | None = None  # of the O-word that skips lines, if they never end
 
@@ -241,6 +245,7 @@ class Section:
         self.reader.contour.close(line=self.program.line)
         yield from self._emit()
         self.program.catch_up()
+        reported.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)
         self._phase = Phase.DONE
 
@@ -252,6 +257,7 @@ class Section:
             messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
+        self._report(reader.contour)
         steps = cast(list[PlanStep], plan.steps)  # the reader set the marks' actions
         for waiting in self.output.run(steps, reader.modes, reader.exact_lines):
             yield from self.frame.execute_and_wait(waiting)

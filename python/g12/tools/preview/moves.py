@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from operator import itemgetter
 from typing import NamedTuple
 
+from g12.cut_report import CutReport
 from g12.machine_ini import AXIS_LETTERS
 
 MESSAGE = "message "  # begins the text of an event
@@ -27,6 +28,22 @@ CLOSED_ARC = 1e-6  # mm; an arc whose ends are nearer is a full circle, as in mo
 THIRD_AXIS = {17: 2, 18: 1, 19: 0}
 
 Position = tuple  # nine floats in the order of AXES: mm, degrees for A, B, C
+
+
+class ReportedCut(NamedTuple):
+    """A cut of the package, from its first move ``at`` to ``end``, the move after it.
+
+    ``line`` is the program's; ``last_line`` is that of the block that ends it, in the report's own
+    file. ``c_commanded`` is how C was since the cut before: to an "angle", by an "increment", or ""
+    not at all.
+    """
+
+    at: int
+    end: int
+    line: int
+    last_line: int
+    c_commanded: str
+    report: CutReport
 
 
 class Message(NamedTuple):
@@ -177,6 +194,7 @@ class Trace:
     the global named parameters after the program. ``events`` include the messages. ``files`` are
     those of subs outside the program that execute a remapped code with motion. ``tables`` are the
     tool tables, each with the number of moves before it; the last is as the program leaves it.
+    ``cuts`` are the package's, if they were asked for.
     """
 
     moves: list[Move]
@@ -189,6 +207,7 @@ class Trace:
     globals: dict[str, float]
     tables: Sequence[tuple[int, ToolTable]]
     files: tuple[str, ...] = ()
+    cuts: Sequence[ReportedCut] = ()
 
     @property
     def diameters(self) -> Mapping[int, float]:

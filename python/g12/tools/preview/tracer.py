@@ -22,11 +22,13 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Self
 
+from g12.cut_report import SectionCut, read_report
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.machine.tables import measured_tools, var_file
-from g12.tools.preview.moves import Error, Event, Move, ToolTable, Trace, modes
+from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
+from g12.tools.preview.told_clamp import with_told_clamp
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -57,19 +59,26 @@ class Tracer:
     gives several lines of one key, None takes the key out.  ``tools`` is a tool table file or
     ``{tool number: diameter in machine units}`` in place of the INI's table.  Settings are read
     when LinuxCNC's Python modules load, so other overrides or tools need another Tracer.
-    ``folder`` is its scratch directory.
+    ``folder`` is its scratch directory. With ``reports`` the package's planners report their cuts,
+    for ``Trace.cuts``, and events ``clamp M10`` show the codes of C's clamp that are subs.
     ``printed`` is the output of the interpreter and the machine's modules while loading.
     ``diameters`` and ``lengths`` are LinuxCNC's values of the tool table: tool number to mm.
     """
 
     def __init__(
-        self, ini: ProgramPath | Ini, *, overrides: Overrides | None = None, tools: Tools = None
+        self,
+        ini: ProgramPath | Ini,
+        *,
+        overrides: Overrides | None = None,
+        tools: Tools = None,
+        reports: bool = False,
     ) -> None:
         self._scratch = tempfile.TemporaryDirectory(prefix="g12-trace-")
         self.folder = Path(self._scratch.name)
         ini = ini if isinstance(ini, Ini) else read_ini(ini)
         self.ini = ini.replaced(overrides or {})
-        self._machine = _machine(self.ini, tools, self.folder)
+        traced = with_told_clamp(self.ini, self.folder) if reports else self.ini
+        self._machine = {**_machine(traced, tools, self.folder), "reports": reports}
         self._start()
 
     def __enter__(self) -> Self:
@@ -182,10 +191,11 @@ def trace(
     *,
     overrides: Overrides | None = None,
     tools: Tools = None,
+    reports: bool = False,
     **options,
 ) -> Trace:
     """Trace one program file in an interpreter of its own; see ``Tracer``."""
-    with Tracer(ini, overrides=overrides, tools=tools) as tracer:
+    with Tracer(ini, overrides=overrides, tools=tools, reports=reports) as tracer:
         return tracer.trace(program, **options)
 
 
@@ -255,4 +265,18 @@ def _trace(answer: dict, mm: float) -> Trace:
         **{key: answer[key] for key in ("state", "printed", "position", "globals")},
         tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
         files=tuple(answer["files"]),
+        cuts=[_reported_cut(len(answer["moves"]), *cut) for cut in answer["cuts"]],
     )
+
+
+def _reported_cut(
+    moves: int, at: int, end: int | None, line: int, last: int, c_commanded: str, texts: list[str]
+) -> ReportedCut:
+    """Return a cut of the worker's; without an end it is the last, in which the program failed."""
+    try:
+        report = read_report(*texts)
+    except ValueError as error:  # of a package of another version, which the machine has
+        raise TraceFailure(str(error)) from None
+    own_line = line if report.file else report.line  # in a section the interpreter has read on
+    last = max(last, report.line) if isinstance(report.cut, SectionCut) else report.line
+    return ReportedCut(at, moves if end is None else end, own_line, last, c_commanded, report)

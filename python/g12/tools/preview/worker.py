@@ -32,6 +32,8 @@ CURRENT = (
 )  # fmt: skip
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
+ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
+PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # `told_clamp`
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
@@ -54,6 +56,7 @@ OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them 
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
+G91_ACTIVE = 1  # distance_mode
 INVERSE_TIME = 1  # index in FEED_MODES: each block has an F of its own
 FEED_MODE_CODES = ("G94", "G93", "G95")
 CONTINUOUS = 3  # CANON_CONTINUOUS: G64
@@ -200,6 +203,10 @@ class Canon:
         self.files: set[str] = set()
         self.in_force: tuple = ()
         self.watch_offsets = request.get("watch_offsets")
+        self.reports = machine.get("reports")
+        self.cuts: list[list] = []  # first move, end, line, last line, C before, comments
+        self.open_cuts = 0
+        self.c_commanded = ""
         self.offsets: dict = {}
         self.tables: list[tuple[int, dict]] = []
         self.pitch = ""
@@ -262,6 +269,8 @@ class Canon:
         if text == FRESH:
             this.feed_rate = 0.0  # not by F0: a machine may have remapped F
             this.active_spindle = 0  # LinuxCNC leaves it unset, and reads it in G33 without $
+            if self.reports:
+                setattr(this, ASKED, {})
             self.modal_feed, self.units = 0.0, this.length_units
             self._read_position()
         self._convert_feed()
@@ -272,8 +281,38 @@ class Canon:
             self._read_position()
         if text == START:
             self.started = True
-            self.moves.clear()
-            self.events.clear()
+            for records in (self.moves, self.events, self.cuts):
+                records.clear()
+        if self.reports:
+            self._note_report(text)
+
+    def _note_report(self, text: str) -> None:
+        """Note the outermost cuts: a shape may have a section in it."""
+        this = interpreter_object()
+        if text.startswith(CUT):
+            self.open_cuts += 1
+            if self.open_cuts == 1:
+                self._note_tools()
+                place = [len(self.moves), None, self.lines.now(), 0]
+                self.cuts.append([*place, self.c_commanded, [text]])
+        elif text.startswith(MORE) and self.open_cuts == 1:
+            self.cuts[-1][-1].append(text)
+        elif text.startswith(CLAMP_COMMENT):
+            self._note(text.removeprefix(PACKAGE))
+        elif text == END:
+            self.open_cuts -= 1
+            if not self.open_cuts:
+                self.cuts[-1][1], self.cuts[-1][3] = len(self.moves), this.sequence_number
+                self.c_commanded = ""
+
+    def _note_c(self, start: float, end: float) -> None:
+        """Note how a move outside of cuts commands C."""
+        this = interpreter_object()
+        has_word = this.blocks[this.remap_level].c_flag
+        if has_word and this.distance_mode == G91_ACTIVE and not goes_by_machine():
+            self.c_commanded = self.c_commanded or "increment"
+        elif has_word or start != end:
+            self.c_commanded = "angle"
 
     def message(self, text: str) -> None:
         if self.watch_offsets:
@@ -431,6 +470,8 @@ class Canon:
         path = (kind, self.line, self.lines.now(self.line), start, self.position)
         remap = self.lines.remap()
         how = (is_exact(), goes_by_machine(), self.share)
+        if self.reports and not self.open_cuts:
+            self._note_c(start[5], self.position[5])
         self.moves.append((*path, feed, mode, *state, centre, turns, self.rotation, remap, *how))
         if remap:
             self.files |= self.lines.files()
@@ -569,6 +610,7 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
         "moves": canon.moves,
         "events": canon.events,
         "error": error,
+        "cuts": canon.cuts,
         "files": sorted(canon.files),
         "tool_sizes": tool_sizes(len(tools)),
         "tables": canon.tables,
