@@ -123,7 +123,7 @@ def test_everything_in_one_program(lathe):
         ([f"o<side_holes> call [3] [-9] [0] [-9999] [40] {HOLE}"], f"side_holes {NOT_C}"),
         (
             ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
-            "G12.1 line 6: M255 line 7: the section needs C to its end",
+            "G12.1 line 6: M255 line 6: the section needs C to its end",
         ),
         (["M255", "G0 C30"], "Linear move on line 4 would exceed C's positive limit"),
         (["G1 X30 C-30 F100"], "Linear move on line 3 would exceed C's negative limit"),
@@ -184,6 +184,8 @@ def test_a_spindle_that_cannot_become_c():
         )
         assert not machine.get("spindle-c-holds")
         assert not machine.get("spindle.0.orient")
+        run = machine.run_text(["G21", "", "M254", "M2"])
+        assert run.error.text.startswith("M254 line 3: the spindle did not become C within 1 s")
 
 
 @pytest.mark.parametrize("interrupt", INTERRUPTS)

@@ -63,17 +63,13 @@ class LineOfFile(int):
         return f"{int(self)} of {self.file:.80}"
 
 
-def line_at(interp: Interp, filename: str, offset: int, *, in_program: bool) -> int | None:
-    """Return the line at a byte of a file; it names the file if that is not the program's own.
-
-    ``in_program``: a program runs, not MDI.
-    """
+def line_at(filename: str, offset: int, *, own: bool) -> int | None:
+    """Return the line at a byte of a file; it names the file if that is not the program's own."""
     try:
         with open(filename, "rb") as file:
             line = file.read(max(0, offset)).count(b"\n") + 1
     except OSError:  # an initial block of the INI is in no file
         return None
-    own = in_program and filename == running_file(interp)
     return line if own else LineOfFile(line, os.path.basename(filename))
 
 
@@ -164,6 +160,7 @@ class ProgramLines:
         """Let the interpreter execute a block that is remapped to a sub; return its status."""
         self.catch_up()
         self.interp.read(text)
+        self.interp.blocks[0].offset = self.source.starts[self.line - 1]
         status = self.interp.execute(None)
         self._locate()
         return status
