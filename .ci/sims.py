@@ -282,7 +282,7 @@ def interpreter(machine: Machine) -> list[str]:
     for name in machine.codes:
         text = (CONFIGS / "include" / f"{name}.inc").read_text(encoding="utf-8")
         lines += [line for line in text.splitlines() if not line.startswith("#")]
-    return [*lines, *machine.remaps]
+    return [*dict.fromkeys(lines), *machine.remaps]  # each code's include has ON_ABORT_COMMAND
 
 
 def hal(machine: Machine) -> list[str]:

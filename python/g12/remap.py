@@ -6,6 +6,7 @@ from __future__ import annotations
 from g12.host.loading import loaded_handlers
 
 HANDLERS_OF_MODULE = {
+    "g12.host.handlers.aborts": ("g12_on_abort",),
     "g12.host.handlers.cycles": (
         "circle_mill_perimeter",
         "circle_mill_pocket",

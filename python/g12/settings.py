@@ -98,6 +98,7 @@ class Settings:
     cylinder_x: str = setting("refuse", words("refuse", "allow"))
     c_clamp: tuple[int, ...] = setting((), m_codes("M10 M11"))
     c_clamp_shapes: tuple[int, ...] = setting((), m_codes("M12"))
+    on_abort_command: str = setting("", ValueRule("a block", str))
     live_spindle: str = setting("", words(*"01234567"))
 
     def tolerance(self, millimetres: float) -> float:

@@ -8,7 +8,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from g12.errors import BlockRefusal
 from g12.host import kinematics_switch
 from g12.tools.preview.tracer import Tracer
 from support.polar_programs import FIRST, feed_moves, refused, section, texts
@@ -229,23 +228,6 @@ def test_a_file_that_does_not_stay_while_its_program_runs(lathe, tmp_path, act, 
     traced = lathe.trace(program)
     assert traced.error.text.endswith(f": {why}")
     assert [move.kind for move in traced.moves] == ["rapid"]
-
-
-def test_a_signal_on_an_acceleration_that_a_section_sets_is_named(monkeypatch):
-    pins = dict.fromkeys(kinematics_switch.ACCELERATION_PINS, 707.0)
-
-    def set_p(pin, value):
-        if pin == "ini.y.max_acceleration":
-            raise RuntimeError("set_p: connected")
-        pins[pin] = float(value)
-
-    monkeypatch.setattr(kinematics_switch.hal, "set_p", set_p)
-    monkeypatch.setattr(kinematics_switch.hal, "get_value", pins.get)
-    interp = SimpleNamespace(task=1)
-    with pytest.raises(BlockRefusal, match=r"G12\.1: ini\.y\.max_acceleration is connected"):
-        kinematics_switch.accelerate(interp, 0.5)
-    kinematics_switch.restore_accelerations(interp)  # as an abort does
-    assert set(pins.values()) == {707.0}
 
 
 def test_the_line_after_an_abort_ends_no_request_in_a_preview(monkeypatch):

@@ -19,6 +19,5 @@ def with_clamp(name, folder, **settings):
         "RS274NGC": {
             "REMAP": [*ini.all("RS274NGC", "REMAP"), *own],
             "SUBROUTINE_PATH": f"{ini.get('RS274NGC', 'SUBROUTINE_PATH')}:{folder}",
-            "ON_ABORT_COMMAND": "G13.1 P",
         },
     }

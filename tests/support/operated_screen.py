@@ -25,6 +25,11 @@ class OperatedPanel(Panel):
         self._do(self._command.state, linuxcnc.STATE_ESTOP)
         self.wait(lambda stat: not stat.enabled, GRACE, "e-stop")
 
+    def off(self):
+        """Switch the machine off."""
+        self._do(self._command.state, linuxcnc.STATE_OFF)
+        self.wait(lambda stat: not stat.enabled, GRACE, "machine off")
+
     def manual(self):
         self._mode(linuxcnc.MODE_MANUAL)
 
@@ -107,6 +112,11 @@ class OperatedScreen(RecordingScreen):
         signal = signals_by_pin().get(pin)
         text = str(int(value)) if isinstance(value, bool) else str(value)
         hal.set_s(signal, text) if signal else hal.set_p(pin, text)
+
+    def connect(self, pin):
+        """Connect a pin of a float to a signal of its own."""
+        hal.new_sig(f"{pin}-net", hal.HAL_FLOAT)
+        hal.connect(pin, f"{pin}-net")
 
     def sample(self):
         self.sampler.start()

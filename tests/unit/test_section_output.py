@@ -6,6 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from g12.errors import Refusal
+from g12.host import borrowed
+from g12.host.interp import PackageState
 from g12.host.section.output import STOP_HERE, Action, PathControl, SectionOutput
 from g12.moves.steps import BlockMoves
 from g12.section.modes import SectionModes
@@ -31,10 +33,14 @@ class Interpreter:
     """
 
     def __init__(self, tolerance=0.0, merging=0.0):
-        self.active_g_codes = [-1] * 11 + [640]
+        self.active_g_codes = [-1] * 11 + [640, -1, -1, 911, 80]
         self.active_settings = [0, 0, 0, tolerance, merging]
         self.feed_mode, self.c_axis_wrapped = 0, True
-        self.call_level, self.motion_mode, self.distance_mode = 1, 0, "G91"
+        self.call_level, self.motion_mode, self.distance_mode = 1, 0, 0
+        self.ijk_distance_mode, self.plane, self.active_spindle, self.length_units = 1, 3, -1, 2
+        self.active_m_codes, self.task, self.feed_rate = [-1] * 9, 0, 100.0
+        self.g12_state = PackageState()
+        self.g12_state.borrowed.append(borrowed.modes_in_force(self))
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
         self.done, self.levels, self.begins = [], [], None
@@ -53,6 +59,10 @@ class Interpreter:
         self.levels.append(self.call_level)
         if self.done[-1].startswith("G6"):
             self._path(self.done[-1])
+        if self.done[-1] in ("G90", "G91"):
+            self.distance_mode = int(self.done[-1] == "G91")
+        if self.done[-1] in ("G94", "G95"):
+            self.feed_mode = 2 * (self.done[-1] == "G95")
         return self.status if text is None else 0
 
     def _path(self, text):
@@ -83,7 +93,7 @@ class Canon:
 
 def emission_of(interp):
     setup = SimpleNamespace(tolerance=0.005, words=SimpleNamespace(beside=0.0))
-    return SectionOutput(interp, START, setup, absolute="G90", canon=Canon(interp))
+    return SectionOutput(interp, START, setup, canon=Canon(interp))
 
 
 def handed_over(steps, interp=None, exact=()):
@@ -97,7 +107,7 @@ def run(stop=False, line=7, axes="XC", segments=LINE):
 
 
 SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
-RELEASED = ["F100", "G90"]
+RELEASED = ["F100"]
 
 
 def test_the_section_begins_with_a_stop_and_its_second_part_does_not():
@@ -116,7 +126,7 @@ def test_a_programmed_tolerance_is_kept():
 @pytest.mark.parametrize(("tolerance", "blended"), [(0.1, [SMOOTH, "G64P0.1Q0"]), (0.001, [])])
 def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance, blended):
     interp = Interpreter(tolerance=tolerance)
-    path = PathControl(interp, 0.0025, 0.0254)
+    path = PathControl(interp, borrowed.saved_modes(interp), 0.0025, 0.0254)
     for turning in (True, False, True):
         path.inside(turning)
     assert interp.done == blended
@@ -129,10 +139,10 @@ def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance
 def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, merging, blended):
     """Between segments of C it may stay: P does nothing there."""
     interp = Interpreter(tolerance=tolerance, merging=merging)
-    path = PathControl(interp, 0.0025, 0.0254)
+    path = PathControl(interp, borrowed.saved_modes(interp), 0.0025, 0.0254)
     path.on_face()
     assert interp.done == ([blended] if blended else [])
-    path.restore()
+    borrowed.restore(interp, borrowed.saved_modes(interp))
     assert interp.active_settings[3:] == [tolerance, merging]
 
 
@@ -156,12 +166,13 @@ def test_g9_is_an_exact_stop_at_the_end_of_its_block():
 def test_feed_per_revolution_is_left_and_comes_back_with_each_part(feed_mode, first):
     interp = Interpreter()
     interp.feed_mode = feed_mode
+    borrowed.renew(interp, borrowed.modes_in_force(interp))
     emission = emission_of(interp)
     modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
     for _ in range(2):
         assert list(emission.run([run()], modes, ())) == []
-    part = [SMOOTH, FIRST, *NEXT, OLD, "G95F0.2", "G91"]
-    assert interp.done == [*first, *part, "G94", *part]
+    part = [SMOOTH, FIRST, *NEXT, OLD, "G95", "G91", "F0.2"]
+    assert interp.done == [*first, *part, "G90", "G94", *part]
     assert interp.motion_mode == 30
 
 

@@ -111,17 +111,32 @@ class CallFrame:
         saved until the handler waits again or ends. (Without it: `test_in_mdi` in
         tests/sim/test_shapes.py, with kinematics.)
         """
+        self._mark()
+        if self.interp.execute(text):
+            yield from self._wait()
+        self._unmark()
+
+    def let_linuxcnc_in(self) -> Iterator[int]:
+        """Yield until all that is queued is done: only then does LinuxCNC obey an abort."""
+        self._mark()
+        yield from self._wait()
+        self._unmark()
+
+    def _mark(self) -> None:
+        self.interp.read(f"O <{self._remap.remap_py}> call")
+        self.interp.blocks[0].call_type = CALLED_AS_REMAP
+
+    def _wait(self) -> Iterator[int]:
         interp = self.interp
         level, remap_level = interp.call_level, interp.remap_level
-        interp.read(f"O <{self._remap.remap_py}> call")
-        interp.blocks[0].call_type = CALLED_AS_REMAP
-        if interp.execute(text):
-            interp.call_level, interp.remap_level = self.level, self.remap_level
-            interp.mdi_interrupt = self._interrupted
-            yield INTERP_EXECUTE_FINISH
-            self._interrupted, interp.mdi_interrupt = interp.mdi_interrupt, False
-            interp.call_level, interp.remap_level = level, remap_level
-        interp.blocks[0].o_type, interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
+        interp.call_level, interp.remap_level = self.level, self.remap_level
+        interp.mdi_interrupt = self._interrupted
+        yield INTERP_EXECUTE_FINISH
+        self._interrupted, interp.mdi_interrupt = interp.mdi_interrupt, False
+        interp.call_level, interp.remap_level = level, remap_level
+
+    def _unmark(self) -> None:
+        self.interp.blocks[0].o_type, self.interp.blocks[0].call_type = NO_O_WORD, NOT_CALLED
 
     def _renumber(self, line: int) -> None:
         """Make the remapped block end on ``line``.

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from typing import Any, TypeAlias
 
+from g12.lengths import MM_PER_INCH
 from g12.request.context import XY, XZ, YZ
 
 Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
@@ -12,6 +13,9 @@ ParsedBlock: TypeAlias = Any  # interpreter.block, as it was parsed
 CanonModule: TypeAlias = Any  # the module emccanon, or a test's substitute
 ToolTableEntry: TypeAlias = Any  # of the tool table
 
+G7 = 70
+DIAMETER_ACTIVE = 15  # index of G7 and G8 in active_g_codes
+INCH_UNITS = 1  # length_units
 PER_MINUTE, INVERSE_TIME, PER_REVOLUTION = 0, 1, 2  # feed_mode
 PLANE_CODES = {1: XY, 2: YZ, 3: XZ}  # plane
 MOVE_WORDS = "ABCDHIJKRUVWXYZ"
@@ -27,25 +31,25 @@ def words_in(block: ParsedBlock, letters: str) -> dict[str, float]:
     return {letter: getattr(block, value) for letter, flag, value in fields if getattr(block, flag)}
 
 
+def millimetres_per_unit(interp: Interp) -> float:
+    """Return the length of the program's unit."""
+    return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
+
+
 class PackageState:
     """The package's state of one interpreter, stored on the interpreter object.
 
-    ``modes`` are those that a cycle has to restore, ``feed`` the F before a shape, ``path`` the
-    path control and ``spindle`` the number of the spindle in use before holes. ``shown`` are the
-    messages that are shown once for each program. ``source`` is the file of the last section.
-    ``modes_before_face`` is the block that restores them, ``by_hand`` the G12.1 in MDI,
-    ``accelerations`` those of X and Y in the INI.
+    ``borrowed`` are the values to restore (`host.borrowed`). ``shown`` are the messages that are
+    shown once for each program. ``source`` is the file of the last section, ``by_hand`` the G12.1
+    in MDI.
     """
 
     def __init__(self) -> None:
-        self.modes: tuple[int, int, int, bool] = (0, 0, 0, False)
-        self.feed, self.path, self.spindle = 0.0, "", 0
+        self.borrowed: list[Any] = []
         self.shown: set[object] = set()
         self.texts: dict[str, str] = {}
         self.source: Any = None
-        self.modes_before_face = ""
         self.by_hand: Any = None
-        self.accelerations: list[float] = []
 
 
 def state_of(interp: Interp) -> PackageState:

@@ -11,25 +11,22 @@ at each move. polar_xzc gets the highest feed override and enforces it by adapti
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from enum import IntEnum
 
 import hal
 
-from g12.errors import BlockRefusal, number
-from g12.host.interp import PLANE_CODES, Interp, state_of
+from g12.errors import Refusal, number
+from g12.host.interp import Interp
 from g12.host.machine import MACHINE
-from g12.host.program_lines import without_line
 from g12.machine_ini import ACCELERATION_PINS
 from g12.section.modes import decimal
 
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
 REQUEST_PIN, END_PIN = "polar-xzc.request", "polar-xzc.end-request"  # this is the newest
-ADAPTIVE_FEED = 52  # active_m_codes
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
 INPUT_RESULT, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET_MM = 1e-4
-IJK_MODES = {901: "G90.1", 911: "G91.1"}  # active_g_codes
 ON_THE_FACE = "G17G91.1M52P1"
 OLDER = "the module polar_xzc is older than this package: build it again, make kinematics"
 
@@ -47,42 +44,32 @@ def face_in_force(interp: Interp) -> bool:
     return MACHINE.switches_kinematics and interp.task and MACHINE.digital_input(FACE_INPUT)
 
 
-def modes_before_face(interp: Interp) -> str:
-    """Return the block that restores the modes that `ON_THE_FACE` changes."""
-    active = without_line(interp.active_g_codes)
-    centres = next(IJK_MODES[code] for code in active if code in IJK_MODES)
-    adaptive = int(ADAPTIVE_FEED in without_line(interp.active_m_codes))
-    return f"{PLANE_CODES[interp.plane]}{centres}M52P{adaptive}"
+def accelerations(interp: Interp) -> tuple[float, ...]:
+    """Return the accelerations of X and Y in HAL, none for a machine without the face."""
+    on_machine = MACHINE.switches_kinematics and interp.task
+    return tuple(hal.get_value(pin) for pin in ACCELERATION_PINS) if on_machine else ()
 
 
-def accelerate(interp: Interp, share: float) -> None:
-    """Set X's and Y's acceleration to a share of the INI's, from the next wait on.
+def set_accelerations(values: Sequence[float]) -> None:
+    """Set the accelerations of X and Y, from the next wait on.
 
-    Refuses a pin that is connected to a signal before the first one is changed.
+    A pin that has its value already may be one that cannot be set: see `refusal`.
     """
-    if not interp.task:
-        return
-    of_ini = state_of(interp).accelerations
-    if not of_ini:
-        of_ini = [hal.get_value(pin) for pin in ACCELERATION_PINS]
-        for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
-            _try_to_set(pin, acceleration)
-        state_of(interp).accelerations = of_ini
-    for pin, acceleration in zip(ACCELERATION_PINS, of_ini):
-        hal.set_p(pin, repr(share * acceleration))
+    for pin, acceleration in zip(ACCELERATION_PINS, values):
+        if hal.get_value(pin) != acceleration:
+            hal.set_p(pin, repr(acceleration))
 
 
-def _try_to_set(pin: str, acceleration: float) -> None:
-    try:
-        hal.set_p(pin, repr(acceleration))
-    except RuntimeError:
-        rule = f"{pin} is connected to a HAL signal: G12.1 has to set it, take it off that net"
-        raise BlockRefusal("G12.1", rule) from None
-
-
-def restore_accelerations(interp: Interp) -> None:
-    for pin, acceleration in zip(ACCELERATION_PINS, state_of(interp).accelerations):
-        hal.set_p(pin, repr(acceleration))
+def refusal(values: Sequence[float]) -> str:
+    """Return why this machine cannot switch, "" if it can; ``values`` are its accelerations."""
+    if is_older():
+        return OLDER
+    for pin, acceleration in zip(ACCELERATION_PINS, values):
+        try:
+            hal.set_p(pin, repr(acceleration))
+        except RuntimeError:
+            return f"{pin} is connected to a HAL signal: take it off that net, a section sets it"
+    return ""
 
 
 def end_request(interp: Interp) -> None:
@@ -92,6 +79,18 @@ def end_request(interp: Interp) -> None:
     """
     if interp.task and not is_older():
         hal.set_p(END_PIN, "1")
+
+
+def leave(interp: Interp) -> None:
+    """Switch back from the face where no wait is possible: after an abort or an error.
+
+    The position that LinuxCNC takes then is the face's. `Interp::read_inputs` (rs274ngc_pre.cc)
+    takes the machine's new position when it reads the next line, as after a tool change. The
+    request ends in HAL: LinuxCNC drops what an abort queues when the mode changes before the axes
+    are at rest.
+    """
+    end_request(interp)
+    interp.toolchange_flag = True
 
 
 def is_requested() -> bool:
@@ -112,18 +111,22 @@ def to_face(
     interp: Interp,
     machine_unit: float,
     request: FaceRequest,
+    refuse: Callable[[str], Refusal],
+    of_ini: Sequence[float],
     share: float = 1.0,
     override: float = 1.0,
 ) -> Iterator[str]:
     """Switch to the face; yield the block to wait for.
 
-    ``machine_unit`` is one in program units, ``share`` that of the INI's accelerations,
-    ``override`` the highest feed override.
+    ``machine_unit`` is one in program units, ``of_ini`` are the accelerations of X and Y, ``share``
+    what of it the face has, ``override`` the highest feed override. Refuses a machine that cannot
+    switch before anything is changed.
     """
-    if interp.task and is_older():
-        raise BlockRefusal("G12.1", OLDER)
-    accelerate(interp, share)
     if interp.task:
+        wrong = refusal(of_ini)
+        if wrong:
+            raise refuse(wrong)
+        set_accelerations([share * acceleration for acceleration in of_ini])
         hal.set_p(OVERRIDE_PIN, repr(override))
         hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
@@ -133,11 +136,11 @@ def to_face(
     yield f"M66P{FACE_INPUT}L3Q{decimal(MACHINE.settings.polar_switch_time)}"
 
 
-def to_axes(interp: Interp) -> Iterator[str]:
-    """Switch back to X, Z and C; yield the block to wait for."""
+def to_axes(interp: Interp, of_ini: Sequence[float]) -> Iterator[str]:
+    """Switch back to X, Z and C, with the INI's accelerations; yield the block to wait for."""
     _request(interp, FaceRequest.OFF)
     yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
-    restore_accelerations(interp)  # only now, after the wait: LinuxCNC reads ahead
+    set_accelerations(of_ini)  # only now, after the wait: LinuxCNC reads ahead
 
 
 def _request(interp: Interp, request: FaceRequest) -> None:

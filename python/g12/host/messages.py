@@ -15,6 +15,7 @@ import linuxcnc
 from interpreter import INTERP_ERROR, INTERP_OK
 
 from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
+from g12.host import borrowed
 from g12.host.interp import Interp, state_of
 from g12.host.program_lines import line_at, running_file
 
@@ -35,12 +36,17 @@ def refuse_block(interp: Interp, error: Exception) -> int:
     """
     if isinstance(error, BlockRefusal):
         error = error.at(line_of_refusal(interp, error))
-    if isinstance(error, Refusal):
-        interp.set_errormsg(error.message)
-    elif not isinstance(error, SystemError):
-        sys.excepthook(type(error), error, error.__traceback__)
-        interp.set_errormsg(fault_text(error)[:LONGEST_MESSAGE])
+    if not isinstance(error, SystemError):
+        interp.set_errormsg(shown_text(error))
     return INTERP_ERROR
+
+
+def shown_text(error: Exception) -> str:
+    """Return what the operator reads of an error; a fault of the package is also logged."""
+    if isinstance(error, Refusal):
+        return error.message
+    sys.excepthook(type(error), error, error.__traceback__)
+    return fault_text(error)[:LONGEST_MESSAGE]
 
 
 def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
@@ -56,7 +62,8 @@ def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
     else:
         frame = interp.sub_context[interp.call_level - 2]
         filename, offset = frame.filename, frame.position - 1
-    return line_at(interp, filename, offset, in_program=not mdi)
+    main = filename if interp.call_level < 2 else interp.sub_context[0].filename
+    return line_at(filename, offset, own=not mdi and filename == main)
 
 
 def file_of_block(interp: Interp) -> str:
@@ -121,6 +128,17 @@ def forget_return(interp: Interp) -> None:
 def code_of_block(interp: Interp) -> str:
     """Return the remapped code as the operator wrote it: ``G12``, ``G12.2``."""
     return interp.blocks[interp.remap_level].executing_remap.name.upper()
+
+
+def settle(interp: Interp) -> None:
+    """Restore what an interrupted code left, as far as that is certain, and report the rest."""
+    left = borrowed.settle_interrupted(interp)
+    if left:
+        code = code_of_block(interp)
+        message(
+            f"{code}: a code before it was interrupted, and no ON_ABORT_COMMAND restored {left}:"
+            " what is in force now stays"
+        )
 
 
 def message(text: str) -> None:

@@ -5,14 +5,9 @@ from __future__ import annotations
 
 import emccanon
 
-from g12.host.interp import Interp, ToolTableEntry
-from g12.lengths import MM_PER_INCH
+from g12.host.interp import DIAMETER_ACTIVE, G7, Interp, ToolTableEntry, millimetres_per_unit
 from g12.request.context import Tool
 from g12.section.block_rules import NO_CODE, GGroup
-
-G7 = 70
-DIAMETER_ACTIVE = 15  # index of G7 and G8 in active_g_codes
-INCH_UNITS = 1  # length_units
 
 
 def program_units_per_machine_unit(interp: Interp) -> float:
@@ -22,10 +17,6 @@ def program_units_per_machine_unit(interp: Interp) -> float:
 
 def millimetres_per_machine_unit() -> float:
     return 1 / emccanon.GET_EXTERNAL_LENGTH_UNITS()
-
-
-def millimetres_per_unit(interp: Interp) -> float:
-    return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
 
 
 def tool_of_entry(interp: Interp, entry: ToolTableEntry) -> Tool:

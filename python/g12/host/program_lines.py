@@ -75,18 +75,13 @@ class LineOfFile(int):
         return f"{int(self)} of {self.file:.80}"
 
 
-def line_at(interp: Interp, filename: str, offset: int, *, in_program: bool) -> int | None:
-    """Return the line at a byte of a file; it names the file if that is not the program's own.
-
-    ``in_program``: a program runs, not MDI.
-    """
+def line_at(filename: str, offset: int, *, own: bool) -> int | None:
+    """Return the line at a byte of a file; it names the file if that is not the program's own."""
     try:
         with open(filename, "rb") as file:
             line = file.read(max(0, offset)).count(b"\n") + 1
     except OSError:  # an initial block of the INI is in no file
         return None
-    # at the first level the block is the program's, whichever file is open
-    own = in_program and (interp.call_level < 2 or filename == running_file(interp))
     return line if own else LineOfFile(line, os.path.basename(filename))
 
 

@@ -14,21 +14,19 @@ from interpreter import MODE_INCREMENTAL
 from g12.cycles.plan import EventPlanes
 from g12.host.commanded import commanded_of, compensates_above, place_of_block
 from g12.host.interp import (
+    INCH_UNITS,
     INVERSE_TIME,
     PER_REVOLUTION,
     PLANE_CODES,
     Interp,
     ParsedBlock,
-    state_of,
+    millimetres_per_unit,
     words_in,
 )
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block
 from g12.host.modes import (
-    INCH_UNITS,
-    diameter_mode,
     millimetres_per_machine_unit,
-    millimetres_per_unit,
     program_units_per_machine_unit,
     spindle_speed,
     tool_in_spindle,
@@ -210,22 +208,3 @@ def machine_frame(interp: Interp) -> MachineFrame:
         unit=1 / program_units_per_machine_unit(interp),
         millimetres=millimetres_per_machine_unit(),
     )
-
-
-def note_modes(interp: Interp) -> None:
-    state = state_of(interp)
-    state.feed = interp.feed_rate
-    state.modes = (
-        interp.motion_mode,
-        interp.distance_mode,
-        interp.ijk_distance_mode,
-        diameter_mode(interp),
-    )
-
-
-def restore_modes(interp: Interp) -> None:
-    """Restore the modes before the block: motion, G90/G91, G90.1/G91.1, G7/G8."""
-    motion, distance, centre, diameter = state_of(interp).modes
-    interp.motion_mode = motion
-    # after the assignment a block is needed for LinuxCNC to show the restored codes as active
-    interp.execute(f"G{90 + distance} G{90 + centre}.1 G{7 if diameter else 8}")

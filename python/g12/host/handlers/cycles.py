@@ -11,7 +11,7 @@ from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import CyclePlan
-from g12.host import messages, reported
+from g12.host import borrowed, messages, reported
 from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
@@ -34,7 +34,7 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     """
     cycle_state.stay_within_limits(interp, words, plan.extent)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
-    cycle_state.note_modes(interp)
+    borrowed.begin(interp)
     tool = words.context.spindle_tool
     if plan.other_cutter and tool:
         messages.message_once(interp, tool.number, plan.other_cutter)
@@ -86,7 +86,9 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
         words.check_known("no words inside o<circle_mill>")
         words = Words("circle_mill", circle_mill.entries_by_letter(entries), words.context)
         plan = circle_mill.plan_call(words, planes)
-    return hand_over(interp, words, plan)
+    status = hand_over(interp, words, plan)
+    borrowed.renew(interp, borrowed.saved_modes(interp)._replace(feed=plan.locals["feed"]))
+    return status
 
 
 def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
@@ -94,6 +96,7 @@ def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
 
     @messages.handler
     def prolog_of_code(self, **words):
+        messages.settle(self)
         return prepare(self, argument)
 
     return prolog_of_code
@@ -109,6 +112,6 @@ circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, 
 
 @messages.handler
 def cycle_done(self, **words):
-    cycle_state.restore_modes(self)
+    borrowed.give_back(self)
     reported.end_cut(self)
     return INTERP_OK

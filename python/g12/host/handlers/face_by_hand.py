@@ -10,13 +10,16 @@ the face.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import NamedTuple
 
 from g12.errors import BlockRefusal
-from g12.host import kinematics_switch, messages
+from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp, state_of
+from g12.host.machine import MACHINE
 from g12.host.program_lines import ProgramLines, read_source
+from g12.section.codes import code_of_handler
 from g12.section.start import SectionStart
 
 MDI_LINE = 0  # line number of the following moves, by which polar_xzc identifies them
@@ -29,11 +32,13 @@ COMPENSATION_OFF, COMPENSATED = 0, (1, 2)  # cutter_comp_side
 class ByHand(NamedTuple):
     """The state of G12.1 in MDI, until G13.1.
 
-    ``code`` is G12.1 as typed, ``radius`` the last commanded compensation radius.
+    ``code`` is G12.1 as typed, ``radius`` the last commanded compensation radius, ``saved`` the
+    modes before it.
     """
 
     code: str
     radius: float
+    saved: borrowed.Saved
     ended: bool = False  # by an abort or an error
 
 
@@ -42,9 +47,13 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
     code = start.location.code
     if kinematics_switch.y_offset(interp):
         raise BlockRefusal(code, "needs an offset of 0 in Y in MDI: its Y0 is the spindle's axis")
-    state_of(interp).modes_before_face = kinematics_switch.modes_before_face(interp)
+    saved = borrowed.modes_in_force(interp)
     blocks = kinematics_switch.to_face(
-        interp, start.machine_unit, kinematics_switch.FaceRequest.BY_HAND
+        interp,
+        start.machine_unit,
+        kinematics_switch.FaceRequest.BY_HAND,
+        partial(BlockRefusal, code),
+        saved.accelerations,
     )
     yield from _switch(interp, code, CallFrame(interp, messages.NO_FILE), MDI_LINE, blocks)
     wrong = kinematics_switch.other_offset(interp, beside, start.millimetre)
@@ -52,7 +61,7 @@ def switch_on(interp: Interp, start: SectionStart, beside: float) -> Iterator[in
         yield from switch_off(interp)
         raise BlockRefusal(code, wrong)
     interp.execute(kinematics_switch.ON_THE_FACE)
-    state_of(interp).by_hand = ByHand(code, interp.cutter_comp_radius)
+    state_of(interp).by_hand = ByHand(code, interp.cutter_comp_radius, saved)
     _lock(interp)
 
 
@@ -61,36 +70,29 @@ def switch_off(interp: Interp) -> Iterator[int]:
     code = messages.code_of_block(interp)
     if state_of(interp).by_hand and interp.cutter_comp_side in COMPENSATED:
         raise BlockRefusal(code, "needs G40 before it")
-    _unlock(interp)
-    restore_modes_before_face(interp)
+    by_hand = _unlock(interp)
+    of_ini = by_hand.saved.accelerations if by_hand else ()
+    _restore(interp, by_hand)
     if kinematics_switch.is_requested() or kinematics_switch.face_in_force(interp):
         mdi = messages.in_mdi(interp)
         home = read_source(interp.filename) if not mdi else None
         frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
         line = ProgramLines(interp, home).line if home else MDI_LINE
-        yield from _switch(interp, code, frame, line, kinematics_switch.to_axes(interp))
+        yield from _switch(interp, code, frame, line, kinematics_switch.to_axes(interp, of_ini))
 
 
 def abort(interp: Interp) -> None:
-    """Request the switch back after an abort, when no wait is possible.
-
-    The position that LinuxCNC took at the abort is the face's. `Interp::read_inputs`
-    (rs274ngc_pre.cc) takes the machine's new position when it reads the next line, as after a tool
-    change. The request ends in HAL: LinuxCNC drops what an abort queues when the mode changes
-    before the axes stand.
-    """
+    """Switch back after an abort."""
     by_hand = _unlock(interp)
-    kinematics_switch.restore_accelerations(interp)
-    kinematics_switch.end_request(interp)
     if by_hand:
         state_of(interp).by_hand = by_hand._replace(ended=True)
     if by_hand and not by_hand.ended:
-        on, off = by_hand.code, messages.code_of_block(interp)
+        _restore(interp, by_hand)
+        on, off = by_hand.code, code_of_handler(MACHINE.remaps.values(), "polar_off")
         messages.message(
-            f"{on} is off: nothing moves by program or MDI until {off} or {on} is typed"
+            f"{on} is off: nothing moves by program or MDI until G{off:g} or {on} is typed"
         )
-    restore_modes_before_face(interp)
-    interp.toolchange_flag = True
+    kinematics_switch.leave(interp)
 
 
 def _lock(interp: Interp) -> None:
@@ -113,11 +115,10 @@ def _unlock(interp: Interp) -> ByHand | None:
     return by_hand
 
 
-def restore_modes_before_face(interp: Interp) -> None:
-    state = state_of(interp)
-    block, state.modes_before_face = state.modes_before_face, ""
-    if block:
-        interp.execute(block)
+def _restore(interp: Interp, by_hand: ByHand | None) -> None:
+    """Restore the modes before the face that no line of MDI on it can change."""
+    if by_hand and not by_hand.ended:
+        borrowed.restore_before_face(interp, by_hand.saved)
 
 
 def _switch(

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from g12.errors import BlockRefusal, Refusal
-from g12.host import messages, modes
-from g12.host.handlers import face_by_hand
+from g12.host import borrowed, messages
+from g12.host.handlers import aborts, face_by_hand
 from g12.host.interp import MOVE_WORDS, Interp, words_in
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
@@ -52,28 +52,22 @@ def polar_on(self, **words) -> Iterator[int]:
 def polar_off(self, **words) -> Iterator[int]:
     """End the face of a G12.1 in MDI: the handler of G13.1 outside a section.
 
-    Otherwise it is a safety line and does nothing. With a P word it is LinuxCNC's
-    ON_ABORT_COMMAND, to which LinuxCNC appends the reason.
+    Otherwise it is a safety line. Typed in MDI it restores what an interrupted section left where
+    no ON_ABORT_COMMAND did. With a P word it is itself one, of an earlier version of the package:
+    the word is the reason of the abort.
     """
     block = self.blocks[self.remap_level]
-    after_aborts = MACHINE.face or MACHINE.settings.c_clamp
-    if words_in(block, MOVE_WORDS) or (block.p_flag and not after_aborts):
+    if words_in(block, MOVE_WORDS):
         raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
     if block.p_flag:
-        after_abort(self)
-    elif MACHINE.switches_kinematics and self.task:
+        aborts.restore_all(self, round(block.p_number))
+        aborts.after_abort_on_face(self)
+        return
+    if is_typed(self):
+        borrowed.restore_left(self)
+    messages.settle(self)
+    if MACHINE.switches_kinematics and self.task:
         yield from face_by_hand.switch_off(self)
-
-
-def after_abort(interp: Interp) -> None:
-    """Open the clamp of C, and switch back from the face, after an abort.
-
-    In this order: the switch ends with a flag for the next line that LinuxCNC reads.
-    """
-    if MACHINE.settings.c_clamp:
-        modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
-    if MACHINE.face:
-        face_by_hand.abort(interp)
 
 
 def run_by_hand(interp: Interp) -> Iterator[int]:
@@ -110,4 +104,4 @@ def _setup_of_shape(start: SectionStart) -> SectionSetup[PolarSettings]:
     return setup._replace(words=setup.words._replace(third_with_others=True))
 
 
-SHAPE_SECTION = POLAR_SECTION._replace(setup=_setup_of_shape)
+SHAPE_SECTION = POLAR_SECTION._replace(setup=_setup_of_shape, in_shape=True)

@@ -10,22 +10,21 @@ from __future__ import annotations
 from interpreter import INTERP_OK
 
 from g12.errors import BlockRefusal
-from g12.host import messages, modes, reported
+from g12.host import borrowed, messages, modes, reported
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.handlers.polar import polar_section_setup
-from g12.host.interp import Interp, state_of
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section.kind import check_clamp, check_ini
-from g12.host.section.output import STOP_HERE, path_control
+from g12.host.section.output import STOP_HERE
 from g12.host.section.start import is_alone, start_of_section
 from g12.moves.setup import SectionSetup
 from g12.moves.steps import BlockMoves
 from g12.polar.plan import POLE_SHARE, PolarSettings
 from g12.section.codes import code_of_handler
 from g12.section.line import BlockLocation
-from g12.section.modes import decimal
 from g12.section.start import SectionStart
 from g12.shapes import holes, polygon, round_pocket, slot
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
@@ -51,7 +50,8 @@ def polar_shape(self, **words):
     Holes run in G61 as drilling cycles do. With blended rapids C would turn before the tool is out
     of its hole, or before the move that precedes the call has ended.
     """
-    level, state = self.call_level - 1, state_of(self)  # the sub's
+    messages.settle(self)
+    level = self.call_level - 1  # the sub's
     name = shape_at_work(self)
     if face_in_force(self):
         raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
@@ -63,9 +63,7 @@ def polar_shape(self, **words):
     plan = prepare(self, entries, start, setup)
     set_locals_at(self, level, plan.locals)
     reported.begin_cut(self, entries, plan.cut)
-    cycle_state.note_modes(self)
-    if name in HOLE_CALLS:
-        state.path, state.spindle = path_control(self), self.active_spindle
+    borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
     return INTERP_OK
 
@@ -114,14 +112,9 @@ def hole_machine(
 
 @messages.handler
 def polar_shape_done(self, **words):
-    """Restore the modes before the shape, F among them: G13.4."""
+    """Restore the modes before the shape, F and the spindle in use among them: G13.4."""
     shape_at_work(self)
-    cycle_state.restore_modes(self)
-    state = state_of(self)
-    path, state.path = state.path, ""
-    if path:  # after a tap, feeds per revolution would refer to the spindle of its $ word
-        self.active_spindle = state.spindle
-    self.execute(f"{path}F{decimal(state.feed)}")
+    borrowed.give_back(self)
     reported.end_cut(self)
     return INTERP_OK
 

@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterator
 from typing import Generic, NamedTuple
 
 import emccanon
-from interpreter import MODE_ABSOLUTE
 
 from g12.compensation.contour import Contour
 from g12.errors import BlockRefusal, Refusal
-from g12.host import messages, modes
+from g12.host import borrowed, messages, modes
 from g12.host.call_frame import CallFrame
 from g12.host.interp import Interp, state_of
 from g12.host.kinematics_switch import face_in_force
@@ -40,7 +39,8 @@ class SectionKind(NamedTuple, Generic[Planning]):
 
     ``letters`` are those that the block that switches on may have. ``setup`` returns a section's
     settings, or refuses to begin it, ``codes`` its codes for the one that began it. ``plan`` turns
-    the contour into moves. ``surface`` is the radius of its cylinder, 0 on the face.
+    the contour into moves. ``surface`` is the radius of its cylinder, 0 on the face. ``in_shape``:
+    a shape's sub has it.
     """
 
     letters: str
@@ -48,6 +48,7 @@ class SectionKind(NamedTuple, Generic[Planning]):
     codes: Callable[[str], SectionCodes]
     plan: Callable[[Contour, SectionSetup[Planning], SectionStart], SectionPlan]
     surface: Callable[[Planning], float] = lambda _: 0.0
+    in_shape: bool = False
 
 
 def check_ini() -> None:
@@ -73,6 +74,8 @@ def following_lines(interp: Interp) -> ProgramLines:
 
 def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
     """Run the section that begins with the block being remapped."""
+    if not kind.in_shape:
+        messages.settle(interp)
     program, running = following_lines(interp), running_file(interp)
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
@@ -82,13 +85,15 @@ def run_section(interp: Interp, kind: SectionKind[Planning]) -> Iterator[int]:
         if not kind.letters:  # on a cylinder the program itself commands the turns
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
+        if isinstance(error, BlockRefusal):
+            error = error.at(program.shown_line)
         line = line_named(error)
         called = program.source is not program.home and not line
         frame.unwind(line or program.line, called=called, continue_at=program.next_at_home)
         if isinstance(error, Refusal) and line and program.home.filename != running:
             file = os.path.basename(program.home.filename)
             raise with_line(error, LineOfFile(line, file)) from None
-        raise
+        raise error
 
 
 def report_turns(interp: Interp, turned: float) -> None:
@@ -118,7 +123,8 @@ def _section(
         raise start.location.refuse("the face is on already, by hand: G13.1 first")
     setup = kind.setup(start)
     check_clamp(start.location.refuse)
-    output = SectionOutput(interp, start, setup, absolute=MODE_ABSOLUTE, canon=emccanon)
+    borrowed.begin(interp)
+    output = SectionOutput(interp, start, setup, canon=emccanon)
     return Section(
         kind.codes(start.location.code),
         setup,

@@ -2,9 +2,10 @@
 """Execution of a planned section: its moves and actions, in order.
 
 The interpreter executes segments in G90 G94 with C unwrapped, blended in G64.
-`SectionOutput.release` restores the modes that the program commanded, wherever the program can read
-them, or the machine waits. The move before the section would be blended into its first segment: a
-G4 P0 stops it. (Also under G61: a move ends by the path control in force at that move.)
+`SectionOutput.release` restores the modes that the program commanded (`g12.host.borrowed`),
+wherever the program can read them, or the machine waits. The move before the section would be
+blended into its first segment: a G4 P0 stops it. (Also under G61: a move ends by the path control
+in force at that move.)
 
 A G4 P0 also stops a segment that another one is blended into. While two segments that turn C are
 blended, LinuxCNC (2.9.0~pre1, 2.9.4, 2.10) brakes the first with half of the acceleration and
@@ -22,8 +23,9 @@ from typing import Any, NamedTuple
 
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
-from g12.host import kinematics_switch
-from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp, state_of
+from g12.host import borrowed, kinematics_switch
+from g12.host.borrowed import Saved
+from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp
 from g12.host.program_lines import error_text
 from g12.moves.feed import Segment
 from g12.moves.setup import SectionSetup
@@ -34,9 +36,6 @@ from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes, decimal
 from g12.section.start import SectionStart
 
-PATH_ACTIVE = 11  # index into active_g_codes
-G64 = 640
-TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
@@ -67,17 +66,6 @@ class Action(NamedTuple):
 PlanStep = BlockMoves | FaceMove | FaceSwitch | Action  # of a plan
 
 
-def tolerances(settings: Sequence[float]) -> str:
-    """Return the block that commands G64 with the tolerances of the active settings."""
-    return f"G64P{decimal(settings[TOLERANCE])}Q{decimal(settings[MERGING])}"
-
-
-def path_control(interp: Interp) -> str:
-    """Return the block that commands the path control in force."""
-    code = interp.active_g_codes[PATH_ACTIVE]
-    return tolerances(interp.active_settings) if code == G64 else f"G{code / 10:g}"
-
-
 class PathControl:
     """Path control: G61, G61.1 or G64 as commanded by the program, and as a section needs it.
 
@@ -89,23 +77,21 @@ class PathControl:
     program units.
     """
 
-    def __init__(self, interp: Interp, blending: float, initial: float) -> None:
+    def __init__(self, interp: Interp, saved: Saved, blending: float, initial: float) -> None:
         self.interp, self.smooth, self._initial = interp, f"G64P{decimal(blending)}Q0", initial
         self._blending_of_section = blending
-        self.find()
+        self.find(saved)
 
-    def find(self) -> None:
+    def find(self, saved: Saved) -> None:
         """Take the path control in force as the commanded one."""
-        settings, code = self.interp.active_settings, self.interp.active_g_codes[PATH_ACTIVE]
-        self._tolerances, self._commanded = tolerances(settings), path_control(self.interp)
-        own_tolerance = code == G64 and settings[TOLERANCE] > 0
+        (tolerance, merging), self._commanded = saved.blending, saved.path_block
+        own_tolerance = self._commanded not in EXACT_PATHS and tolerance > 0
         self._within = self._commanded if own_tolerance else self.smooth
-        is_coarse = max(settings[TOLERANCE], settings[MERGING]) > self._blending_of_section
+        is_coarse = max(tolerance, merging) > self._blending_of_section
         self._without_c = self.smooth if is_coarse else self._within
-        is_initial = abs(settings[TOLERANCE] - self._initial) < SAME_TOLERANCE
-        is_initial = is_initial and not settings[MERGING]
+        is_initial = abs(tolerance - self._initial) < SAME_TOLERANCE and not merging
         self._on_face = self.smooth if is_initial else self._within
-        self._in_force, self._blending = self._commanded, self._tolerances
+        self._in_force = self._commanded
 
     def renew(self) -> None:
         """Set the next one even if it is unchanged: Run from line skips the block that set it."""
@@ -130,24 +116,14 @@ class PathControl:
             return self._commanded
         return EXACT_PATH if stop else ""
 
-    def restore(self) -> None:
-        if self._blending != self._tolerances:
-            self.set(self._tolerances)
-        self.set(self._commanded)
-
     def set(self, path: str) -> None:
-        """Set a path control; `restore` undoes it."""
         if path != self._in_force:
             self.interp.execute(path)
             self._in_force = path
-            self._blending = self._blending if path in EXACT_PATHS else path
 
 
 class SectionOutput:
-    """Hands steps to the interpreter.
-
-    ``absolute`` is the interpreter's name of G90, ``canon`` its canonical functions.
-    """
+    """Hands steps to the interpreter; ``canon`` are its canonical functions."""
 
     def __init__(
         self,
@@ -155,18 +131,16 @@ class SectionOutput:
         start: SectionStart,
         setup: SectionSetup[Any],
         *,
-        absolute: int,
         canon: CanonModule,
     ) -> None:
         self.interp, self.code = interp, start.location.code
-        self.x_factor, self.absolute, self.canon = 1.0 + start.diameter, absolute, canon
+        self.x_factor, self.canon = 1.0 + start.diameter, canon
         self.machine_unit, self.beside = start.machine_unit, setup.words.beside
         self.millimetre = start.millimetre
         initial = INITIAL_TOLERANCE * start.millimetre
-        self.path = PathControl(interp, setup.tolerance / 2, initial)
-        self._wrapped = interp.c_axis_wrapped
-        self._per_revolution = interp.feed_mode == PER_REVOLUTION
-        self._begun = False
+        saved = borrowed.saved_modes(interp)
+        self.path = PathControl(interp, saved, setup.tolerance / 2, initial)
+        self._begun = self.on_face = False
         self._flows = False  # the last segment is blended into the next
 
     def run(
@@ -190,14 +164,20 @@ class SectionOutput:
         self.release(modes)
 
     def release(self, modes: SectionModes) -> None:
-        """Restore the modes that the program commanded."""
+        """Restore the modes that the program commanded; on the face, what the face needs stays."""
         interp = self.interp
-        interp.c_axis_wrapped = self._wrapped
-        self.path.restore()
-        self._per_revolution = modes.per_revolution
-        interp.execute("G95" * modes.per_revolution + f"F{decimal(modes.feed)}")
-        interp.execute("G91" if modes.incremental else "G90")
-        interp.motion_mode = modes.motion
+        saved = borrowed.renew(interp, borrowed.saved_modes(interp).commanding(modes))
+        here = saved.on_the_face_of(borrowed.modes_in_force(interp)) if self.on_face else saved
+        borrowed.restore(interp, here)
+        self.path.find(saved)
+
+    def _go_on(self) -> None:
+        """Take the modes that an action has left as the commanded ones."""
+        interp = self.interp
+        now = borrowed.modes_in_force(interp)
+        saved = now.on_the_face_of(borrowed.saved_modes(interp)) if self.on_face else now
+        self.path.find(borrowed.renew(interp, saved))
+        self._set_own_modes()
 
     def _stop_before_section(self, steps: Sequence[PlanStep]) -> None:
         if steps and not self._begun:
@@ -208,8 +188,9 @@ class SectionOutput:
     def _set_own_modes(self) -> None:
         interp = self.interp
         interp.c_axis_wrapped = False
-        interp.distance_mode = self.absolute
-        if self._per_revolution:
+        if interp.distance_mode:
+            interp.execute("G90")
+        if borrowed.saved_modes(interp).feed_mode == PER_REVOLUTION:
             interp.execute("G94")
         interp.feed_mode = PER_MINUTE  # reading ahead may have set the modes of the section's end
         interp.motion_mode = G1
@@ -254,28 +235,33 @@ class SectionOutput:
 
     def _switch(self, step: FaceSwitch) -> Iterator[str]:
         """Switch to the face or back; the result of the program's last M66 is restored."""
-        interp, state = self.interp, state_of(self.interp)
+        interp, refuse = self.interp, BlockLocation(self.code, step.line).refuse
         interp.sequence_number = step.line
         found = interp.params[kinematics_switch.INPUT_RESULT]
+        of_ini = borrowed.saved_modes(interp).accelerations
+        self.on_face = True
         if step.on:
-            state.modes_before_face = kinematics_switch.modes_before_face(interp)
-            most = step.share, step.override
             yield from kinematics_switch.to_face(
-                interp, self.machine_unit, kinematics_switch.FaceRequest.BY_PROGRAM, *most
+                interp,
+                self.machine_unit,
+                kinematics_switch.FaceRequest.BY_PROGRAM,
+                refuse,
+                of_ini,
+                step.share,
+                step.override,
             )
             interp.execute(kinematics_switch.ON_THE_FACE)
             self.path.renew()
         else:
-            interp.execute(state.modes_before_face)
-            yield from kinematics_switch.to_axes(interp)
-            # Only now: an abort during the wait drops the block before it.
-            state.modes_before_face = ""
+            borrowed.restore_before_face(interp, borrowed.saved_modes(interp))
+            yield from kinematics_switch.to_axes(interp, of_ini)
         if not kinematics_switch.has_switched(interp):
-            raise BlockLocation(self.code, step.line).refuse(kinematics_switch.not_switched())
+            raise refuse(kinematics_switch.not_switched())
         wrong = self._wrong_position(step.position) if step.on and interp.task else ""
         if wrong:
-            yield from kinematics_switch.to_axes(interp)
-            raise BlockLocation(self.code, step.line).refuse(wrong)
+            yield from kinematics_switch.to_axes(interp, of_ini)
+            raise refuse(wrong)
+        self.on_face = step.on
         interp.params[kinematics_switch.INPUT_RESULT] = found
         interp.current_x, interp.CC_current, interp.current_z = step.position
         interp.current_y = step.on * self.beside - kinematics_switch.y_offset(interp)
@@ -325,8 +311,7 @@ class SectionOutput:
             return
         self.release(action.modes)
         self._execute(action)
-        self.path.find()
-        self._set_own_modes()
+        self._go_on()
 
     def _execute(self, action: Action) -> None:
         """Execute the action's block as one of the program, which a remapped code requires."""

@@ -9,13 +9,14 @@ executed (`SectionOutput`).
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
 from typing import Any, cast
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.host import messages, reported
+from g12.host import borrowed, kinematics_switch, messages, reported
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import JUMPING
 from g12.host.section.output import PlanStep, SectionOutput
@@ -27,7 +28,9 @@ from g12.section.block_rules import SectionBlock
 from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, split_line
 
-MOST_SECTION_LINES = 1_000_000  # LinuxCNC handles no abort while a section is read
+MOST_SECTION_LINES = 1_000_000
+LONGEST_READING = 0.5  # s in which LinuxCNC obeys no abort, nor anything else
+LINES_BETWEEN_LOOKS = 256  # at the clock
 
 
 class Phase(Enum):
@@ -76,10 +79,11 @@ class Section:
             self._check_file()
             yield from self._read()
         except SystemError:  # how LinuxCNC hands a failed read or execute to Python
-            self._undo_reading()
-            raise self.reader.refuse_failed() from None
+            refusal = self.reader.refuse_failed()
+            self._undo()
+            raise refusal from None
         except Exception:
-            self._undo_reading()
+            self._undo()
             raise
 
     def _check_file(self) -> None:
@@ -88,10 +92,14 @@ class Section:
         if not self.codes.begins(block_of(self.reader.parsed)):
             raise self._refuse("the file has been changed while the program runs")
 
-    def _undo_reading(self) -> None:
-        """Undo the changes of reading ahead in the interpreter; executed motion stays."""
+    def _undo(self) -> None:
+        """Undo the changes of reading ahead, and all that is borrowed; executed motion stays."""
+        interp = self.reader.interp
         if self._phase is not Phase.MOVING:
             self.reader.restore()
+        borrowed.give_back(interp)
+        if self.output.on_face:
+            kinematics_switch.leave(interp)
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.reader.plain_line
@@ -101,7 +109,11 @@ class Section:
             self.program.parse_rewritten(self._first)
             first = split_line(self._first, known)
             yield from self._process(first, block_of(self.reader.parsed))
-        for _ in range(MOST_SECTION_LINES):
+        due = time.monotonic() + LONGEST_READING
+        for count in range(MOST_SECTION_LINES):
+            if not count % LINES_BETWEEN_LOOKS and self._is_late(due):
+                yield from self._pause()
+                due = time.monotonic() + LONGEST_READING
             raw = program.take()
             if raw is None:
                 self._end_of_file()
@@ -113,6 +125,17 @@ class Section:
                 plain_line(raw)
         read = f"{MOST_SECTION_LINES} lines were read and {self.codes.off_code} did not come"
         raise self._refuse(f"{read}: an endless loop?")
+
+    def _is_late(self, due: float) -> bool:
+        """Tell whether LinuxCNC has to be let in, which is not possible while lines are skipped."""
+        reading = self._phase is Phase.READING and self.reader.interp.task
+        return bool(reading) and time.monotonic() > due
+
+    def _pause(self) -> Iterator[int]:
+        """Let LinuxCNC obey an abort; it sets position and modes to the machine's meanwhile."""
+        yield from self.frame.let_linuxcnc_in()
+        self.reader.set_modes(self.reader.modes)
+        self.reader.show_plane()
 
     def _refuse(self, reason: str) -> Refusal:
         return self.reader.location.refuse(reason)
@@ -244,6 +267,7 @@ class Section:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(line=self.program.line)
         yield from self._emit()
+        borrowed.forget(self.reader.interp)
         self.program.catch_up()
         reported.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)

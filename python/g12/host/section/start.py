@@ -12,6 +12,7 @@ from g12.host.interp import (
     PLANE_CODES,
     Interp,
     ParsedBlock,
+    millimetres_per_unit,
     words_in,
 )
 from g12.host.program_lines import without_line
@@ -43,7 +44,7 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         c=interp.CC_current,
         z=interp.current_z,
         machine_unit=modes.program_units_per_machine_unit(interp),
-        millimetre=1 / modes.millimetres_per_unit(interp),
+        millimetre=1 / millimetres_per_unit(interp),
         offsets=_offsets(interp),
         x_shift=interp.axis_offset_x,
         modes=SectionModes(

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a cycle, a section, a shape or holes change in interpreter and machine, and its return.
+
+Each of them takes one value, `Saved`, before its first change (`begin`) and restores it whole
+(`give_back`). If that end never comes, the abort handler restores it (`after_abort`), which
+LinuxCNC calls by [RS274NGC] ON_ABORT_COMMAND. Without one, the next code of the package restores
+what no operator sees and no code commands (`settle_interrupted`). All else stays: a program or an
+operator may have commanded it anew since, and with the same values.
+
+The values are a stack: a shape's section begins and ends inside the shape.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from g12.host import kinematics_switch
+from g12.host.interp import (
+    DIAMETER_ACTIVE,
+    G7,
+    PER_MINUTE,
+    PER_REVOLUTION,
+    PLANE_CODES,
+    Interp,
+    millimetres_per_unit,
+    state_of,
+)
+from g12.host.program_lines import without_line
+from g12.section.block_rules import NO_CODE, GGroup
+from g12.section.modes import SectionModes, decimal
+
+PATH_ACTIVE = 11  # index into active_g_codes
+G64 = 640
+TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
+ADAPTIVE_FEED = 52  # active_m_codes
+# Reasons of an abort: the external and the commanded emergency stop, and the machine switched off.
+# In the same cycle LinuxCNC aborts once more, as the machine is not on: it drops what they queued.
+ABORTED_AGAIN = 2, 4, 6
+
+
+class Saved(NamedTuple):
+    """The modes before the change; lengths in the program unit of then, ``unit`` mm."""
+
+    motion: int  # the code that bare words repeat
+    distance: int  # of G90 or G91
+    centres: int  # of G90.1 or G91.1
+    diameter: bool  # G7
+    plane: str
+    feed_mode: int
+    feed: float
+    path: str  # G61, G61.1 or G64
+    blending: tuple[float, float]  # P and Q of the last G64
+    adaptive: bool  # M52
+    spindle: int  # in use, which $ names
+    wrapped: bool  # WRAPPED_ROTARY of C
+    accelerations: tuple[float, ...]  # of X and Y by HAL pins, on a machine with the face
+    unit: float
+
+    @property
+    def path_block(self) -> str:
+        """The block that commands the path control."""
+        return _blending_block(self) if self.path == "G64" else self.path
+
+    def commanding(self, section: SectionModes) -> Saved:
+        """Return the value with the modes that the lines of a section have commanded."""
+        return self._replace(
+            motion=section.motion,
+            distance=int(section.incremental),
+            feed_mode=PER_REVOLUTION if section.per_revolution else PER_MINUTE,
+            feed=section.feed,
+        )
+
+    def on_the_face_of(self, other: Saved) -> Saved:
+        """Return the value with those of another one that the switch to the face changes."""
+        return self._replace(
+            plane=other.plane,
+            centres=other.centres,
+            adaptive=other.adaptive,
+            accelerations=other.accelerations,
+        )
+
+
+def modes_in_force(interp: Interp) -> Saved:
+    """Return the modes in force."""
+    active, settings = interp.active_g_codes, interp.active_settings
+    return Saved(
+        motion=interp.motion_mode,
+        distance=interp.distance_mode,
+        centres=interp.ijk_distance_mode,
+        diameter=active[DIAMETER_ACTIVE] == G7,
+        plane=PLANE_CODES.get(interp.plane, ""),
+        feed_mode=interp.feed_mode,
+        feed=interp.feed_rate,
+        path=f"G{active[PATH_ACTIVE] / 10:g}",
+        blending=(settings[TOLERANCE], settings[MERGING]),
+        adaptive=ADAPTIVE_FEED in without_line(interp.active_m_codes),
+        spindle=interp.active_spindle,
+        wrapped=interp.c_axis_wrapped,
+        accelerations=kinematics_switch.accelerations(interp),
+        unit=millimetres_per_unit(interp),
+    )
+
+
+def restore(interp: Interp, saved: Saved) -> None:
+    """Bring all modes back; the last block makes LinuxCNC show those that were only set."""
+    interp.c_axis_wrapped, interp.active_spindle = saved.wrapped, saved.spindle
+    interp.motion_mode = saved.motion
+    _command(interp, saved)
+    kinematics_switch.set_accelerations(saved.accelerations)
+    interp.execute(f"F{decimal(saved.feed * _scale(interp, saved))}")
+
+
+def restore_before_face(interp: Interp, saved: Saved) -> None:
+    """Bring back the modes that the face needs otherwise, at its end."""
+    _command(interp, modes_in_force(interp).on_the_face_of(saved))
+
+
+def _command(interp: Interp, saved: Saved) -> None:
+    for block in missing_modes(interp, saved):
+        interp.execute(block)
+
+
+def missing_modes(interp: Interp, saved: Saved) -> list[str]:
+    """Return the blocks that bring back the modes which are not as they were, F apart."""
+    now = modes_in_force(interp)
+    codes = [code for code, in_force in zip(_codes(saved), _codes(now)) if code != in_force]
+    return _path_blocks(now, saved, _scale(interp, saved)) + codes
+
+
+def _path_blocks(now: Saved, saved: Saved, scale: float) -> list[str]:
+    """Return the blocks that bring back the path control, and P and Q of G64 under G61 too."""
+    blending = _blending_block(saved, scale)
+    blocks = [] if _blending_block(now) == blending else [blending]
+    if saved.path != ("G64" if blocks else now.path):
+        blocks.append(blending if saved.path == "G64" else saved.path)
+    return blocks
+
+
+def _codes(saved: Saved) -> tuple[str, ...]:
+    return (
+        saved.plane,
+        f"M52P{saved.adaptive:d}",
+        "G95" if saved.feed_mode == PER_REVOLUTION else "G94",
+        f"G{90 + saved.distance}",
+        f"G{90 + saved.centres}.1",
+        f"G{7 if saved.diameter else 8}",
+    )
+
+
+def _blending_block(saved: Saved, scale: float = 1.0) -> str:
+    p, q = (decimal(scale * value) for value in saved.blending)
+    return f"G64P{p}Q{q}"
+
+
+def _scale(interp: Interp, saved: Saved) -> float:
+    """Return the factor from lengths of the value to lengths of the program now."""
+    return saved.unit / millimetres_per_unit(interp)
+
+
+# Begin and end.
+
+
+def saved_modes(interp: Interp) -> Saved:
+    """Return the value of the one that has begun last."""
+    return state_of(interp).borrowed[-1]
+
+
+def begin(interp: Interp) -> None:
+    """Take the value before the first change."""
+    state_of(interp).borrowed.append(_with_block(interp, modes_in_force(interp)))
+
+
+def _with_block(interp: Interp, saved: Saved) -> Saved:
+    """Return the value with those codes of the block being remapped that are not yet active."""
+    codes = interp.blocks[interp.remap_level].g_modes
+    if codes[GGroup.DIAMETER] != NO_CODE:
+        saved = saved._replace(diameter=codes[GGroup.DIAMETER] == G7)
+    path = codes[GGroup.PATH_CONTROL]
+    if path == G64:  # without a tolerance, whose words would be the remapped code's
+        saved = saved._replace(blending=(0.0, 0.0))
+    return saved if path == NO_CODE else saved._replace(path=f"G{path / 10:g}")
+
+
+def renew(interp: Interp, saved: Saved) -> Saved:
+    """Replace the value: the program itself has commanded other modes since `begin`."""
+    state_of(interp).borrowed[-1] = saved
+    return saved
+
+
+def give_back(interp: Interp) -> None:
+    restore(interp, state_of(interp).borrowed[-1])
+    forget(interp)
+
+
+def forget(interp: Interp) -> None:
+    """Drop the value, whose modes are back."""
+    state_of(interp).borrowed.pop()
+
+
+# Where the end never comes.
+
+
+def settle_interrupted(interp: Interp) -> str:
+    """Restore what an interrupted borrower left and no code commands; return the other modes.
+
+    An operator or a program may have commanded those anew, with the same values.
+    """
+    borrowed = state_of(interp).borrowed
+    if not borrowed:
+        return ""
+    left = borrowed[0]
+    borrowed.clear()
+    interp.c_axis_wrapped = left.wrapped
+    kinematics_switch.set_accelerations(left.accelerations)
+    return " ".join(missing_modes(interp, left))
+
+
+def restore_left(interp: Interp) -> None:
+    """Restore all that an interrupted borrower left."""
+    borrowed = state_of(interp).borrowed
+    if borrowed:
+        restore(interp, borrowed[0])
+        borrowed.clear()
+
+
+def after_abort(interp: Interp, reason: int) -> None:
+    """Restore all that the aborted borrower changed, in the planner too.
+
+    The interpreter may be ahead, and LinuxCNC has dropped the blocks that it had queued: path
+    control, F and adaptive feed may be in force in the interpreter already, but not in the planner.
+    So they are commanded anyway.
+    """
+    borrowed = state_of(interp).borrowed
+    if borrowed:
+        restore(interp, borrowed[0])
+        if borrowed[0].accelerations:  # the face has M52 on
+            interp.execute(f"M52P{borrowed[0].adaptive:d}")
+    if reason not in ABORTED_AGAIN:
+        borrowed.clear()
+    if not interp.cutter_comp_side:  # under compensation LinuxCNC refuses it, and no code borrows
+        interp.execute(modes_in_force(interp).path_block)
+    if interp.feed_rate:
+        interp.execute(f"F{decimal(interp.feed_rate)}")

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The handler of [RS274NGC] ON_ABORT_COMMAND = O <g12_on_abort> call.
+
+LinuxCNC executes that line after each abort, error, emergency stop and switching off, with the
+reason as its entry. ngc/g12_on_abort.ngc calls this handler by a ;py comment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from g12.host import borrowed, messages, modes
+from g12.host.handlers import face_by_hand
+from g12.host.interp import Interp
+from g12.host.machine import MACHINE
+from g12.host.program_lines import error_text
+
+REASON = 1  # the sub's entry
+END_OF_SUB = "o<g12_on_abort> endsub"
+
+
+def g12_on_abort(interp: Interp) -> None:
+    """Restore all that the aborted code has changed, and end the sub.
+
+    The face ends with a flag that LinuxCNC has to meet at the operator's next line. So the sub's
+    last line is executed here, before it.
+    """
+    restore_all(interp, round(interp.params[REASON]))
+    if interp.call_level:
+        _attempt(interp, modes.run_code, END_OF_SUB)
+    after_abort_on_face(interp)
+
+
+def restore_all(interp: Interp, reason: int) -> None:
+    """Restore what is borrowed, open the clamp of C, run the user's own command.
+
+    None of them depends on the success of another one.
+    """
+    _attempt(interp, borrowed.after_abort, reason)
+    if MACHINE.settings.c_clamp:
+        _attempt(interp, modes.run_code, f"M{MACHINE.settings.c_clamp[1]}")
+    if MACHINE.settings.on_abort_command:
+        _attempt(interp, modes.run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
+
+
+def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> None:
+    """Do a step; report its error to the operator, as a message: an error would abort again."""
+    try:
+        step(interp, argument)
+    except SystemError:  # how LinuxCNC hands a failed read or execute to Python
+        messages.message(f"ON_ABORT_COMMAND: {error_text(interp)}")
+    except Exception as error:
+        messages.message(messages.shown_text(error))
+
+
+def after_abort_on_face(interp: Interp) -> None:
+    interp.read("")  # or LinuxCNC would go on with the last block executed here
+    if MACHINE.face:
+        face_by_hand.abort(interp)
