@@ -7,9 +7,10 @@ import pytest
 from matplotlib.image import imread
 
 from g12.tools.machine.ini import read_ini
+from g12.tools.material.stock import StockText
 from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.proof import prove
 from support import cut_geometry
+from support.judged_programs import prove
 from support.ngcgui import NGC, fields, filled_in
 from support.sim_machines import SIM
 
@@ -114,12 +115,13 @@ POCKETS = [  # a form filled in; its pocket, X, Y, floor, radius; its levels, ci
 @pytest.mark.parametrize(("form", "values", "pocket", "made"), POCKETS)
 def test_a_pocket_comes_out_as_filled_in(form, values, pocket, made, tmp_path):
     program = program_of(tmp_path, form, "inch", **values)  # the forms of both units are one text
-    proof = prove(program, read_ini(SIM / f"{MILLS[form]}_headless.ini"), tools=TOOLS)
+    bored = StockText(f"bore {2 * values['r']}mm") if form == "yasnac" and values["r"] else None
+    proof = prove(program, read_ini(SIM / f"{MILLS[form]}_headless.ini"), tools=TOOLS, stock=bored)
     assert proof.findings == []
     (facts,) = proof.pockets
-    wall, traced = facts.commanded.wall, proof.subject.trace
-    floor = wall.height(facts.commanded.deepest)
-    assert (*wall.origin[:2], floor, wall.radius) == pytest.approx(pocket, abs=1e-6)
+    traced, values_of = proof.program.trace, facts.values
+    measured = *values_of["centre"], values_of["lowest"], values_of["radius"]
+    assert measured == pytest.approx(pocket, abs=1e-6)
     levels, radii, turns, count = made
     cuts, circles = cut_geometry.cutting(traced.moves), cut_geometry.full_circles(traced.moves)
     assert [circle.radius for circle in circles] == pytest.approx(radii, abs=1e-5)
@@ -145,13 +147,13 @@ def test_a_shape_comes_out_as_filled_in(form, tmp_path):
     program = program_of(tmp_path, form, "inch", f"G18 {BESIDE}", retract=4, **SHAPES[form])
     proof = prove(program, read_ini(SIM / "lathe_mm_headless.ini"), tools=TOOLS)
     assert proof.findings == []
-    (facts,) = proof.cuts.shapes
+    (facts,) = proof.shapes
     called = facts.values["entries"]
     for name, value in SHAPES[form].items():
         entry = called["depth_per_pass" if name == "per_pass" else name]
         assert entry == pytest.approx(value if name in NUMBERS else value / INCH)
-    assert proof.subject.trace.moves[-1].end[2] == pytest.approx(4)
-    assert {"M5", "M9"} <= set(proof.subject.trace.modes.mcodes)
+    assert proof.program.trace.moves[-1].end[2] == pytest.approx(4)
+    assert {"M5", "M9"} <= set(proof.program.trace.modes.mcodes)
 
 
 def test_holes_come_out_as_filled_in(cut):

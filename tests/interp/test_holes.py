@@ -9,7 +9,6 @@ import pytest
 
 from g12.tools.commands.main import main
 from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.reading.codes import HOLES, SHAPES
 from support.clamped import with_clamp
 from support.sim_machines import SIM, kept_tracer
 
@@ -22,6 +21,9 @@ SIDE = dict(count=2, z=-10, first_angle=30, step_angle=270, surface_diameter=40,
             retract=2, feed=120, peck=0, dwell=0, kind=0)  # fmt: skip
 AT = dict(x=20, c=5, depth=8, retract=2, feed=120, peck=0, dwell=0, kind=0)
 CALLS = {"face_holes": FACE, "side_holes": SIDE, "face_hole_at": AT}
+
+HOLES = ("face_holes", "side_holes", "face_hole_at")
+SHAPES = ("polar_polygon", "polar_slot", "polar_pocket")
 
 
 lathe = kept_tracer("lathe_mm", tools={1: 6.0})

@@ -7,7 +7,6 @@ from g12.tools.commands.main import main
 from g12.tools.errors import UsageError
 from g12.tools.material.stock import read_stock
 from g12.tools.units import MM, UNITS
-from g12.tools.verify.report import STOCK, rows_of
 from support.sim_machines import PROGRAMS, SIM
 
 MILL, LATHE = (str(SIM / f"{name}_headless.ini") for name in ("mill_mm", "lathe_mm"))
@@ -49,10 +48,6 @@ def test_an_empty_stock_is_refused(tmp_path, capsys):
     (tmp_path / "program.ngc").write_text("\n".join([*HEAD, "G13 I9 Z-1 D4", "M2", ""]))
     assert main(["verify", str(tmp_path / "program.ngc"), "--ini", MILL, "--stock", ""]) == 2
     assert "--stock ''" in capsys.readouterr().err
-
-
-def test_a_bore_alone_where_no_pocket_is_has_no_bounds_to_show():
-    assert list(rows_of(STOCK, {"bounds": [], "top": 0.0}, MM)) == []
 
 
 def test_the_hexagon_begins_beside_its_bar(capsys):

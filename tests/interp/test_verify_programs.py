@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What verify reads of programs: the manual's pockets, numbers near zero, subs of other files."""
+"""What verify says of programs: sentences, runs, clamps, subs of other files, manuals' pockets."""
 
 import json
 
+import numpy as np
 import pytest
 
-from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.units import MM
-from g12.tools.verify.proof import prove
-from g12.tools.verify.report import as_json, as_text
-from support.judged_programs import prove_lines
+from g12.tools.verify.report import as_text
+from support.clamped import with_clamp
+from support.judged_programs import prove, prove_lines
+from support.made_moves import samples_of
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
 
 INCH = 25.4
-MILL = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6 S3000 M3"]  # a 10 mm cutter
-LATHE = ["G21 G18 G8 G40 G90 G94", "T3 M6", "G0 X30 Z2 C40"]
-
-
-# ---------------------------------------------------------------- the manual's pockets
+MILL = ["G21 G17 G40 G49 G90 G94 F600", "T4 M6 G43", "S3000 M3", "G0 X0 Y0 Z1"]
+LATHE = ["G21 G18 G7 G40 G90 G94", "T1 M6", "S3000 M3", "G0 X60 Z2 C0"]
+P = ["G13 I7 K20 Q6 Z-3 D4", "G0 Z30"]
+FLAT = ["G12.1", "G1 C25 F2000", "G41 X27 F1000", "Z-5", "C-25", "G40 X60 F2000", "G13.1", "G0 Z2"]
+SIDES = ["C-7.7942", "X0 C-15.5885", "X-27 C-7.7942", "C7.7942", "X0 C15.5885", "X27 C7.7942", "C0"]
+HEXAGON = ["G0 X70", "G12.1", "G1 G41 X27 F1000", "Z-5", *SIDES, "G40 X70", "Z2", "G13.1"]
+POLYGON = "o<polar_polygon> call [6] [24] [4] [30] [0] [2] [.3] [600] [300] [0]"
+ON_FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
 
 
 @pytest.mark.parametrize("name", ["O60121", "O60131"])
@@ -28,42 +32,89 @@ def test_every_pocket_is_found_and_comes_out_as_printed(name):
     ini = read_ini(SIM / "mill_inch_headless.ini")
     proof = prove(PROGRAMS / "haas" / f"{name}.ngc", ini, tools=tools)
     assert len(proof.pockets) == len(expected["pockets"])
-    for printed, facts in zip(expected["pockets"], proof.pockets):
-        wall, rings = facts.commanded.wall, [ring * INCH for ring in printed["rings"]]
-        assert (facts.line, facts.code) == (printed["line"], printed["code"])
-        assert facts.values["reached"] == pytest.approx(printed["finished"] * INCH, abs=1e-6)
-        assert facts.values["rings"] == pytest.approx(rings, abs=1e-5)
-        depths = [wall.height(depth) / INCH for depth in facts.commanded.depths]
+    for printed, pocket in zip(expected["pockets"], proof.pockets):
+        values = pocket.values
+        assert (pocket.line, pocket.code) == (printed["line"], printed["code"])
+        assert values["reached"] == pytest.approx(printed["finished"] * INCH, abs=1e-6)
+        assert values["rings"] == pytest.approx([r * INCH for r in printed["rings"]], abs=1e-5)
+        depths = [depth / INCH for depth in values["depths"]]
         assert depths == pytest.approx(printed["depths"], abs=1e-4)
-        assert wall.origin[:2] / INCH == pytest.approx(printed["centre"])
-        assert facts.deviation < 1e-6
+        assert values["centre"] == pytest.approx([at * INCH for at in printed["centre"]])
+        assert pocket.deviation < 1e-6
 
 
-# ---------------------------------------------------------------- numbers
+SAID = [  # a machine, its blocks, its stock, a part of the report
+    ("mill_mm", [*MILL, "G13 I20.2 Z-4 D4", "G0 Z9"], "",
+     "line 5: a core of 114.434 mm² remains in its middle, and the lead-in goes through it [core]"),
+    ("mill_mm", [*MILL, "G10 L2 P1 X2 Y3 R90", "G0 X0 Y0", P[0], "G0 X40", "Z9"], "",
+     "line 8: a rapid goes through 238.538 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
+    ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),
+    ("mill_mm", [*MILL, *P], "100x80x2 bore 12", "it goes 1 mm below the block [through-stock]"),
+    ("mill_mm", [*MILL, *P], "100x80x20", "stock: 100x80x20, its top at Z0\n"),
+    ("lathe_mm", [*LATHE, *FLAT, *FLAT], "",
+     "line 13: C is where line 5 left it, at −39.806°: its zero line is turned on the part"),
+    ("lathe_mm", [*LATHE, *FLAT], "", "assumed: solid below Z0, a bar of ⌀ 56.824; the tool"),
+    ("lathe_mm", [*LATHE, *HEXAGON], "", "speed of C      "),
+]  # fmt: skip
 
 
-@pytest.mark.parametrize(
-    ("place", "cut", "height"),
-    [
-        ("Z.1 C0", ["G1 Z[.5-.49991]", "X1", "Z-.1", "X2"], 0.1),
-        ("Z.00009 C-.00009", ["G1 Z-.1", "X1", "Z.00009", "X2 C-.00009"], 0.00009),
-    ],
-)
-def test_next_to_zero_is_not_zero(place, cut, height, tmp_path):
-    """LinuxCNC 2.9 reports that less than 0.0001 is 0."""
-    lines = ["G20 G18 G8 G40 G90 G94 F10", "T1 M6 S1000 M3", f"G0 X2 {place}", "G12.1", *cut]
-    proof = prove_lines(tmp_path, [*lines, "G13.1"], "lathe_inch")
-    assert proof.findings == []
-    assert proof.sections[0].commanded.height == pytest.approx(height * INCH, abs=1e-9)
+@pytest.mark.parametrize(("machine", "blocks", "stock", "said"), SAID)
+def test_what_a_report_says(machine, blocks, stock, said, tmp_path):
+    judgement = prove_lines(tmp_path, blocks, machine, stock=stock).judgement
+    assert said in as_text(judgement, MM, full=True)
 
 
-def test_a_program_that_moves_by_its_line_numbers_is_refused_in_one_line(tmp_path):
-    lines = [*MILL, "G0 X0 Y0 Z1", "G12 I20 Z-1 D4", "o1 if [#<_line> GT 6]", "G0 X5", "o1 endif"]
-    with pytest.raises(ProgramError, match="moves differently with reports between its lines"):
-        prove_lines(tmp_path, lines, "mill_mm")
+CLAMPED = [  # M10 closes the clamp of C, M11 opens it: a program, and C_CLAMP_SHAPES
+    (["M10", "G0 C90", "C180", "M11", "C0"], "clamp-closed 6"),
+    (["M10", "G0 X70", "M11", "C90"], ""),
+    (["M10", *FLAT, "M11"], "clamp-closed 7"),
+    (["G0 Z5", "M10", POLYGON, "M11"], "clamp-closed 7"),
+    (["M10", "G0 Z10", ON_FACE, "G0 C0"], ""),
+    (["M10", *FLAT, "G0 C0"], "", "M10"),
+    (["G0 Z5", "M10", POLYGON], "", "M12"),
+]
 
 
-# ---------------------------------------------------------------- subs in files of their own
+@pytest.mark.parametrize("case", CLAMPED)
+def test_c_turns_only_where_its_clamp_is_open(case, tmp_path):
+    blocks, expected, *drag = case
+    settings = {"C_CLAMP_SHAPES": drag[0]} if drag else {}
+    changed = with_clamp("lathe_mm", tmp_path, **settings)
+    codes = prove_lines(tmp_path, [*LATHE, *blocks], "lathe_mm", changed).codes
+    assert ", ".join(code for code in codes.split(", ") if "clamp" in code) == expected
+
+
+def test_a_clamp_that_no_trace_shows_is_not_judged(tmp_path):
+    changed = {"G12": {"C_CLAMP": "M110 M111"}}
+    assert (
+        "clamp-unseen 6"
+        in prove_lines(tmp_path, [*LATHE, "G0 Z10", ON_FACE], "lathe_mm", changed).codes
+    )
+
+
+RUNS = [  # a program, the axis along which a run is beside its path, what is found
+    ("mill_mm", [*MILL, *P], "Y", "off 5, wall 5"),
+    ("lathe_mm", [*LATHE, *HEXAGON], "X", "off 11"),
+]
+
+
+@pytest.mark.parametrize(("machine", "blocks", "axis", "found"), RUNS)
+def test_a_run_beside_its_path_is_found(machine, blocks, axis, found, tmp_path):
+    axes = "XYZ" if machine == "mill_mm" else "XZC"
+    samples = samples_of(prove_lines(tmp_path, blocks, machine).program.path, 8000, axes=axes)
+    assert prove_lines(tmp_path, blocks, machine, samples=samples).codes == ""
+    samples.axes[axis] += 0.03
+    assert prove_lines(tmp_path, blocks, machine, samples=samples).codes == found
+
+
+def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(tmp_path):
+    blocks = [*MILL, "G13 I17 Z-3 D4", "G0 Z2", "X100"]
+    program = prove_lines(tmp_path, blocks, "mill_mm").program
+    samples = samples_of(program.path, 8000)
+    leaving = samples.time > program.path.time[program.path.vertices(len(program.moves) - 1).start]
+    samples.axes["Z"] -= leaving * np.clip(5 - samples.axes["X"] / 3, 0, 5)
+    codes = prove_lines(tmp_path, blocks, "mill_mm", samples=samples).codes
+    assert "core 5" in codes and "rapid 7" in codes
 
 
 @pytest.fixture
@@ -81,65 +132,35 @@ def with_sub(tmp_path):
     return proof
 
 
-def radii_of(proof):
-    return [facts.commanded.wall.radius for facts in proof.pockets]
-
-
 @pytest.mark.parametrize(
     ("name", "body", "call"),
     [
         ("hole", ["o<hole> sub", "G0 Z1", "G12 I#1 Z-2 D4", "o<hole> endsub"], "o<hole> call [9]"),
-        ("77", ["o77 sub", "G0 Z1", "G12 I[#1] Z-2 D4", "o77 endsub"], "o77 call [9]"),
         ("77", ["O77", "G0 Z1", "G[12] I#1 Z-2 D4", "M99"], "M98 P77"),
     ],
 )
-def test_a_pocket_in_a_sub_of_another_file_is_measured(name, body, call, with_sub):
-    proof = with_sub(name, body, *MILL, "#1 = 9", call, "G12 I11 Z-3 D4")
-    assert radii_of(proof) == pytest.approx([9, 11])
-    assert [(cut.line, cut.file) for cut in proof.pockets] == [(3, f"{name}.ngc"), (5, "")]
+def test_a_pocket_in_a_sub_of_another_file_is_judged(name, body, call, with_sub):
+    proof = with_sub(name, body, *MILL, "#1 = 9", call, "G12 I11 Z-3 D4", "G0 Z9")
+    assert [pocket.values["radius"] for pocket in proof.pockets] == pytest.approx([9, 11])
+    assert [(cut.line, cut.file) for cut in proof.pockets] == [(3, f"{name}.ngc"), (7, "")]
     assert proof.findings == []
 
 
-def test_an_event_in_a_sub_that_a_sub_calls_is_measured(with_sub):
-    event = "[7] [0] [0] [-2] [1] [-9999] [#1] [0] [2]" + " [-9999]" * 6
-    body = ["o<event> sub", f"o<circle_mill> call {event}", "o<event> endsub", "M2"]
-    own = ["o<way> sub", "o<event> call [#1]", "o<way> endsub"]
-    proof = with_sub("event", body, *own, *MILL, "G0 Z1", "o<way> call [20]", "o<way> call [30]")
-    assert radii_of(proof) == pytest.approx([20, 30])
+def test_a_section_in_a_sub_of_another_file_is_judged(with_sub):
+    body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "Z-1", "C5", "Z2", "G13.1", "o<flat> endsub"]
+    calls = ["o<flat> call [20]", "G0 X60 C0", "o<flat> call [15]"]
+    proof = with_sub("flat", body, *LATHE, *calls, machine="lathe_mm")
+    report = as_text(proof.judgement, MM, full=True).splitlines()
+    titles = [line for line in report if line.startswith("lines ")]
+    assert titles == ["lines 2 to 7 of flat.ngc: G12.1"] * 2
     assert proof.findings == []
 
 
-def test_a_sub_that_linuxcnc_finds_elsewhere_than_the_copy_is_a_finding(tmp_path):
+def test_a_sub_that_linuxcnc_finds_elsewhere_is_judged(tmp_path):
     here = copy_of_machines(tmp_path)
     (here / "hole.ngc").write_text("o<hole> sub\nG12 I9 Z-2 D4\no<hole> endsub\nM2\n")
     program = tmp_path / "program.ngc"
-    program.write_text("\n".join([*MILL, "G0 Z1", "o<hole> call", "M2", ""]))
+    program.write_text("\n".join([*MILL, "o<hole> call", "G0 Z9", "M2", ""]))
     proof = prove(program, read_ini(here / "mill_mm_headless.ini"))
-    assert (proof.pockets, proof.lines_with("not-measured")) == ([], [(4, "G12")])
-
-
-def test_a_d_that_a_sub_in_its_own_file_commanded_is_remembered(with_sub):
-    body = ["o<offset> sub", "G41 D6 G1 X40 F100", "Y-30", "G40 X80", "o<offset> endsub"]
-    proof = with_sub("offset", body, *MILL, "G0 Z1", "o<offset> call", "G0 X0 Y0", "G12 I30 Z-2")
-    (facts,) = proof.pockets
-    assert (facts.commanded.cutter.named, facts.commanded.cutter.radius) == (6, 10)
-    assert "the toolpath" not in str(proof.findings)
-
-
-def test_a_section_in_a_sub_of_another_file_is_measured(with_sub):
-    body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "C5", "G13.1", "o<flat> endsub"]
-    calls = ["o<flat> call [20]", "G0 X30 C0", "o<flat> call [15]"]
-    proof = with_sub("flat", body, *LATHE, *calls, machine="lathe_mm")
-    assert [facts.commanded.elements[0].end for facts in proof.sections] == [20, 15]
-    assert [(facts.line, facts.last) for facts in proof.sections] == [(2, 5)] * 2
-    assert proof.findings == []
-    report = as_text(proof, MM, full=True).splitlines()
-    titles = [line for line in report if line.startswith("lines ")]
-    assert titles == [f"lines 2 to 5 of flat.ngc, called in line {line}: G12.1" for line in (4, 6)]
-    assert json.loads(as_json(proof))["sections"][0]["file"] == "flat.ngc"
-
-
-def test_a_section_of_another_file_that_asks_for_a_position_is_in_doubt(with_sub):
-    body = ["o<flat> sub", "G12.1", "G1 X[#<_x> - 5] F500", "G13.1", "o<flat> endsub"]
-    proof = with_sub("flat", body, *LATHE, "o<flat> call", machine="lathe_mm")
-    assert [facts.commanded.doubt for facts in proof.sections] == ["line 3 asks for a position"]
+    assert [(cut.line, cut.file) for cut in proof.pockets] == [(2, "hole.ngc")]
+    assert proof.codes == ""

@@ -7,8 +7,7 @@ import re
 
 import pytest
 
-from g12.tools.verify.proof import prove
-from support.judged_programs import prove_lines
+from support.judged_programs import prove, prove_lines
 from support.valid_programs import machine_of, valid_program
 
 HEAD = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X40 Z2 C0", "G12.1"]
@@ -23,7 +22,7 @@ def found(tmp_path):
     def codes(*lines, head=HEAD, machine="lathe_mm", changed=None):
         proof = prove_lines(tmp_path, [*head, *lines, *OUT], machine, changed)
         assert proof.sections
-        return [(each.code, each.line) for each in proof.judged if each.is_finding]
+        return proof.finding_codes
 
     return codes
 
@@ -83,4 +82,4 @@ def test_feeds_beyond_what_the_face_can_do_are_cut_down(kind, tmp_path):
     program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
     proof = prove(program, machine_of(kind))
     assert proof.findings == []
-    assert "feed-cut-down" in [each.code for each in proof.judged]
+    assert "feed-cut-down" in proof.codes

@@ -34,7 +34,7 @@ def test_verify_finds_nothing_wrong_in_the_samples_and_c_keeps_its_limits(lathe,
     (section,) = proof.sections
     assert proof.findings == [] and section.deviation <= LIMIT
     assert section.values["seconds"] <= 1.05 * section.values["seconds_programmed"]
-    c = proof.subject.samples.axes["C"]
+    c = proof.program.samples.axes["C"]
     assert np.abs(np.diff(c)).max() * 1000 <= C_SPEED * 1.001
     if not exceeds_limits_itself(lathe):
         assert accelerations(c).max() <= C_ACCELERATION * 1.01
@@ -101,4 +101,4 @@ def test_more_speed_than_c_has_only_slows_the_way_down(ready, body, most):
     proof = ready.proof_of_run(section(*body, feed="F30000"))
     assert [said for _, said in proof.findings if not said.startswith("C turns at ")] == []
     assert proof.sections[0].deviation <= LIMIT
-    assert np.abs(np.diff(proof.subject.samples.axes["C"])).max() * 1000 <= most
+    assert np.abs(np.diff(proof.program.samples.axes["C"])).max() * 1000 <= most

@@ -34,7 +34,7 @@ def auto(machine):
     proof = machine.proof_of_run(PROGRAM)
     assert proof.findings == []
     assert proof.pockets[0].values["off_circles"] < DEVIATION
-    return cut(proof.subject.samples)
+    return cut(proof.program.samples)
 
 
 def cut(samples):

@@ -41,7 +41,7 @@ def cut(machine):
     go_to_start(machine)
     proof = machine.proof_of_run([FIRST, "T1 M6", START, POCKET, "M2"])
     assert proof.findings == [] and proof.pockets[0].values["off_circles"] < DEVIATION
-    return proof.subject.samples
+    return proof.program.samples
 
 
 def points_of(samples):

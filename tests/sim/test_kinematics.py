@@ -67,7 +67,7 @@ def test_g12_1_is_on_the_contour_and_within_the_limits(lathe, name):
     text = (PROGRAMS / "polar" / f"{name}.ngc").read_text()
     fast = re.sub(r"\bF([\d.]+)", lambda word: f"F{3 * float(word[1]):g}", text)
     proof = lathe.proof_of_run(fast)
-    samples = proof.subject.samples
+    samples = proof.program.samples
     assert proof.findings == [] and proof.sections[0].deviation <= 0.006
     keeps_its_limits(samples)
     assert not on_the_face(lathe)

@@ -53,7 +53,7 @@ def test_every_sample_is_cut_as_its_words_ask(request, name):
     proof = machine.proof_of_run(re.sub(r"F([57])\.", lambda feed: f"F{6 * int(feed[1])}.", text))
     assert proof.findings == []
     assert max(each.deviation for each in proof.sections) <= TOLERANCE[units] + SAMPLING
-    cut = Cut(proof.subject.samples)
+    cut = Cut(proof.program.samples)
     assert cut.x.min() >= -1e-9
     if name in MILLIMETRES:
         feed = {"slot": 800, "circles": 600}.get(name, 1000)

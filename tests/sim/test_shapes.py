@@ -34,9 +34,9 @@ def cut(lathe, name):
     """Return the motion of a call, in which verify finds nothing wrong."""
     lathe.reset()
     proof = lathe.proof_of_run([*START, CALLS[name], "M2"])
-    assert proof.findings == [] and len(proof.cuts.shapes) == 1
-    assert proof.cuts.shapes[0].deviation < TOLERANCE
-    return proof.subject.samples
+    assert proof.findings == [] and len(proof.shapes) == 1
+    assert proof.shapes[0].deviation < TOLERANCE
+    return proof.program.samples
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -79,7 +79,7 @@ def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
     assert "G7" in lathe.stat().modes.gcodes and lathe.stat().position[0] == pytest.approx(25)
     lathe.mdi("G0 Z5")
     proof = lathe.proof_of_run([*START, CALLS["flats"], "M2"])
-    assert proof.findings == [] and len(proof.cuts.shapes) == 1
+    assert proof.findings == [] and len(proof.shapes) == 1
 
 
 def test_a_coarse_g64_does_not_shorten_a_ramp():

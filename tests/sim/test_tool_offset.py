@@ -48,7 +48,7 @@ def test_the_part_is_the_same(tmp_path, name, offset, program):
         proof = lathe.proof_of_run(program)
     assert proof.findings == []
     assert proof.sections[0].deviation <= (0.00024 * 25.4 if "inch" in name else 0.006)
-    assert proof.subject.samples.axes["X"].min() >= 0.0
+    assert proof.program.samples.axes["X"].min() >= 0.0
 
 
 @needs_kinematics

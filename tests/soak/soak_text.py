@@ -11,7 +11,7 @@ from g12.tools.dynapath import program_from_events
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.preview.executed_blocks import COMMENTS
+from g12.tools.plot.scene import COMMENTS
 from g12.tools.regress.recording_text import TraceTextError, read_recording, text_of
 from g12.tools.translate.blocks.control import ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text

@@ -18,7 +18,7 @@ from g12.tools.headless.namespaces import Isolated
 from g12.tools.path.samples import Samples
 from g12.tools.preview.moves import Error, Message, modes
 from g12.tools.preview.tracer import start_block, write_program
-from g12.tools.verify.proof import Proof, prove
+from support.judged_programs import Proof, prove
 from support.sim_machines import ROOT, SIM, machine_scope
 
 

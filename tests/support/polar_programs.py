@@ -8,8 +8,8 @@ from itertools import groupby
 import numpy as np
 
 from g12.tools.preview.tracer import Tracer
-from g12.tools.verify.proof import prove
 from support.contour_geometry import shape_of
+from support.oracle.contour import contour_path, elements_of
 from support.sim_machines import PROGRAMS, SIM
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
@@ -51,10 +51,14 @@ def tracer(**overrides):
 def toolpath_of(name, ini):
     """Return the lines and arcs of the part's plane that each line of a sample commands, in mm."""
     path = defaultdict(list)
-    for section in prove(PROGRAMS / "polar" / f"{name}.ngc", ini).sections:
-        for each in section.path:
-            if each.curve.length:
-                path[each.line].append(shape_of(each.curve))
+    with Tracer(ini, reports=True) as lathe:
+        traced = lathe.trace(PROGRAMS / "polar" / f"{name}.ngc")
+    for at, *_, report in traced.cuts:
+        elements, mm = list(elements_of(report.cut, report.frame.mm)), report.frame.mm
+        radius = traced.radius(at)
+        for step in contour_path(elements, report.at[2] * mm, radius):
+            if step.move.curve.length:
+                path[step.move.line].append(shape_of(step.move.curve))
     return path
 
 

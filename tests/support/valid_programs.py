@@ -17,6 +17,7 @@ CUTTERS = {"mm": {3: 6.0, 4: 10.0, 5: 12.0, 10: 20.0}, "inch": {1: 6.35, 2: 12.7
 PITCH = 60.0  # mm from pocket to pocket
 ROWS = 6
 OUT = -9999
+SPEED = 4000  # of a driven tool, a minute
 
 
 class Text:
@@ -141,6 +142,10 @@ def yasnac(text, tool, radius, x, y):
         widest = (first if spiral else last) - 0.05
         least = widest - (0.05 if spiral else 0.9) * radius
         near = text.between(max(0.01, least), widest)
+        text.add(
+            f"G13 I{text.n(near + offset)} K{text.n(min(near, radius) / 2 + offset)}",
+            f"Q{text.n(radius)} D{tool}",
+        )  # it is bored so far before
         words.append(f"{text.one_of('R', 'J')}{text.n(side * (near + offset))}")
     if spiral:
         words.append(f"K{text.n(side * (first + offset))}")
@@ -235,12 +240,13 @@ def polar_program(chance, unit, count, kind=""):
     text = Text(chance, unit, polar=True)
     text.sloping, text.beside = kind == "sloping", kind == "beside"
     text.diameter = chance.random() < 0.5
-    text.add("G7" if text.diameter else "G8", "G97 S500")
+    text.add("G7" if text.diameter else "G8", f"G97 S{SPEED}")
     loaded = None
     for k in range(count):
         if loaded is None or chance.random() < 0.2:
             loaded = chance.choice(list(AXIAL[unit]))
             text.add(f"T{loaded} M6")
+            text.add(f"S{SPEED} M3")
         in_sub, times = chance.random() < 0.3, chance.choice([1, 1, 2, 3])
         if chance.random() < 0.15:
             text.shift(("X", 0, 8), ("Z", -3, 3))
@@ -276,9 +282,9 @@ def _section(text, cutter):
 
 
 def _feed(text):
-    """Return an F word along the part, per minute or per revolution at S500."""
+    """Return an F word along the part, per minute or per revolution at SPEED."""
     feed = text.between(100, 1500)
-    return f"F{feed / text.scale / 500:.5f}" if text.rev else f"F{text.n(feed)}"
+    return f"F{feed / text.scale / SPEED:.7f}" if text.rev else f"F{text.n(feed)}"
 
 
 def _act(text):
@@ -346,6 +352,7 @@ def _corner(text, corner, following, rounded, clockwise, corners):
 def _free(text, *_):
     """Add lines, arcs and circles without compensation, anywhere on the face; Z in blocks alone."""
     at = complex(60, 0)
+    text.add(f"G1 Z{text.n(-text.between(0.5, 5))}")
     for _ in range(text.chance.randint(1, 8)):
         kind = text.one_of("line", "line", "arc", "circle", "z", "bare")
         slope = f"Z{text.n(-text.between(0, 5))}" if text.sloping and text.one_of(0, 1) else ""
@@ -377,7 +384,7 @@ def cylinder_program(chance, unit, count, kind=""):
     text = Text(chance, unit, polar=True)
     text.sloping = kind == "sloping"
     text.diameter = chance.random() < 0.5
-    text.add("G7" if text.diameter else "G8", "G97 S500")
+    text.add("G7" if text.diameter else "G8", f"G97 S{SPEED}")
     for _ in range(count):
         loaded = chance.choice(list(AXIAL[unit]))
         radius = text.between(15, 60)
@@ -385,6 +392,8 @@ def cylinder_program(chance, unit, count, kind=""):
         if chance.random() < 0.15:
             text.shift(("X", -3, 3), ("Z", -9, 9))
         text.add(f"T{loaded} M6")
+        text.add(f"S{SPEED} M3")
+        text.add(f"G0 X{_x(text, 90)}")
         text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
         text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
         text.add(f"G7.1 C{text.n(radius * (2 if text.sloping else 1))}")
@@ -450,12 +459,13 @@ def shapes_program(chance, unit, count, _kind=""):
     """Return a program of polygons, slots and round pockets by their calls."""
     text = Text(chance, unit, polar=True)
     text.diameter = chance.random() < 0.5
-    text.add("G7" if text.diameter else "G8", "G97 S500", f"F{text.n(400)}")
+    text.add("G7" if text.diameter else "G8", f"G97 S{SPEED}", f"F{text.n(400)}")
     for k in range(count):
         if not k or chance.random() < 0.2:
             loaded = chance.choice(list(AXIAL[unit]))
             text.add(f"G0 X{_x(text, 60)} Z{text.n(9)}")
             text.add(f"T{loaded} M6")
+            text.add(f"S{SPEED} M3")
         if chance.random() < 0.15:
             text.shift(("X", 0, 8), ("Z", -3, 3), ("C", 0, 1))
         text.add(f"G0 X{_x(text, 60)} Z{text.n(5)}")

@@ -26,8 +26,10 @@ from g12.tools.plot.scene import heading, scene_of
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.preview.moves import Event
 from g12.tools.units import MM, UNITS, clock, plain
-from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.subject import subject_of
+from g12.tools.verify.model.finding import Finding
+from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.rapids import RAPID
+from g12.tools.verify.remains import UNCUT, WALL
 from support.made_moves import Hand, samples_of
 
 FAST = [line for axis in "XYZ" for line in (f"[AXIS_{axis}]", "MAX_VELOCITY = 1e12")]
@@ -40,8 +42,7 @@ RED = to_rgba(style.CRASH)
 
 
 def scene(hand, ini=MILL, **options):
-    subject = subject_of(PROGRAM, ini, hand.trace())
-    return scene_of(subject, **options)
+    return scene_of(TracedProgram(PROGRAM, ini, hand.trace()), **options)
 
 
 def pocket():
@@ -203,7 +204,7 @@ def uncut(centre):
     """Return that a ring stands about a centre."""
     ring = Point(centre).buffer(30).difference(Point(centre).buffer(20))
     values = {"area": ring.area, "shape": ring, "floor": -4.0}
-    return Finding("uncut", 1, values, (*centre, -4.0))
+    return Finding(UNCUT, 1, values, (*centre, -4.0))
 
 
 def drawn_in_red(shown):
@@ -216,7 +217,7 @@ def drawn_in_red(shown):
 
 def rapid_through(*points, **values):
     values |= {"at": (), "to": (), "area": 1.0, "path": np.array(points, dtype=float)}
-    return Finding("rapid-through", 2, values, points[0])
+    return Finding(RAPID, 2, values, points[0])
 
 
 def warned(shown):
@@ -245,7 +246,7 @@ def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
 
 
 def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_view():
-    found = Finding("wall-run", 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
+    found = Finding(WALL, 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
     shown = replace(scene(pocket()), marks=Marks((uncut((50.0, 0.0)), found)))
     assert warned(shown) == ["uncut material", "finding in line 3"]
     low, high = plan_view.bounds_of(shown, [])
@@ -254,7 +255,7 @@ def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_vie
 
 @pytest.mark.parametrize(("hand", "ini", "at"), [(pocket, MILL, (2, 0)), (turned, LATHE, (-1, 2))])
 def test_a_sign_is_where_its_finding_is(hand, ini, at):
-    found = Finding("wall-run", 3, {"size": 0.1}, (50.8, 0.0, -25.4))
+    found = Finding(WALL, 3, {"size": 0.1}, (50.8, 0.0, -25.4))
     shown = replace(scene(hand(), ini, units="inch"), marks=Marks((found,)))
     lines = picture_of(shown).axes[0].lines
     signs = [line.get_xydata()[0] for line in lines if line.get_marker() == style.SIGN["marker"]]
@@ -385,7 +386,7 @@ def with_real_motion(hand, ini, aside):
     middle = slice(1900, 2100)
     for letter, value in aside.items():
         samples.axes[letter][middle] += value
-    return replace(shown, subject=replace(shown.subject, samples=samples))
+    return replace(shown, program=replace(shown.program, samples=samples))
 
 
 def test_the_window_shows_the_axes_in_which_the_motion_strays():
@@ -423,7 +424,7 @@ def test_what_the_spindle_turns_is_no_swept_area():
     trace = replace(hand.trace(), events=events)
     for spindles, found in (("2", ([2], [3])), ("1", ([], [2, 3]))):
         ini = LATHE.replaced({"TRAJ": {"SPINDLES": spindles}})
-        shown = scene_of(subject_of(PROGRAM, ini, trace))
+        shown = scene_of(TracedProgram(PROGRAM, ini, trace))
         assert (shown.turned, shown.sweeping) == found
 
 

@@ -27,15 +27,15 @@ from g12.tools.machine.stored_positions import offset_at_start
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
-from g12.tools.plot.scene import Scene, scene_of, scene_of_proof
+from g12.tools.plot.scene import Scene, scene_of, scene_of_judgement
 from g12.tools.preview.ended import ended
 from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
-from g12.tools.verify.commanded import Commanded
-from g12.tools.verify.proof import Proof, moves_and_words, prove_subject
-from g12.tools.verify.report import where_text
-from g12.tools.verify.subject import subject_of
+from g12.tools.verify.judge import Judgement, judge_trace, read_parameters, traced
+from g12.tools.verify.model.finding import SEVERITIES
+from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.report import sentence_in, where_text
 
 EXAMPLES = """\
 examples:
@@ -45,7 +45,6 @@ examples:
 
 exit code: 0 the picture is there, 2 the program has an error, or wrong use
 """
-KIND_WORDS = {"finding": "is_finding", "note": "is_note", "not judged": "is_not_judged"}
 
 
 def command_parser() -> Parser:
@@ -63,21 +62,23 @@ def main(arguments: list[str]) -> int:
     style.check_format(options.output)
     _ = ini.settings  # wrong ones are reported before a picture is written
     with opened_program(options.program, ini) as opened:
-        found, commanded = moves_to_draw(opened.path, ini, options)
+        found = moves_to_draw(opened.path, ini, options)
         in_source = trace_in_source(found, opened)
         samples = samples_of_run(opened.path, options, found, ini)
         with working(f"drawing {options.output.name}"):
-            subject = subject_of(opened.path, ini, found, samples, commanded)
+            stored = read_parameters(options.var)
+            program = TracedProgram(opened.path, ini, found, samples, stored)
             if found.error:
-                subject = replace(subject, trace=in_source)
-                proof, scene = None, scene_of(subject, options.units, options.feeds)
+                program = replace(program, trace=in_source)
+                judgement, scene = None, scene_of(program, options.units, options.feeds)
             else:
-                proof = replace(prove_subject(subject, stock=stock_of(options)), opened=opened)
-                scene = scene_of_proof(proof, options.override, options.units, options.feeds)
+                judgement = judge_trace(program, stock=stock_of(options), opened=opened)
+                how = options.override, options.units, options.feeds
+                scene = scene_of_judgement(judgement, *how)
             style.save(picture_of(scene), options.output)
     x0 = f"program {scene.x0_text}" if scene.x0_text else ""
     notes = [f"note: {text}" for text in (offset_at_start(options.var, ini), x0) if text]
-    judged = dict.fromkeys(judged_texts(proof, scene)) if proof else ()
+    judged = dict.fromkeys(judged_texts(judgement, scene)) if judgement else ()
     texts = [f"{options.output} written", *notes, *judged, *message_lines(in_source.messages)]
     print("\n".join(texts))
     report_line_numbers("plot", opened)
@@ -85,24 +86,24 @@ def main(arguments: list[str]) -> int:
     return GOOD
 
 
-def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> tuple[Trace, Commanded]:
-    """Return the moves to draw, and what the words command; of a refused program nothing."""
+def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> Trace:
+    """Return the moves to draw, of a refused program those up to there."""
     with working(f"interpreting {program.name}"):
-        found, commanded = moves_and_words(program, ini, options.tools, options.var)
+        found = traced(program, ini, options.tools, options.var)
         if found.error and not options.run:
             found = with_refused_contour(program, ini, found, options.var)
     if options.run or not found.moves:
         ended(program, found)
     if not found.moves:
         raise UsageError(f"{options.program}: moves nothing, so there is nothing to draw")
-    return found, commanded
+    return found
 
 
-def judged_texts(proof: Proof, scene: Scene) -> Iterator[str]:
+def judged_texts(judgement: Judgement, scene: Scene) -> Iterator[str]:
     """Yield what ``verify`` says, by kind; a finding that the picture marks is "in red"."""
     marked = set(map(id, scene.marks.findings))
-    for name, attribute in KIND_WORDS.items():
-        for each in (each for each in proof.judged if getattr(each, attribute)):
-            kind = "in red" if id(each) in marked else name
-            where = ", ".join(filter(None, [kind, where_text(proof, each)]))
-            yield f"{where}: {proof.text(each, scene.unit)}"
+    for severity in SEVERITIES:
+        for each in judgement.of(severity):
+            kind = "in red" if id(each) in marked else severity
+            where = ", ".join(filter(None, [kind, where_text(each, judgement)]))
+            yield f"{where}: {sentence_in(each, judgement, scene.unit)}"

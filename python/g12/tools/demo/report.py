@@ -3,17 +3,20 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from g12.tools.demo.samples import Sample
 from g12.tools.headless.machine import Run
 from g12.tools.machine.ini import read_ini
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
-from g12.tools.plot.scene import Scene, scene_of_proof
+from g12.tools.plot.scene import Scene, scene_of_judgement
 from g12.tools.units import Unit, clock, plain
-from g12.tools.verify.proof import Proof, prove
-from g12.tools.verify.report import in_columns
-from g12.tools.verify.result.cut import MeasuredCut
+from g12.tools.verify.judge import Judgement, judge
+from g12.tools.verify.measures import kind_of, measures
+from g12.tools.verify.model.cut import Cut
+from g12.tools.verify.model.finding import FINDING
+from g12.tools.verify.report import in_columns, sentence_in, where_text
 
 POCKET_HEADS = ("line", "code", "centre", "radius", "tool-centre rings", "Z", "off circles", "time")
 SECTION_HEADS = ("lines", "segments", "off contour", "allowed", "lowest feed", "C at most", "time")
@@ -25,32 +28,41 @@ def show(sample: Sample, run: Run, output: Path) -> tuple[str, bool]:
     Some of the manuals' programs leave material, or have rapids through it: that is only reported.
     """
     ini = read_ini(sample.ini)
-    proof = prove(sample.path, ini, tools=sample.tools, samples=run.samples)
-    scene = scene_of_proof(proof, sample.override)
+    judgement = judge(sample.path, ini, tools=sample.tools, samples=run.samples)
+    scene = scene_of_judgement(judgement, sample.override)
     picture = output / f"{sample.path.parent.name}_{sample.path.stem}.png"
     style.save(picture_of(scene), picture)
-    sound = all(cut.sound for cut in (*proof.pockets, *proof.sections))
-    return describe(sample, run, proof, scene, picture), sound
+    cuts = [(cut, measures(cut, judgement)) for cut in judgement.program.cuts]
+    sound = all(values["deviation"] <= values["allowed"] for _, values in cuts)
+    return describe(sample, run, judgement, cuts, scene, picture), sound
 
 
-def describe(sample: Sample, run: Run, proof: Proof, scene: Scene, picture: Path) -> str:
+def describe(
+    sample: Sample,
+    run: Run,
+    judgement: Judgement,
+    cuts: Sequence[tuple[Cut, dict[str, Any]]],
+    scene: Scene,
+    picture: Path,
+) -> str:
     slow = clock(scene.path.time[-1])
     faster = f" at {sample.override:g} % feed ({slow} at 100 %)" if sample.override != 100 else ""
     title = f"{scene.title}: {clock(run.seconds)} on {sample.machine}{faster}, {picture}"
     unit = scene.unit
     lines = [title, *(f"  LinuxCNC said: {message.text}" for message in run.messages)]
-    if proof.pockets:
-        lines += table(POCKET_HEADS, *(pocket_row(cut, unit) for cut in proof.pockets))
-    if proof.sections:
-        lines += table(SECTION_HEADS, *(section_row(cut, unit) for cut in proof.sections))
-    found = (each for each in proof.judged if each.is_finding)
-    lines += [f"  line {each.line}: {proof.text(each, unit)}" for each in found]
+    for kind, heads, row in (
+        ("pockets", POCKET_HEADS, pocket_row),
+        ("sections", SECTION_HEADS, section_row),
+    ):
+        rows = [row(cut, values, unit) for cut, values in cuts if kind_of(cut) == kind]
+        lines += table(heads, *rows) if rows else []
+    for each in judgement.of(FINDING):
+        lines.append(f"  {where_text(each, judgement)}: {sentence_in(each, judgement, unit)}")
     return "\n".join(lines)
 
 
-def pocket_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
+def pocket_row(cut: Cut, values: dict[str, Any], unit: Unit) -> tuple[str, ...]:
     """Return a pocket's row of the table; its time is that at the programmed feed."""
-    values = cut.values
     x, y = values["centre"]
     return (
         str(cut.line),
@@ -64,12 +76,11 @@ def pocket_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
     )
 
 
-def section_row(cut: MeasuredCut, unit: Unit) -> tuple[str, ...]:
-    values = cut.values
+def section_row(cut: Cut, values: dict[str, Any], unit: Unit) -> tuple[str, ...]:
     return (
-        f"{cut.line}-{cut.last}",
+        f"{cut.line}-{cut.last_line}",
         str(values["segments"]),
-        f"{unit.fine(cut.deviation)} {unit.name}",
+        f"{unit.fine(values['deviation'])} {unit.name}",
         f"{unit.fine(values['allowed'])} {unit.name}",
         f"{plain(values['lowest_feed'] / unit.mm, 1)} {unit.name}/min",
         f"{plain(values['c_speed'], 1)} of {plain(values['c_limit'], 1)} °/s",

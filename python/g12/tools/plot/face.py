@@ -101,7 +101,7 @@ def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], 
     c.plot(history.time, history.c, **drawn)
     style.caption(c, "C, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
-    limit = limits_of(scene.subject.ini).axes[C]
+    limit = limits_of(scene.program.ini).axes[C]
     draw_limit(c_speed, limit)
     style.caption(c_speed, "Speed of C, degrees/s")
     draw_feed(feed, history, scene, drawn)

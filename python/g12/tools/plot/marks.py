@@ -4,12 +4,24 @@
 Lengths are millimetres in the coordinates of the picture's part.
 """
 
+import math
 from typing import NamedTuple
 
-from g12.tools.path.part import Z
-from g12.tools.verify.proof import Proof
-from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.workpiece import Workpiece
+from shapely.geometry.base import BaseGeometry
+
+from g12.tools.material.stock import Stock
+from g12.tools.verify.judge import Judgement
+from g12.tools.verify.model.finding import FINDING, Finding
+from g12.tools.verify.model.solid import FACE
+
+
+class DrawnStock(NamedTuple):
+    """A given stock: its area as seen along Z, its top, its bottom if that is known."""
+
+    stock: Stock
+    shape: BaseGeometry
+    top: float
+    bottom: float | None
 
 
 class Marks(NamedTuple):
@@ -20,7 +32,7 @@ class Marks(NamedTuple):
     """
 
     findings: tuple[Finding, ...] = ()
-    stock: Workpiece | None = None
+    stock: DrawnStock | None = None
     surface: float = 0.0
     z0: float = 0.0
 
@@ -40,21 +52,23 @@ class Marks(NamedTuple):
         return [each for each in self.findings if not {"path", "floor"} & each.values.keys()]
 
 
-def marks_of_proof(proof: Proof) -> Marks:
-    """Return what the picture of a verified program marks.
+def marks_of(judgement: Judgement) -> Marks:
+    """Return what the picture of a judged program marks.
 
-    It is that of a cylinder's surface where all sections and holes are on one. Of sections the
-    place is in the coordinates of the face or the surface, of holes always in those of the face.
+    It is that of a cylinder's surface where all sections and holes are on one.
     """
-    sections, holes = proof.sections, proof.cuts.holes
-    radii = [cut.surface for cut in (*sections, *holes)]
+    program, solids = judgement.program, judgement.solids
+    radii = [cut.surface for cut in program.cuts if program.turning]
     surface = radii[0] if radii and all(radii) else 0.0
-    others = holes if surface else [cut for cut in sections if cut.surface]
-    elsewhere = {id(each) for cut in others for each in cut.judged}
-    placed = (each for each in proof.judged if each.is_finding and each.place is not None)
-    marked = (
-        each
-        for each in placed
-        if id(each) not in elsewhere and bool(each.values.get("surface", surface)) == bool(surface)
-    )
-    return Marks(tuple(marked), proof.given, surface, float(proof.subject.zero[Z]))
+    placed = (each for each in judgement.of(FINDING) if each.place is not None)
+    marked = (each for each in placed if bool(_surface_of(each, judgement)) == bool(surface))
+    bottom = solids.bottom if math.isfinite(solids.bottom) else None
+    stock = solids.stock and DrawnStock(solids.stock, solids.shape(FACE), solids.top(FACE), bottom)
+    return Marks(tuple(marked), stock, surface, program.z0)
+
+
+def _surface_of(found: Finding, judgement: Judgement) -> float:
+    """Return the radius of the cylinder on which the place of a finding is, 0 on the face."""
+    own = (cut for cut in judgement.program.cuts if cut.file == found.file)
+    cut = next((each for each in own if each.line <= found.line <= each.last_line), None)
+    return float(found.values.get("surface", cut.surface if cut else FACE))

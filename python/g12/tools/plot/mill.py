@@ -33,7 +33,7 @@ from g12.tools.plot.plan_view import (
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
-from g12.tools.verify.result.finding import Finding
+from g12.tools.verify.model.finding import Finding
 
 PAGE_WIDTH = 11.0  # wide
 WIDE = 2.0  # a plan wider than this times its height has the legend below

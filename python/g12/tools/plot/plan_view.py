@@ -121,7 +121,7 @@ def swept_by(scene: Scene, indices: Iterable[int]) -> tuple[BaseGeometry, float]
 
 
 def diameter_of(scene: Scene, tool: int) -> float:
-    return scene.subject.trace.diameters.get(tool, 0.0)
+    return scene.program.trace.diameters.get(tool, 0.0)
 
 
 def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:

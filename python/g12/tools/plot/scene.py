@@ -16,14 +16,15 @@ import numpy as np
 from g12.tools.path.follow import Followed
 from g12.tools.path.part import C, x0_text
 from g12.tools.path.track import Track
-from g12.tools.plot.marks import Marks, marks_of_proof
-from g12.tools.preview.executed_blocks import COMMENTS
+from g12.tools.plot.marks import Marks, marks_of
 from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
-from g12.tools.verify.proof import Proof
-from g12.tools.verify.subject import Subject
+from g12.tools.verify.judge import Judgement
+from g12.tools.verify.model.deviation import deviation_of
+from g12.tools.verify.model.program import TracedProgram
 
 HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
+COMMENTS = re.compile(r"\([^)]*\)|;.*")
 AXIS_LETTER = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
 MOST_HEAD_LINES = 20
 LONGEST_HEADING = 72
@@ -41,7 +42,7 @@ class Scene:
     and for the name of a sub's own file.
     """
 
-    subject: Subject
+    program: TracedProgram
     unit: Unit
     feed_colours: bool = False
     override: float = 100.0
@@ -51,15 +52,15 @@ class Scene:
 
     @property
     def moves(self) -> Sequence[Move]:
-        return self.subject.trace.moves
+        return self.program.trace.moves
 
     @property
     def path(self) -> Track:
-        return self.subject.path
+        return self.program.path
 
     @property
     def real(self) -> Followed | None:
-        return self.subject.real
+        return self.program.real
 
     @cached_property
     def fed(self) -> list[int]:
@@ -71,15 +72,15 @@ class Scene:
         """The moves at feed whose tool points at the axis: the face's picture shows their path."""
         if not self.path.part.turning or self.marks.surface:
             return []
-        sideways = self.subject.sideways
+        sideways = self.program.sideways
         return [index for index in self.fed if sideways[index] == {True}]
 
     @cached_property
     def turned(self) -> list[int]:
         """The moves at feed at a part that its spindle turns, where tools have one of their own."""
-        if not self.path.part.turning or self.subject.ini.number("TRAJ", "SPINDLES", 1) < 2:
+        if not self.path.part.turning or self.program.ini.number("TRAJ", "SPINDLES", 1) < 2:
             return []
-        codes = [(0, "M5"), *((each.at, each.text) for each in self.subject.trace.events)]
+        codes = [(0, "M5"), *((each.at, each.text) for each in self.program.trace.events)]
         codes = [(at, text) for at, text in codes if text in ("M3", "M4", "M5")]
         last = (bisect_right(codes, index, key=itemgetter(0)) - 1 for index in self.fed)
         return [index for index, code in zip(self.fed, last) if codes[code][1] != "M5"]
@@ -109,17 +110,17 @@ class Scene:
 
     @property
     def title(self) -> str:
-        return self.subject.program.stem
+        return self.program.file.stem
 
     @property
     def subtitle(self) -> str:
         """LinuxCNC's error if any, the comment that heads the program, the machine, the time."""
-        error = self.subject.trace.error
+        error = self.program.trace.error
         length = sum(map(self.path.part_length, self.fed))
         facts = [
             f"refused in line {error.line}: {error.rule}" if error else "",
-            heading(self.subject.program),
-            self.subject.ini.path.name,
+            heading(self.program.file),
+            self.program.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
             f"run at {self.override:g}\u00a0%" if self.real and self.override != 100 else "",
@@ -127,20 +128,25 @@ class Scene:
         return " · ".join(filter(None, facts))
 
 
-def scene_of(subject: Subject, units: str | None = None, feed_colours: bool = False) -> Scene:
+def scene_of(program: TracedProgram, units: str | None = None, feed_colours: bool = False) -> Scene:
     """Return the scene of a traced program; without ``units`` in the program's."""
-    return Scene(subject, unit_of(subject.trace.modes.gcodes, units), feed_colours)
+    return Scene(program, unit_of(program.trace.modes.gcodes, units), feed_colours)
 
 
-def scene_of_proof(
-    proof: Proof, override: float = 100.0, units: str | None = None, feed_colours: bool = False
+def scene_of_judgement(
+    judgement: Judgement,
+    override: float = 100.0,
+    units: str | None = None,
+    feed_colours: bool = False,
 ) -> Scene:
+    program = judgement.program
+    off = (deviation_of(cut, program).size for cut in program.cuts if cut.is_section)
     return replace(
-        scene_of(proof.subject, units, feed_colours),
+        scene_of(judgement.program, units, feed_colours),
         override=override,
-        marks=marks_of_proof(proof),
-        contour=max((facts.deviation for facts in proof.sections), default=None),
-        user_line=proof.user_line,
+        marks=marks_of(judgement),
+        contour=max(off, default=None),
+        user_line=judgement.user_line,
     )
 
 

@@ -16,6 +16,7 @@ from shapely.geometry import box
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.face import TIME_IN_RAPIDS, draw_history
+from g12.tools.plot.marks import DrawnStock
 from g12.tools.plot.plan_view import (
     SceneView,
     bounds_of,
@@ -25,8 +26,7 @@ from g12.tools.plot.plan_view import (
     milled_levels,
 )
 from g12.tools.plot.scene import Scene
-from g12.tools.verify.result.finding import Finding
-from g12.tools.verify.workpiece import Workpiece
+from g12.tools.verify.model.finding import Finding
 
 WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
 LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
@@ -92,16 +92,16 @@ def unrolled(scene: Scene) -> Scene:
     radius = scene.marks.surface
     findings = tuple(on_radius(each, radius) for each in scene.marks.findings)
     marks = scene.marks._replace(findings=findings, stock=None)
-    return replace(scene, subject=scene.subject.on_surface(radius), marks=marks)
+    return replace(scene, program=scene.program.on_surface(radius), marks=marks)
 
 
-def with_bar(flat: Scene, bar: Workpiece | None, low: np.ndarray, high: np.ndarray) -> Scene:
+def with_bar(flat: Scene, bar: DrawnStock | None, low: np.ndarray, high: np.ndarray) -> Scene:
     """Return an unrolled scene with the bar, if any: all around, up to Z0, beyond the view."""
     if bar is None:
         return flat
     (left, below), (right, _) = low - (high - low), high + (high - low)
-    shape = box(left, below, right, flat.subject.z0)
-    return replace(flat, marks=flat.marks._replace(stock=replace(bar, shape=shape)))
+    shape = box(left, below, right, flat.program.z0)
+    return replace(flat, marks=flat.marks._replace(stock=bar._replace(shape=shape)))
 
 
 def on_radius(finding: Finding, radius: float) -> Finding:

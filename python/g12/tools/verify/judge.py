@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Judge one program: the rules, the four questions to its material, its deviations."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from g12.tools.machine.filter import OpenedProgram
+from g12.tools.machine.ini import Ini
+from g12.tools.material.stock import StockText, read_stock
+from g12.tools.path.samples import Samples
+from g12.tools.preview.ended import ended, explained
+from g12.tools.preview.moves import Trace
+from g12.tools.preview.tracer import Parameters, Tools, Tracer
+from g12.tools.progress import Report, silent
+from g12.tools.units import unit_of
+from g12.tools.verify.accept import Accepted, accepted, expectations
+from g12.tools.verify.air import judge_air
+from g12.tools.verify.in_part import judge_in_part
+from g12.tools.verify.model.deviation import judge_deviations
+from g12.tools.verify.model.finding import FINDING, Finding, once_a_line
+from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.solid import Solids
+from g12.tools.verify.rapids import judge_rapids
+from g12.tools.verify.remains import judge_remains
+from g12.tools.verify.rules import contour, feed, spindle, tool, whole  # noqa: F401  # the table
+from g12.tools.verify.rules.table import judge_rules
+
+CAUSES = {  # a finding of one code is the cause of those of others at the same cut
+    "length": {"rapid", "uncut", "air", "bar-remains"},
+    "length-higher": {"uncut", "air", "cut-before", "bar-remains"},
+    "cutter": {"uncut", "wall", "core"},
+    "d-stale": {"wall", "uncut", "cutter", "worn"},
+    "air": {"uncut", "bar-remains", "air-contour"},
+    "no-stock-met": {"uncut", "bar-remains"},
+    "surface": {"rapid"},
+    "side": {"overcut", "bar-remains"},
+    "no-tool": {"no-diameter"},
+    "offset-beside": {"off"},
+}
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """What was found of a program, and what was ``accepted``; ``opened`` is the user's file."""
+
+    program: TracedProgram
+    solids: Solids
+    found: Sequence[Finding]
+    accepted: Sequence[Finding]
+    tolerance: float | None = None
+    opened: OpenedProgram | None = None
+
+    def of(self, severity: str) -> list[Finding]:
+        return [each for each in self.found if each.severity == severity]
+
+    def user_line(self, line: int, file: str = "") -> int:
+        """Return a line in the user's file; one in a sub's own ``file`` stays."""
+        return self.opened.source_line(line) if self.opened and not file else line
+
+    @cached_property
+    def findings(self) -> list[tuple[int, str]]:
+        return [(each.line, each.text()) for each in self.of(FINDING)]
+
+
+def judge(
+    program: Path,
+    ini: Ini,
+    *,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    samples: Samples | None = None,
+    **options,
+) -> Judgement:
+    """Trace and judge a program; see ``judge_trace``."""
+    trace = ended(program, traced(program, ini, tools, parameters))
+    stored = read_parameters(parameters)
+    return judge_trace(TracedProgram(program, ini, trace, samples, stored), **options)
+
+
+def traced(program: Path, ini: Ini, tools: Tools = None, parameters: Parameters = None) -> Trace:
+    with Tracer(ini, tools=tools, reports=True) as tracer:
+        found = tracer.trace(program, parameters=parameters)
+        return explained(found, ini.path, program)
+
+
+def judge_trace(
+    program: TracedProgram,
+    *,
+    stock: StockText | None = None,
+    tolerance: float | None = None,
+    accept: Sequence[str] = (),
+    opened: OpenedProgram | None = None,
+    tell: Report = silent,
+) -> Judgement:
+    """Return the judgement of a traced program; ``tolerance`` in mm replaces the usual ones.
+
+    ``accept`` are codes of warnings, ``opened`` is the user's file where a filter changed it.
+    """
+    unit = unit_of(program.trace.modes.gcodes, stock.units if stock else None)
+    given = read_stock(stock.text, program.turning, unit) if stock else None
+    tell("looking for material")
+    solids = Solids(program, given)
+    every = list(
+        once_a_cause(
+            [*judged(program, solids, tell), *judge_deviations(program, tolerance)], program
+        )
+    )
+    expected = [*expectations(program.file), *(Accepted(code, 0) for code in accept)]
+    found, taken = accepted(every, program.cuts, expected)
+    return Judgement(program, solids, once_a_line(found), once_a_line(taken), tolerance, opened)
+
+
+def judged(program: TracedProgram, solids: Solids, tell: Report) -> Iterator[Finding]:
+    yield from judge_rules(program, solids)
+    tell("looking for rapids through material")
+    yield from judge_rapids(program, solids)
+    tell("looking for what remains")
+    yield from judge_remains(program, solids)
+    yield from judge_air(program, solids)
+    yield from judge_in_part(program, solids)
+
+
+def once_a_cause(found: Sequence[Finding], program: TracedProgram) -> Iterator[Finding]:
+    """Yield what is found, but for what another finding of the same cut causes."""
+    of_cut: dict[int, set[str]] = {}
+    for each in found:
+        of_cut.setdefault(_cut_of(each, program), set()).add(each.code)
+    for each in found:
+        present = of_cut[_cut_of(each, program)]
+        if not any(each.code in CAUSES.get(cause, ()) for cause in present):
+            yield each
+
+
+def _cut_of(found: Finding, program: TracedProgram) -> int:
+    """Return the index of the cut that a finding is of, or of a rapid the following one's."""
+    for cut in program.cuts:
+        if cut.file == found.file and cut.line <= found.line <= cut.last_line:
+            return cut.index
+    after = (cut.index for cut in program.cuts if cut.line > found.line)
+    return next(after, -1) if found.code == "rapid" else -1 - found.line
+
+
+def read_parameters(parameters: Parameters) -> dict[int, float]:
+    """Return the numbered parameters with which a program starts."""
+    if isinstance(parameters, Mapping):
+        return dict(parameters)
+    file = Path(parameters) if parameters else None
+    rows = file.read_text(errors="replace").splitlines() if file else []
+    words = (row.split() for row in rows)
+    return {int(row[0]): float(row[1]) for row in words if len(row) > 1 and row[0].isdigit()}

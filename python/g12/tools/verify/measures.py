@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The measures of a cut by the names of ``--json`` and of the report.
+
+mm, mm², mm/min, degrees, seconds; None is not known. Positions are the program's.
+"""
+
+import cmath
+import math
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from g12.cut_report import CutElement, EventCut, HolesCut, PocketCut
+from g12.geometry.curve import Arc, Line
+from g12.machine_ini import remap_lines
+from g12.tools.machine.ini import Ini
+from g12.tools.path.lathe_axes import lathe_axes
+from g12.tools.path.part import C
+from g12.tools.path.section_times import Leg, SectionTimes, section_times
+from g12.tools.path.slowest import pace_of
+from g12.tools.path.track import track
+from g12.tools.verify.judge import Judgement
+from g12.tools.verify.model.cut import Cut
+from g12.tools.verify.model.deviation import (
+    allowed_off,
+    circles_of,
+    deviation_of,
+    off_circles,
+    section_curve,
+)
+from g12.tools.verify.model.program import TracedProgram
+
+SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "on the contour"}
+THIRD = {"G17": 2, "G18": 1, "G19": 0}
+TURN = 1e-3  # radians of a corner, mm
+ROUNDED = 6  # decimals of rings
+
+
+def kind_of(cut: Cut) -> str:
+    """Return the name of a cut's list in ``--json``."""
+    if cut.is_section:
+        return "sections"
+    return "pockets" if cut.is_circle else "holes" if cut.places else "shapes"
+
+
+def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
+    program = judgement.program
+    own = {"pockets": _circle, "sections": _section, "holes": _holes, "shapes": _shape}
+    return {
+        "code": cut.code,
+        "cutter": 2 * (cut.cutter or _compensated_with(cut)) or None,
+        "deviation": deviation_of(cut, program).size,
+        "allowed": allowed_off(cut, program, judgement.tolerance),
+        **_pace(cut, program),
+        **own[kind_of(cut)](cut, program),
+    }
+
+
+def _compensated_with(cut: Cut) -> float:
+    return max((each.radius for each in cut.elements if each.side), default=0.0) * cut.mm
+
+
+def _pace(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+    if cut.at >= cut.end:
+        return {}
+    fed = [i for i in cut.moves if program.moves[i].kind != "rapid"]
+    part, speed = program.part_of_cut(cut), program.trace.modes.speed
+    path = track(part, program.moves, program.limits, speed, own=cut.moves)
+    pace = pace_of(cut.moves, fed, path, program.real)
+    taps = cut.is_tap  # no trace has the time of a synchronized move
+    return {
+        "seconds": None if taps else pace.seconds,
+        "seconds_programmed": None if taps else pace.expected,
+        "lowest_feed": pace.lowest,
+        "lowest_feed_line": program.where(pace.move)[0],
+        "lowest_feed_at": program.words(pace.move, pace.point, cut.surface),
+    }
+
+
+# ------------------------------------------------------------ kinds of cuts
+
+
+def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+    third = THIRD[getattr(cut.plan, "plane", "G17")]
+    rings = circles_of(cut, program)
+    levels = cut.plan.levels if isinstance(cut.plan, (PocketCut, EventCut)) else ()
+    return {
+        "dialect": dialect_of(cut.code, program.ini),
+        "centre": [value * cut.mm for value in cut.plan.centre[:2]],
+        "radius": cut.inner if cut.has_boss else cut.wall,
+        "boss": cut.inner if cut.has_boss else None,
+        "reached": max(rings.values(), default=0.0) + cut.cutter,
+        "rings": list(dict.fromkeys(round(radius, ROUNDED) for radius in rings.values())),
+        "core": cut.inner or None,
+        "square_to": "XYZ"[third],
+        "depths": list(dict.fromkeys(level * cut.mm for level in levels)),
+        "lowest": min(levels, default=0.0) * cut.mm,
+        "off_circles": off_circles(cut, program).size,
+    }
+
+
+def dialect_of(code: str, ini: Ini) -> str | None:
+    """Return the name of the cycles that a machine's code calls."""
+    for remap in remap_lines(ini.all):
+        if remap.code == code:
+            found = re.search(r"prolog=g1[23]_(\w+)", str(remap))
+            return found[1] if found else None
+    return None
+
+
+def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+    fed = [i for i in cut.moves if program.moves[i].kind != "rapid"]
+    lengths = [length for i in fed if (length := program.moves[i].length) > 0]
+    sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
+    times, factor = (
+        times_of(cut, program.ini),
+        2 if cut.surface and program.diameters(cut.at) else 1,
+    )
+    return {
+        "sides": " and ".join(SIDES[side] for side in sides),
+        "surface": cut.surface or None,
+        "zero_line": None if cut.surface else program.moves[cut.at].start[C],
+        "x_words": "diameters" if program.diameters(cut.at) else "radii",
+        "third": "X" if cut.surface else "Z",
+        "lowest": factor * (cut.floor - (0.0 if cut.surface else cut.zero[2])),
+        "segments": len(fed),
+        "shortest": min(lengths, default=0.0),
+        "longest": max(lengths, default=0.0),
+        "c_speed": max(_speeds_of_c(cut, program), default=0.0),
+        "c_limit": _finite(program.limits.axes[C]),
+        "seconds_planned": times and times._asdict(),
+    }
+
+
+def _speeds_of_c(cut: Cut, program: TracedProgram) -> Iterator[float]:
+    for index in cut.moves:
+        move, seconds = program.moves[index], program.path.seconds(index)
+        if seconds:
+            yield abs(move.end[C] - move.start[C]) / seconds
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def times_of(cut: Cut, ini: Ini) -> SectionTimes | None:
+    """Return about how long a section takes on this machine, None where that is not estimated.
+
+    That is on a cylinder, with the tool beside the X line, and without a feed.
+    """
+    drawn = [each for each in cut.elements if each.end is not None and each.start != each.end]
+    if cut.surface or ini.tool_beside or not drawn or not all(each.feed for each in cut.elements):
+        return None
+    legs = list(_legs(drawn, cut))
+    plunges = (each for each in cut.elements if each.end is None)
+    plunging = sum(60 * abs(each.z1 - each.z0) / each.feed for each in plunges)
+    return SectionTimes(*(plunging + each for each in section_times(legs, lathe_axes(ini))))
+
+
+def _legs(drawn: Sequence[CutElement], cut: Cut) -> Iterator[Leg]:
+    """Yield the tool's moves beside a contour, with its leads, and arcs round outside corners."""
+    curves = [section_curve(each, cut) for each in drawn]
+    beside = [c.offset(e.side * e.radius * cut.mm) for c, e in zip(curves, drawn)]
+    end, side = curves[0].start, 0
+    for n, each in enumerate(drawn):
+        feed, curve = each.feed * cut.mm / 60, beside[n]
+        if each.side != side:  # onto the contour, or away from it
+            to = beside[n + 1].start if each.side and n + 1 < len(drawn) else curve.end
+            curve = Line(end, to)
+        elif each.side:
+            turn = (curve.start - curves[n].start) * (end - curves[n].start).conjugate()
+            sweep = cmath.phase(turn) if abs(turn) > TURN else 0.0
+            if sweep * each.side < -TURN:
+                yield Leg(Arc(end, curves[n].start, sweep), feed)
+        yield Leg(curve, feed)
+        end, side = curve.end, each.side
+
+
+def _shape(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+    lowest = cut.floor - cut.zero[2]
+    return {"entries": dict(cut.reported.report.words), "third": "Z", "lowest": lowest}
+
+
+def _holes(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+    plan = cut.plan
+    assert isinstance(plan, HolesCut)
+    return {
+        "entries": dict(cut.reported.report.words),
+        "count": len(plan.places),
+        "side": "round" if cut.surface else "on",
+        "circle": 2 * plan.places[0][0] * cut.mm,
+        "angles": [c for *_, c in plan.places],
+        "depth": plan.depth * cut.mm,
+    }

@@ -1,0 +1,387 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A traced program: its state at each move, and where the tool's tip is on the part."""
+
+import math
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from g12.lengths import MM_PER_INCH
+from g12.tools.machine.ini import Ini
+from g12.tools.path.follow import Followed, follow
+from g12.tools.path.nearest import shares_along
+from g12.tools.path.part import INCHES, C, Part, X, Z, part_of, part_of_program
+from g12.tools.path.samples import Samples
+from g12.tools.path.surface import Surface
+from g12.tools.path.track import Limits, Track, limits_of, track
+from g12.tools.preview.moves import Move, Trace
+from g12.tools.units import plain
+from g12.tools.verify.model.cut import Cut, cuts_of
+
+WEAR = 0.05  # of the loaded tool's radius: D may differ by that
+SIZE = 1e-3  # mm: lengths that differ by less are equal
+CHORD = 2e-3  # of the paths that are judged
+A, B = 3, 4
+COMMENT = re.compile(r"\(.*?\)|;.*")
+SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
+OWN_SUBS = {  # their moves are reported cuts
+    *("POLAR_POLYGON", "POLAR_SLOT", "POLAR_POCKET"),
+    *("FACE_HOLES", "SIDE_HOLES", "FACE_HOLE_AT", "CIRCLE_MILL"),
+}
+
+
+class State(NamedTuple):
+    """What is in force at a move: the first spindle, and the code that set the tool length."""
+
+    spindle: str = ""  # M3, M4, M5, "" before any
+    speed: float = 0.0
+    user_code: bool = False  # an M1xx came, which may turn a spindle
+    length_code: str = ""  # G43, G43.1, G43.2, G49; tool: none since M6
+
+
+@dataclass(frozen=True)
+class TracedProgram:
+    """``samples`` are those of a run, ``parameters`` the var file's, ``surface``: see ``part``."""
+
+    file: Path
+    ini: Ini
+    trace: Trace
+    samples: Samples | None = None
+    parameters: dict[int, float] = field(default_factory=dict)
+    surface: float = 0.0
+
+    @property
+    def moves(self) -> list[Move]:
+        return self.trace.moves
+
+    @cached_property
+    def cuts(self) -> list[Cut]:
+        return cuts_of(self.trace)
+
+    @cached_property
+    def turning(self) -> bool:
+        return part_of(self.ini).turning
+
+    @cached_property
+    def texts(self) -> list[str]:
+        """The program's lines, without comments, in upper case."""
+        text = self.file.read_text(encoding="utf-8", errors="replace")
+        return [COMMENT.sub("", line).upper() for line in text.splitlines()]
+
+    @cached_property
+    def limits(self) -> Limits:
+        return limits_of(self.ini)
+
+    @cached_property
+    def several_spindles(self) -> bool:
+        return self.ini.number("TRAJ", "SPINDLES", 1) > 1
+
+    # ------------------------------------------------------------ the part
+
+    @cached_property
+    def part(self) -> Part:
+        """The part of pictures: about the X0 of its first cut, or the unrolled ``surface``."""
+        if self.surface:
+            return Surface(turning=True, radius=self.surface)
+        found = part_of_program(self.ini, self.trace, bool(self.cuts) and self.turning)
+        if found.turning and self.cuts:
+            return replace(found, centre=self.cuts[0].zero[X])
+        return found
+
+    def on_surface(self, radius: float) -> Self:
+        return replace(self, surface=radius)
+
+    @cached_property
+    def path(self) -> Track:
+        """The moves as one polyline in time."""
+        return track(self.part, self.moves, self.limits, self.trace.modes.speed)
+
+    @cached_property
+    def real(self) -> Followed | None:
+        """The motion of the run, laid on the path."""
+        return follow(self.path, self.samples, self.ini.mm) if self.samples else None
+
+    def part_of_cut(self, cut: Cut) -> Part:
+        return self.part_at(cut.surface, cut.at)
+
+    def part_at(self, radius: float, index: int) -> Part:
+        """Return the part as the tool of a move sees it: the face, or a cylinder of a radius.
+
+        The spindle's axis is where X0 is, which may differ from tool to tool.
+        """
+        near = self.cuts[max(bisect_right(self._starts, index) - 1, 0) :]
+        first = near[0] if near else None
+        if len(near) > 1 and first.end <= index and self._changed(first.at, index):
+            first = near[1]
+        centre = first.zero[X] if first else 0.0
+        if self.turning and radius:
+            return Surface(turning=True, radius=radius, centre=centre)
+        return Part(self.turning, self.ini.tool_beside, centre if self.turning else 0.0)
+
+    def _changed(self, one: int, other: int) -> bool:
+        return self.moves[one].tool != self.moves[other].tool
+
+    @cached_property
+    def zero(self) -> tuple[float, float, float]:
+        """The program's zero on the machine where it first cuts, without a cut where it ends."""
+        if self.cuts:
+            return self.cuts[0].zero
+        unit = MM_PER_INCH if self.trace.state.get("length_units") == INCHES else 1.0
+        names = ("current_x", "current_y", "current_z")
+        known = zip(self.trace.position, (self.trace.state.get(name) for name in names))
+        x, y, z = (0.0 if at is None else end - at * unit for end, at in known)
+        return x, y, z
+
+    @property
+    def z0(self) -> float:
+        return self.zero[2]
+
+    @property
+    def rotation(self) -> float:
+        """The angle of the program's X on a mill where it first cuts, degrees."""
+        return self.cuts[0].rotation if self.cuts else 0.0
+
+    def words(
+        self, index: int, point: Sequence[float], radius: float
+    ) -> list[tuple[str, float | str]]:
+        """Return a point of a move on a part in the program's words: X Y Z, on a lathe X C Z."""
+        cut = self.cut_near(index)
+        zero = cut.zero if cut else self.zero
+        if not self.turning:
+            x, y, z = (at - own for at, own in zip(point, zero))
+            turn = math.radians(-(cut.rotation if cut else 0.0))
+            cos, sin = math.cos(turn), math.sin(turn)
+            return [("X", x * cos - y * sin), ("Y", x * sin + y * cos), ("Z", z)]
+        factor = 2.0 if self.diameters(index) else 1.0
+        if cut and cut.is_section and not cut.surface and index in cut.moves:
+            at = cut.plane_words(complex(*point[:2]))
+            return [("X", factor * at.real), ("C", at.imag), ("Z", point[2] - zero[Z])]
+        position = self._position(index, np.array(point, float), radius)
+        c = position[C] - (cut.zero_c if cut else 0.0)
+        return [
+            ("X", factor * (position[X] - zero[X])),
+            ("C", plain(c, 3)),
+            ("Z", position[Z] - zero[Z]),
+        ]
+
+    def _position(self, index: int, point: np.ndarray, radius: float) -> np.ndarray:
+        """Return the machine position of a move next to a point of the part."""
+        line, move = self.tip(index, radius), self.moves[index]
+        if len(line) < 2:
+            return np.array(move.end)
+        along = np.diff(line, axis=0)
+        shares = shares_along(point, line[:-1], along)
+        away = np.linalg.norm(line[:-1] + shares[:, None] * along - point, axis=1)
+        nearest = int(away.argmin())
+        share = (nearest + shares[nearest]) / len(along)
+        return np.array(move.start) * (1 - share) + np.array(move.end) * share
+
+    def diameters(self, index: int) -> bool:
+        """Return whether X words are diameters, as in the section or the mode next to a move."""
+        cut = self.cut_near(index)
+        known = getattr(cut.plan, "diameters", None) if cut else None
+        return "G7" in self.trace.modes.gcodes if known is None else known
+
+    # ------------------------------------------------------------ its moves
+
+    @cached_property
+    def uses_lengths(self) -> bool:
+        return any(abs(move.tool_offset[axis]) > SIZE for move in self.moves for axis in (X, Z))
+
+    def missing_length(self, index: int, axis: int = Z) -> float:
+        """Return by how much the loaded tool is longer than the length in force."""
+        move, table = self.moves[index], self.trace.table_at(index)
+        sizes = table.lengths if axis == Z else table.offsets
+        return sizes.get(move.tool, 0.0) - move.tool_offset[axis]
+
+    def chosen_length(self, index: int) -> bool:
+        """Return whether the length in force is one that the program gives itself, and is safe."""
+        code = self.state(index).length_code
+        safe = code == "G43.1" and self.missing_length(index) < 0.0
+        return code == "G43.2" or safe or (code == "G49" and self.turning)
+
+    def tip(self, index: int, radius: float) -> np.ndarray:
+        """Return the points (n, 3) of the part at which the tool's tip is along a move."""
+        key = index, radius
+        if key not in self._tips:
+            self._tips[key] = self._tip(index, radius)
+        return self._tips[key]
+
+    @cached_property
+    def _tips(self) -> dict[tuple[int, float], np.ndarray]:
+        return {}
+
+    def _tip(self, index: int, radius: float) -> np.ndarray:
+        move, part = self.moves[index], self.part_at(radius, index)
+        own = self.real.positions[self.real.during(index)] if self.real else ()
+        positions = np.array(own) if len(own) else part.machine_points(move, CHORD)
+        if self.uses_lengths and move.tool > 0 and not self.chosen_length(index):
+            positions = positions.copy()
+            positions[:, Z] -= self.missing_length(index)
+            positions[:, X] -= self.missing_length(index, X) * self.turning
+        points = part.points(positions)
+        return points - (0.0, 0.0, part.centre) if radius else points
+
+    def cutter(self, index: int) -> float:
+        """Return the radius of a move's cutter: the loaded tool's, D's if it differs by wear."""
+        radius, own = self.trace.radius(index), self.cut_at(index)
+        planned = own.cutter if own else 0.0
+        return planned if abs(planned - radius) <= WEAR * radius or not radius else radius
+
+    def cut_at(self, index: int) -> Cut | None:
+        """Return the cut that a move belongs to."""
+        last = bisect_right(self._starts, index) - 1
+        return self.cuts[last] if last >= 0 and index < self.cuts[last].end else None
+
+    def cut_near(self, index: int) -> Cut | None:
+        """Return the cut of a move, or the last before it, or the first."""
+        last = bisect_right(self._starts, index) - 1
+        return self.cuts[max(last, 0)] if self.cuts else None
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        return [cut.at for cut in self.cuts]
+
+    def where(self, index: int) -> tuple[int, str]:
+        """Return the line of a move, and the file of the sub in which it is, "" of the program."""
+        move, cut = self.moves[index], self.cut_at(index)
+        if cut:
+            return (move.line if cut.is_section else cut.line), cut.file
+        return (move.line if not self.calls_files else move.block), ""
+
+    @cached_property
+    def calls_files(self) -> bool:
+        """Whether the program calls a sub in a file of its own."""
+        text = "\n".join(self.texts)
+        called = set(SUB_CALL.findall(text)) - OWN_SUBS
+        return bool(called - set(SUB_BEGIN.findall(text)) or self.trace.files)
+
+    @cached_property
+    def sides(self) -> list[set[float] | None]:
+        """On what the tool of each move may be: the radii of its cuts next to the move.
+
+        On a mill always {0}; of a lathe's tool without a cut None.
+        """
+        if not self.turning:
+            return [{0.0}] * len(self.moves)
+        of_tool: dict[int, list[Cut]] = {}
+        for cut in self.cuts:
+            if cut.at < len(self.moves):
+                of_tool.setdefault(self.moves[cut.at].tool, []).append(cut)
+        on_faces = any(not cut.surface for cut in self.cuts)
+        feeding = {move.tool for move in self.moves if move.kind != "rapid"}  # they turn
+        found: list[set[float] | None] = []
+        turned = False  # before the next cut, also by rapid from there
+        for index, move in enumerate(self.moves):
+            own, inside = of_tool.get(move.tool), self.cut_at(index)
+            turned = not inside and (self._is_turned(index) or (turned and move.kind == "rapid"))
+            if turned:
+                found.append(None)
+                continue
+            if not own or inside:
+                on_face = None if move.tool in feeding or not on_faces else {0.0}
+                found.append({inside.surface} if inside else on_face)
+                continue
+            after = bisect_right(own, index, key=lambda cut: cut.at)
+            found.append({cut.surface for cut in own[max(after - 1, 0) : after + 1]})
+        return found
+
+    def _is_turned(self, index: int) -> bool:
+        """Return whether the part turns at a move, where tools have a spindle of their own."""
+        state = self.state(index)
+        return self.several_spindles and state.spindle in ("M3", "M4") and bool(state.speed)
+
+    @property
+    def sideways(self) -> list[set[bool]]:
+        """Whether the tool of each move points at the axis; both where that is not known."""
+        return [{side > 0.0 for side in sides or ()} for sides in self.sides]
+
+    def runs(self) -> Iterator[tuple[bool, range]]:
+        """Yield stretches of moves with one tool and one side: whether by rapid, their indices."""
+        sides = self.sides
+
+        def kind(index: int) -> tuple:
+            move, cut = self.moves[index], self.cut_at(index)
+            rapid = move.kind == "rapid"
+            key = index if rapid else (cut.at if cut else -1)
+            return rapid, key, move.tool, sides[index], move.tool_offset
+
+        for _, grouped in groupby(range(len(self.moves)), kind):
+            own = list(grouped)
+            yield self.moves[own[0]].kind == "rapid", range(own[0], own[-1] + 1)
+
+    @cached_property
+    def known_after(self) -> list[bool]:
+        """Whether the program has said where the tip is at the end of each move.
+
+        After G53, G28 and G30 only a work offset would tell.
+        """
+        known, found, placed = False, [], self.is_placed
+        axes = (X, Z) if self.turning else (Z,)
+        for move in self.moves:
+            moved = any(move.start[axis] != move.end[axis] for axis in axes)
+            if moved or move.kind != "rapid":
+                known = not move.by_machine or placed
+            found.append(known)
+        return found
+
+    @cached_property
+    def known_before(self) -> list[bool]:
+        return [False, *self.known_after[:-1]]
+
+    @cached_property
+    def is_placed(self) -> bool:
+        """Whether a work offset is set: without one the program's zero is the machine's."""
+        zeros = [cut.zero for cut in self.cuts] or [self.zero]
+        return any(abs(value) > SIZE for zero in zeros for value in zero)
+
+    @cached_property
+    def turned_at(self) -> int | None:
+        """The first move of A or B on a mill: what was solid is not known after it."""
+        if self.turning or not {"A", "B"} & set(self.ini.axes):
+            return None
+        turns = (i for i, m in enumerate(self.moves) if any(m.start[k] != m.end[k] for k in (A, B)))
+        return next(turns, None)
+
+    def is_known(self, index: int) -> bool:
+        """Return whether the material is known at a move."""
+        return self.turned_at is None or index < self.turned_at
+
+    # ------------------------------------------------------------ its state
+
+    @cached_property
+    def _states(self) -> tuple[list[int], list[State]]:
+        at, states, state = [], [], State()
+        for event in self.trace.events:
+            text = event.text
+            if text in ("M3", "M4", "M5"):
+                state = state._replace(spindle=text)
+            elif re.fullmatch(r"S[\d.]+", text):
+                state = state._replace(speed=float(text[1:]))
+            elif re.match(r"M1\d\d P", text):
+                state = state._replace(user_code=True)
+            elif text.startswith(("G43", "G49", "tool ")):
+                state = state._replace(length_code=text.split()[0])
+            at.append(event.at)
+            states.append(state)
+        return at, states
+
+    def state(self, index: int) -> State:
+        at, states = self._states
+        last = bisect_right(at, index) - 1
+        return states[last] if last >= 0 else State()
+
+
+def straight_down(points: np.ndarray) -> bool:
+    return bool(np.ptp(points[:, :2], axis=0).max() < 0.05)
+
+
+def joined(lines: Sequence[np.ndarray]) -> np.ndarray:
+    return np.concatenate([lines[0], *(line[1:] for line in lines[1:])])

@@ -1,0 +1,226 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The one material of a program: the stock, given or assumed, less what its feed moves remove.
+
+Assumed is solid material below the program's Z0: on a mill everywhere, on a lathe a bar as thick
+as what is programmed on it. A lathe's cylinders are materials of their own: the face does not know
+of them.
+"""
+
+import math
+from collections.abc import Iterable, Iterator
+from functools import cached_property
+
+import numpy as np
+from shapely.geometry import box
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.cut_report import HolesCut, PolygonCut
+from g12.tools.material.material import ALLOWED, Material, Solid, Touch
+from g12.tools.material.stock import Stock
+from g12.tools.path.part import disc, swept
+from g12.tools.verify.model.cut import NOTHING, Cut
+from g12.tools.verify.model.program import TracedProgram, joined
+
+MARGIN = 50.0  # mm around everything that moves
+FACE = 0.0
+JUST_ABOVE = 0.02  # of a floor: where material is looked for
+NEAR = 0.5  # mm around a tool's tip
+ALONG = 1.0  # mm beside what is cut on a cylinder
+LONG = 2000.0  # mm: a bar
+
+
+class Solids:
+    """The materials of a program by the side that a tool works on."""
+
+    def __init__(self, program: TracedProgram, stock: Stock | None) -> None:
+        self.program, self.stock = program, stock
+        self._materials: dict[float, Material] = {}
+        self._shapes: dict[float, BaseGeometry] = {}
+        for side in {FACE, *(cut.surface for cut in program.cuts)}:
+            self._shapes[side] = self._stock(side, stock)
+            solid = Solid(self._shapes[side], self.top(side))
+            self._materials[side] = Material([solid], period=2 * math.pi * side)
+        for index, points, radius, side in self.made_cuts:
+            for piece in pieces(points):
+                self._materials[side].cut(index, piece, radius)
+
+    # ------------------------------------------------------------ the stock
+
+    @property
+    def z0(self) -> float:
+        """The machine Z of the program's Z0 at its first cut."""
+        return self.program.z0
+
+    def top(self, side: float) -> float:
+        if side and self.stock and self.stock.diameter:
+            return self.stock.diameter / 2
+        return side or self.z0
+
+    @property
+    def bottom(self) -> float:
+        size = self.stock.size if self.stock else None
+        return self.z0 - size[2] if size else -math.inf
+
+    @cached_property
+    def bar(self) -> float:
+        """The radius of the bar: the given one, else the smallest that holds what is programmed."""
+        if self.stock and self.stock.diameter:
+            return self.stock.diameter / 2
+        program = self.program
+        own = (cut for cut in program.cuts if cut.at < cut.end)
+        return max((needed_bar(cut, program.cutter(cut.at)) for cut in own), default=0.0)
+
+    def _stock(self, side: float, stock: Stock | None) -> BaseGeometry:
+        program = self.program
+        if side:
+            low, high = self._along(side)
+            above = not stock and self.above_face(side)
+            return box(0.0, low, 2 * math.pi * side, high if above else min(high, self.z0))
+        if program.turning:
+            return disc((0.0, 0.0), self.bar) if self.bar else NOTHING
+        circles = [cut for cut in program.cuts if cut.is_circle and not cut.upright]
+        whole = self._everywhere(circles)
+        if stock and stock.is_whole:
+            pockets = [(cut.centre, cut.wall) for cut in circles]
+            return stock.shape(np.array(program.zero), program.rotation, pockets)
+        bores = [disc(cut.centre, stock.bore / 2) for cut in circles] if stock else []
+        return whole.difference(unary_union([NOTHING, *bores]))
+
+    def _everywhere(self, circles: Iterable[Cut]) -> BaseGeometry:
+        moves, program = self.program.moves, self.program
+        ends = np.array([move.end[:2] for move in moves] or [(0.0, 0.0)])
+        reach = (program.cutter(cut.at) + cut.wall for cut in circles if cut.at < len(moves))
+        wide = MARGIN + max(reach, default=0.0)
+        return box(*(ends.min(axis=0) - wide), *(ends.max(axis=0) + wide))
+
+    def above_face(self, side: float) -> bool:
+        """Return whether all that is cut on a cylinder is above Z0: that is not the part's face."""
+        low, _ = self._along(side)
+        own = [
+            self.program.cutter(c.at)
+            for c in self.program.cuts
+            if c.surface == side and c.at < c.end
+        ]
+        return bool(low + max(own, default=0.0) + ALONG >= self.z0)
+
+    def _along(self, side: float) -> tuple[float, float]:
+        """Return from which to which Z a cylinder is: of a bar all, else where it is cut."""
+        if self.stock and self.stock.diameter:
+            return -LONG, math.inf
+        own = [cut for cut in self.program.cuts if cut.surface == side and cut.at < cut.end]
+        moves = (self.program.moves[i] for cut in own for i in cut.moves)
+        ends = [(m.start[2], m.end[2]) for m in moves if m.kind != "rapid"]
+        wide = max((self.program.cutter(cut.at) for cut in own), default=0.0) + ALONG
+        return np.min(ends, initial=math.inf) - wide, np.max(ends, initial=-math.inf) + wide
+
+    @cached_property
+    def unbored(self) -> BaseGeometry:
+        """The stock on the face without its bores."""
+        return self._stock(FACE, self.stock._replace(bore=0.0) if self.stock else None)
+
+    def shape(self, side: float) -> BaseGeometry:
+        return self._shapes[side]
+
+    # ------------------------------------------------------------ what is made
+
+    @cached_property
+    def made_cuts(self) -> list[tuple[int, np.ndarray, float, float]]:
+        """Each stretch at feed: its last move, the tip's points, the cutter's radius, the side."""
+        found, program = [], self.program
+        for rapid, run in program.runs():
+            sides = program.sides[run[0]]
+            if rapid or not sides:
+                continue
+            radius, side = program.cutter(run[0]), max(sides)
+            points = joined([program.tip(i, side) for i in run])
+            if radius > 0 and points[:, 2].min() < self.top(side):
+                found.append((run[-1], points, radius, side))
+        return found
+
+    def made_by(self, cut: Cut) -> Iterator[tuple[np.ndarray, float]]:
+        for index, points, radius, side in self.made_cuts:
+            if cut.at <= index < cut.end and side == cut.surface:
+                yield points, radius
+
+    def touched(
+        self, points: np.ndarray, index: int, side: float, before: int = -1, more: float = 0.0
+    ) -> Touch | None:
+        """Return what a move (index) goes through, of what stands before it or another."""
+        radius, before = self.program.cutter(index) + more, index if before < 0 else before
+        return self._materials[side].touched(points, radius, before)
+
+    def standing(
+        self, region: BaseGeometry, level: float, side: float, before: float = math.inf
+    ) -> BaseGeometry:
+        """Return what stands in a region just above a level."""
+        return self._materials[side].standing(region, level + JUST_ABOVE, before)
+
+    def removes(self, cut: Cut) -> bool:
+        """Return whether a cut's feed moves remove anything."""
+        for index in cut.moves:
+            if self.program.moves[index].kind == "rapid":
+                continue
+            points = self.program.tip(index, cut.surface)
+            if points[:, 2].min() < self.top(cut.surface) and self.touched(
+                points, index, cut.surface, cut.at, ALLOWED
+            ):
+                return True
+        return False
+
+    def surrounds(self, tip: np.ndarray, index: int, side: float) -> bool:
+        """Return whether a tool's tip is below the top, inside of what the stock was."""
+        around = disc(tip[:2], self.program.cutter(index) + NEAR)
+        return self._materials[side].surrounds(around, float(tip[2]), math.inf)
+
+    def was_solid(self, region: BaseGeometry, level: float, side: float) -> bool:
+        """Return whether a portion of a region was material above a level."""
+        return self._materials[side].was_solid(region, level, math.inf)
+
+    def swept_in(
+        self, region: BaseGeometry, moves: Iterable[int], side: float
+    ) -> tuple[BaseGeometry, int | None]:
+        """Return what of a region moves at feed sweep below the top, and the first one's index."""
+        first, areas = None, []
+        for index in moves if not region.is_empty else ():
+            if self.program.moves[index].kind == "rapid" or self.program.sides[index] != {side}:
+                continue
+            points, radius = self.program.tip(index, side), self.program.cutter(index)
+            low = np.minimum(points[1:, 2], points[:-1, 2]) < self.top(side) - JUST_ABOVE
+            for at in np.flatnonzero(low) if radius > 0 else ():
+                area = swept([points[at : at + 2]], radius).intersection(region)
+                if not area.is_empty:
+                    areas.append(area)
+                    first = index if first is None else first
+        return unary_union([NOTHING, *areas]), first
+
+
+def pieces(points: np.ndarray) -> list[np.ndarray]:
+    """Return a path (n, 3) without its vertical portions, of which the lower ends count."""
+    upright = np.abs(np.diff(points[:, :2], axis=0)).max(axis=1, initial=0.0) < 1e-6
+    found = np.split(points, 1 + np.flatnonzero(upright))
+    return [piece for piece in found if len(piece) > 1 or len(found) > 1 or len(points) == 1]
+
+
+def needed_bar(cut: Cut, cutter: float) -> float:
+    """Return the radius of the smallest bar that can hold a cut on a face."""
+    if cut.surface:
+        return 0.0
+    if isinstance(cut.plan, PolygonCut):
+        return cut.plan.stock_diameter * cut.mm / 2
+    if cut.is_shape:
+        return max(map(abs, cut.goes.bounds))
+    if isinstance(cut.plan, HolesCut):
+        return max(map(abs, cut.places), default=0.0) + cutter + 1.0
+    if not cut.outlines:
+        return cut.deep_reach
+    found = 0.0
+    for outline in cut.outlines:
+        ends = np.abs(outline.points)
+        found = max(found, ends.max() if outline.is_closed else min(ends[0], ends[-1]))
+    return float(found)
+
+
+def reachable(region: BaseGeometry, radius: float) -> BaseGeometry:
+    """Return what a round cutter can remove of a region without leaving it."""
+    return region.buffer(-radius, 32).buffer(radius, 32)

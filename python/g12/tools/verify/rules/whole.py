@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The whole program: its travel, offsets that are in force before and after it, what is not run."""
+
+import math
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
+from g12.machine_ini import face_joints
+from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
+from g12.tools.verify.model.program import SIZE, TracedProgram
+from g12.tools.verify.rules.table import Values, rule
+
+G92_ACTIVE, G92_X, ROTATIONS = 5210, 5211, range(5230, 5391, 20)  # parameters of a var file
+SHIFTS = ("axis_offset_x", "axis_offset_y", "axis_offset_z", "CC_axis_offset")
+SHIFT_CODE, ROTATES = re.compile(r"G(92|52)(?![.\d])"), re.compile(r"G10.*R")
+OUR_CODE = re.compile(r"\s*/?\s*(?:N\d+)?\s*(G0*1[23](?:\.[12])?|G0*7\.1)(?![.\d])")
+ENDS_SECTION = re.compile(r"G0*13\.1|G0*7\.1.*C\s*[-+]?0*\.?0*(?![.\d])")
+RETURN_LEVEL = re.compile(r"G(98|99)(?![.\d])")
+DRILLING = re.compile(r"G(73|74|8[1-9])(?![.\d])")
+MEANT = {"98": "G94", "99": "G95"}
+
+
+@rule(
+    "travel",
+    FINDING,
+    "the {axis} axis would go to {position:mm}, its limit is {limit:length}",
+    program=True,
+)
+def beyond_travel(program: TracedProgram) -> Values:
+    """Without a work offset only what is wider than the travel itself is known."""
+    limits, mm = program.ini.axis_limits, program.ini.mm
+    if face_joints(program.ini.get):  # whose X and Y are the tool's, and refused by the package
+        return None
+    for k, axis in enumerate("XYZ"):
+        if axis not in limits or not program.moves:
+            continue
+        low, high = limits[axis].low * mm, limits[axis].high * mm
+        at, moves = _positions(program, k)
+        if not program.is_placed:
+            shift = at.min(initial=low) - low
+            low, high = low + shift, high + shift
+        beyond = np.flatnonzero((at < low - SIZE) | (at > high + SIZE))
+        if len(beyond):
+            position, line = at[beyond[0]], program.where(int(moves[beyond[0]]))[0]
+            limit = low if position < low else high
+            return {"axis": axis, "position": position, "limit": limit, "at_line": line}
+    return None
+
+
+def _positions(program: TracedProgram, axis: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return an axis's positions along the moves that a work offset places, with their moves."""
+    placed = np.array([program.is_placed or not move.by_machine for move in program.moves])
+    own = placed[program.path.move]
+    path = program.path
+    return (path.positions + path.offsets)[own, axis], path.move[own]
+
+
+def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
+    """Yield the axes of a program that no work offset places, with its least and its greatest."""
+    for k, axis in enumerate("XYZ") if not program.is_placed else ():
+        at = _positions(program, k)[0] if axis in program.ini.axis_limits else np.array([])
+        if len(at):
+            yield axis, float(at.min()), float(at.max())
+
+
+@rule(
+    "g92-stale",
+    WARNING,
+    "G92 is in force when the program begins, by the var file: {shift} (G92.1 ends it)",
+    program=True,
+)
+def stale_g92(program: TracedProgram) -> Values:
+    if not program.parameters.get(G92_ACTIVE, 0.0):
+        return None
+    axes = {a: program.parameters.get(G92_X + k, 0.0) for k, a in enumerate("XYZABC")}
+    shift = " ".join(f"{axis}{value:g}" for axis, value in axes.items() if value)
+    return {"shift": shift} if shift else None
+
+
+@rule(
+    "rotation-stale",
+    WARNING,
+    "a work offset is rotated by the var file: {turned:3}°",
+    program=True,
+)
+def stale_rotation(program: TracedProgram) -> Values:
+    turned = [program.parameters.get(number, 0.0) for number in ROTATIONS]
+    own = any(map(ROTATES.search, program.texts))
+    return {"turned": max(turned, key=abs)} if any(turned) and not own else None
+
+
+@rule(
+    "g92-left",
+    WARNING,
+    "G92 or G52 is in force at the program's end, also for the next one: G92.1 ends it",
+    program=True,
+)
+def left_g92(program: TracedProgram) -> Values:
+    left = [program.trace.state.get(name, 0.0) for name in SHIFTS]
+    left[3] = math.remainder(left[3], 360.0)
+    line = _last_line(SHIFT_CODE, program)
+    return {"at_line": line} if line and any(abs(value) > SIZE for value in left) else None
+
+
+@rule(
+    "rotation-left",
+    WARNING,
+    "the work offset is left turned by {turned:3}°: G10 L2 P1 R0 ends it",
+    program=True,
+)
+def left_rotation(program: TracedProgram) -> Values:
+    turned, line = program.trace.state.get("rotation_xy", 0.0), _last_line(ROTATES, program)
+    return {"turned": turned, "at_line": line} if turned and line else None
+
+
+def _last_line(code: re.Pattern, program: TracedProgram) -> int:
+    lines = [number for number, text in enumerate(program.texts, 1) if code.search(text)]
+    return lines[-1] if lines else 0
+
+
+@rule(
+    "block-delete",
+    NOT_JUDGED,
+    "the program with block delete off: a preview skips what begins with /",
+    program=True,
+)
+def block_delete(program: TracedProgram) -> Values:
+    deleted = (n for n, text in enumerate(program.texts, 1) if text.lstrip().startswith("/"))
+    line = next(deleted, 0)
+    return {"at_line": line} if line else None
+
+
+@rule(
+    "never-run",
+    WARNING,
+    "{code} is never run: the program ends before it, jumps over it, or block delete skips it",
+    program=True,
+)
+def never_run(program: TracedProgram) -> Values:
+    ran = {cut.line for cut in program.cuts} | {move.block for move in program.moves}
+    for number, text in enumerate(program.texts, 1):
+        found = OUR_CODE.match(text)
+        if found and number not in ran and not ENDS_SECTION.search(text):
+            return {"code": found[1], "at_line": number}
+    return None
+
+
+@rule(
+    "return-level",
+    WARNING,
+    "{code} outside of a section is a return level of drilling cycles to LinuxCNC, no feed mode: "
+    "write {meant}",
+    program=True,
+)
+def return_level(program: TracedProgram) -> Values:
+    if not program.turning or any(map(DRILLING.search, program.texts)):
+        return None
+    inside = {
+        n for cut in program.cuts for n in range(cut.line, cut.last_line + 1) if cut.is_section
+    }
+    for number, text in enumerate(program.texts, 1):
+        found = RETURN_LEVEL.search(text)
+        if found and number not in inside:
+            return {"code": found[0], "meant": MEANT[found[1]], "at_line": number}
+    return None
