@@ -132,7 +132,7 @@ def test_the_command_prints_the_program():
 def test_the_filter_of_every_simulated_mill_reads_events(ini):
     machine = read_ini(ini)
     extensions = [line.split()[0] for line in machine.all("FILTER", "PROGRAM_EXTENSION")]
-    assert ".dyn" in extensions
+    assert ".dyn,.DYN" in extensions
     events = PROGRAMS / "dynapath" / "flange.dyn"
     command = f"{machine.get('FILTER', 'dyn')} '{events}'"
     done = subprocess.run(["sh", "-c", command], cwd=SIM, capture_output=True, text=True)

@@ -30,14 +30,6 @@ FORBIDDEN = {  # room: what none of its files imports
     "g12.tools.verify": PLANNERS,
     "g12.geometry": (*WINGS, *LINUXCNC, *PLANNERS, "numpy"),
 }
-ROLES = {
-    "main",
-    "command_parser",
-    "check_at_start",
-    "plan",
-    "plan_circle",
-    "uncut_material",
-}  # one meaning, many files
 MOST_FILES = 16  # of a room, its __init__ among them
 SHARED = [path.stem for path in PACKAGE.glob("*.py") if path.stem[:2] != "__"]
 
@@ -123,32 +115,3 @@ def test_no_room_is_too_large():
     files = [path.parent for path in PACKAGE.rglob("*.py")]
     large = {str(room.relative_to(PACKAGE)) for room in files if files.count(room) > MOST_FILES}
     assert not large
-
-
-def test_no_public_name_has_two_meanings():
-    """What every command or every dialect has bears one name in all of them: see ``ROLES``."""
-    owners = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
-            if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and node.name[0] != "_":
-                owners.setdefault(node.name, []).append(name_of(path))
-    twice = {name: files for name, files in owners.items() if len(files) > 1 and name not in ROLES}
-    assert not twice
-
-
-def constants_of(path):
-    """Yield the constants of a file with their values as text."""
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
-            yield node.targets[0].id, ast.unparse(node.value)
-
-
-def test_no_constant_but_those_of_verify_has_two_values():
-    """The examples of every command bear one name in all of them."""
-    values = {}
-    for path in sorted(PACKAGE.rglob("*.py")):
-        if PACKAGE / "tools" / "verify" not in path.parents:
-            for name, value in constants_of(path):
-                values.setdefault(name, set()).add(value)
-    twice = {name for name, found in values.items() if len(found) > 1 and name.isupper()}
-    assert twice == {"EXAMPLES"}

@@ -61,11 +61,6 @@ def test_every_page_can_be_reached_from_the_first():
     assert reached == set(PAGES)
 
 
-@pytest.mark.parametrize(("page", "most"), [("README.md", 150), ("python/g12/README.md", 249)])
-def test_the_first_pages_are_short_enough_to_be_read(page, most):
-    assert len((ROOT / page).read_text(encoding="utf-8").splitlines()) <= most
-
-
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_the_prose_of_a_page_is_wrapped_at_100_characters(page):
     rows = (line for line in prose(page).splitlines() if not line.startswith(("|", "![")))

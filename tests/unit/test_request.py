@@ -77,7 +77,8 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
 )
 def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, message):
     block = Words("G12", {} if d_word is None else {"D": d_word}, found)
-    assert other_cutter(block, last) == (message and f"G12: the cycle uses {message}")
+    cutter = None if last is None else Tool(0, last)
+    assert other_cutter(block, cutter) == (message and f"G12: the cycle uses {message}")
 
 
 # ---------------------------------------------------------------- travel
