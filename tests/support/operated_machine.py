@@ -15,6 +15,7 @@ from g12.tools.headless import machine
 from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import Run
 from g12.tools.headless.namespaces import Isolated
+from g12.tools.material.stock import StockText
 from g12.tools.path.samples import Samples
 from g12.tools.preview.moves import Error, Message, modes
 from g12.tools.preview.tracer import start_block, write_program
@@ -92,13 +93,14 @@ class Machine(machine.Machine):
         assert run.error is None, run.error
         return run.samples
 
-    def proof_of_run(self, text) -> Proof:
+    def proof_of_run(self, text, stock: str = "") -> Proof:
         """Run a program, which must end without an error; return the proof of its real motion.
 
         Verify assumes the state of the machine at its start: see `reset`.
         """
         samples = self.motion_of(text)
-        return prove(self.folder / "program.ngc", self.ini, samples=samples)
+        given = StockText(stock) if stock else None
+        return prove(self.folder / "program.ngc", self.ini, samples=samples, stock=given)
 
     def reset(self) -> None:
         """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
