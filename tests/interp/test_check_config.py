@@ -31,7 +31,8 @@ from support.small_configs import (
     write_config,
 )
 
-REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{HAAS}"
+ABORT = "ON_ABORT_COMMAND = O <g12_on_abort> call\n"
+REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{ABORT}{HAAS}"
 PYTHON = f"[PYTHON]\nTOPLEVEL = {ROOT}/python/toplevel.py\nPATH_PREPEND = {ROOT}/python\n"
 GOOD = with_lines(MILL, "RS274NGC", REFERRED) + PYTHON
 POCKET = ["G21 G17 G90 G94 G61 F600", "G13 I5 K9 Q3 Z-1 D1", "M2"]
@@ -136,9 +137,8 @@ def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
 def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
     folder = tmp_path / "my mill"
     folder.mkdir()
-    ini = write_config(
-        folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), ngc__g12_haas_ngc="", ngc__g12_helix_ngc=""
-    )
+    subs = {f"ngc__{name}_ngc": "" for name in ("g12_haas", "g12_helix", "g12_on_abort")}
+    ini = write_config(folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), **subs)
     assert kinds(ini, capsys) == ["blank-in-path"]
 
 

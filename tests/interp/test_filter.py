@@ -182,8 +182,7 @@ def test_screens_open_both_cases_through_the_filter(tmp_path):
 def test_a_program_whose_case_has_no_filter_is_said_to_be_read_as_it_is(sim, tmp_path, capsys):
     program, ini = tmp_path / "PART.NC", mill_with(sim, TRANSLATE)
     program.write_text("G20 G0 X1\nM2\n")
-    text = (sim / "parts" / "own.inc").read_text()
-    (sim / "parts" / "own.inc").write_text(text.replace("\nNC = ", "\n# NC = "))
+    ini.write_text(ini.read_text().replace("\nNC = ", "\n# NC = "))
     assert main.main(["trace", str(program), "--ini", str(ini)]) == 0
     says = f"{program}: LinuxCNC reads it as it is: the INI's [FILTER] has nc, not NC\n"
     assert capsys.readouterr().err == f"g12 trace: {says}"
@@ -246,10 +245,9 @@ def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(reported, 
 
 
 def test_what_install_is_told_of_numbers_rules_the_programs(tmp_path, capsys):
-    machines = copy_of_machines(tmp_path / "machines")
-    part = machines / "parts" / "lathe_mm.inc"
-    part.write_text(part.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
-    ini, program = machines / "lathe_mm.ini", tmp_path / "part.nc"
+    ini = copy_of_machines(tmp_path / "machines") / "lathe_mm.ini"
+    ini.write_text(ini.read_text().replace("[FILTER]\n", "[OLD_FILTER]\n"))
+    program = tmp_path / "part.nc"
     program.write_text("G0 X1500 Z5.\nM30\n")
     words = ["install", str(ini), "--with", "programs-fanuc-lathe"]
     assert main.main([*words, "--dry-run"]) == 0
@@ -260,4 +258,4 @@ def test_what_install_is_told_of_numbers_rules_the_programs(tmp_path, capsys):
     assert capsys.readouterr().out == "     1 rapid X1.905 Z127.000\n"
     assert main.main(["install", str(ini), "--with", "polar", "--units", "mm"]) == 2
     assert main.main(["uninstall", str(ini)]) == 0
-    assert "translate" not in ini.read_text()
+    assert "--decimals" not in ini.read_text()

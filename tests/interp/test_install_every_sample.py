@@ -28,7 +28,7 @@ SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
 MILL = ["haas", "circle-mill"]
 LATHE = ["polar", "polar-shapes", "cylinder"]
 HANDLERS = {name: "g12.remap" for feature in features.REMAP_FILES
-            for name in features.functions_of(feature)}  # fmt: skip
+            for name in features.functions_of(feature)} | {"g12_on_abort": "g12.remap"}  # fmt: skip
 MODULES = [f"python/{name}.py" for name in ("toplevel", "remap", "g12/__init__")]
 PACKAGE = {
     **files_of_package(*MODULES, forms.GLADE_FILE),
@@ -150,9 +150,7 @@ def no_interpreter(monkeypatch):
 def package(tmp_path_factory):
     """Return a small copy of the package, as `install` makes it."""
     folder = tmp_path_factory.mktemp("package") / "g12"
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(package_copy, "package_files", lambda: PACKAGE)
-        package_copy.write_copy(folder)
+    package_copy.build(folder, folder.with_name("none"), PACKAGE)
     return folder
 
 

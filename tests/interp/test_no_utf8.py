@@ -13,7 +13,7 @@ from support.small_configs import MILL, content_of, write_config
 PROGRAM = b"""\
 (Fr\xe4sen \xd8 20)
 G21 G17 G90 G0 X0 Y0 Z5
-T4 M6
+T4 M6 S3000 M3
 (MSG, L\xe4nge)
 G13 I10 Z-1 D4 F500 (\xfc)
 G0 Z5
@@ -115,11 +115,10 @@ def test_an_installation_keeps_every_byte(tmp_path, capfd):
 
 def test_a_value_of_the_ini_that_is_no_utf8_is_refused_by_its_key(tmp_path, capfd):
     """LinuxCNC 2.9 reads such an INI, 2.10 does not."""
-    machines = copy_of_machines(tmp_path)
-    part = machines / "parts" / "mill_mm.inc"
-    part.write_bytes(part.read_bytes().replace(b"MAX_LIMIT = 300", b"MAX_LIMIT = \xe4300", 1))
+    ini = copy_of_machines(tmp_path) / "mill_mm.ini"
+    ini.write_bytes(ini.read_bytes().replace(b"MAX_LIMIT = 300", b"MAX_LIMIT = \xe4300", 1))
     program = tmp_path / "part.ngc"
     program.write_bytes(PROGRAM)
-    assert main.main(["trace", str(program), "--ini", str(machines / "mill_mm.ini")]) == 2
+    assert main.main(["trace", str(program), "--ini", str(ini)]) == 2
     said = capfd.readouterr().err
     assert "[AXIS_Z] MAX_LIMIT: has a byte that is no UTF-8" in said or "does not read it" in said

@@ -74,7 +74,7 @@ def test_an_offset_of_g92_from_before_is_said(reported, tmp_path, name, in_force
     picture = ["-o", str(tmp_path / "part.png")] if name == "plot" else []
     text = "G21 G90 F100\nG0 X1 Z0\nG1 Z2\nM2\n"
     code, lines, _ = reported(name, text, "--var", str(stored), *picture, ini=ini)
-    said = [line for line in lines if "G92" in line]
+    said = [line for line in lines if "note" in line and "G92" in line]
     assert (code, [line.partition("note")[2].lstrip(": ") for line in said]) == (
         0, [f"{note} (machine units): G92.1 ends it" for note in notes],
     )  # fmt: skip

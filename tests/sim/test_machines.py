@@ -4,6 +4,7 @@
 import shutil
 import subprocess
 import time
+from contextlib import suppress
 
 import pytest
 
@@ -127,6 +128,13 @@ def screen():
         server.terminate()
 
 
+def has_ended(isolated):
+    with suppress(subprocess.TimeoutExpired):
+        isolated.wait(0.2)
+        return True
+    return False
+
+
 @pytest.mark.parametrize("ini", [*marked(SCREENS), *GMOCCAPY], ids=name)
 def test_its_screen_comes_up_with_the_sample_previewed(ini, screen):
     component = "gmoccapy" if ini in GMOCCAPY else "axisui"
@@ -139,12 +147,11 @@ def test_its_screen_comes_up_with_the_sample_previewed(ini, screen):
             copies={ini.parent: {}},
         )
         end = time.monotonic() + XVFB_START
-        while "up\n" not in isolated.log() and isolated.exit_code() is None:
+        while "up\n" not in isolated.log() and not has_ended(isolated):
             if INCOMPLETE in isolated.log():
                 pytest.skip("gmoccapy lacks a package of its own here")
             assert time.monotonic() < end, isolated.log()
-            time.sleep(0.2)
-        assert isolated.exit_code() is None, isolated.log()
+        assert not has_ended(isolated), isolated.log()
         lines = isolated.log().splitlines()
         reported = "\n".join(line for line in lines if not line.startswith(HARMLESS))
         assert "rror" not in reported and "Missing required" not in reported, isolated.log()

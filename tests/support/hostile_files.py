@@ -133,10 +133,11 @@ class Shop:
         return chance.choice([reads, translate, words]), ini
 
     def attack_include(self, chance):
-        part = self.sim / "parts" / "bad.inc"
-        part.write_bytes(damaged(chance, (self.sim / "parts" / "mill_mm.inc").read_bytes()))
+        head, header, rest = self.ini.read_text().partition("[KINS]")
+        part = self.sim / "bad.inc"
+        part.write_bytes(damaged(chance, f"{header}{rest}".encode()))
         ini = self.sim / "with_bad.ini"
-        ini.write_text(self.ini.read_text().replace("parts/mill_mm.inc", "parts/bad.inc"))
+        ini.write_text(f"{head}#INCLUDE bad.inc\n")
         reads = self._read(chance, self.program)
         reads[reads.index("--ini") + 1] = str(ini)
         return chance.choice([reads, self._set_up(chance, ini, "circle-mill")]), part
@@ -188,10 +189,10 @@ class Shop:
         good = self.ini.read_bytes(), self.program.read_bytes()
         for path, content in zip(bad, good):
             path.write_bytes(content)
-        hal = self.sim / "parts" / "three_joints.hal"
-        content = (SIM / "parts" / hal.name).read_bytes()
+        hal = self.sim / "three_joints.hal"
+        content = (SIM / hal.name).read_bytes()
         file, content = chance.choice([*zip(bad, good), (hal, content)])
-        hal.write_bytes((SIM / "parts" / hal.name).read_bytes())
+        hal.write_bytes((SIM / hal.name).read_bytes())
         file.write_bytes(damaged(chance, content))
         words = ["run", str(bad[1]), "--ini", str(bad[0]), "--override", "1000", "--timeout", "20"]
         return words, file

@@ -12,6 +12,7 @@ The values are a stack: a shape's section begins and ends inside the shape.
 
 from __future__ import annotations
 
+from math import isclose
 from typing import NamedTuple
 
 from g12.host import kinematics_switch
@@ -101,13 +102,20 @@ def modes_in_force(interp: Interp) -> Saved:
     )
 
 
-def restore(interp: Interp, saved: Saved) -> None:
-    """Bring all modes back; the last block makes LinuxCNC show those that were only set."""
+def restore(interp: Interp, saved: Saved, *, feed_set: bool = True) -> None:
+    """Bring all modes back; the last block makes LinuxCNC show those that were only set.
+
+    ``feed_set``: canonical calls may have set the feed, which the interpreter does not know.
+    """
     interp.c_axis_wrapped, interp.active_spindle = saved.wrapped, saved.spindle
     interp.motion_mode = saved.motion
     _command(interp, saved)
     kinematics_switch.set_accelerations(saved.accelerations)
-    interp.execute(f"F{decimal(saved.feed * _scale(interp, saved))}")
+    feed = saved.feed * _scale(interp, saved)
+    if feed_set or not isclose(feed, interp.feed_rate):  # a user may have remapped F
+        interp.execute(f"F{decimal(feed)}")
+    else:
+        interp.execute(f"G{90 + saved.distance}")
 
 
 def restore_before_face(interp: Interp, saved: Saved) -> None:
@@ -188,7 +196,7 @@ def renew(interp: Interp, saved: Saved) -> Saved:
 
 
 def give_back(interp: Interp) -> None:
-    restore(interp, state_of(interp).borrowed[-1])
+    restore(interp, state_of(interp).borrowed[-1], feed_set=False)
     forget(interp)
 
 

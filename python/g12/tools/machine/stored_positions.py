@@ -27,16 +27,21 @@ def unset_positions(ini: Ini) -> tuple[str, ...]:
 
 def offset_at_start(parameters: Path | None, ini: Ini) -> str:
     """Return a sentence on the G92 or G52 that a var file puts in force, "" if there is none."""
-    kept = (ini.get("RS274NGC", "DISABLE_G92_PERSISTENCE") or "").upper() in SWITCHED_OFF
-    values = _values_of(parameters)
-    offsets = zip(AXIS_LETTERS, _axes_from(G92_FIRST, values))
-    texts = [f"{axis}{value:g}" for axis, value in offsets if value]
-    if not (kept and texts and values.get(G92_IN_FORCE)):
+    shift = shift_at_start(_values_of(parameters), ini)
+    if not shift:
         return ""
     return (
         "a G92 or G52 from before is in force at the start, and shifts everything by "
-        f"{' '.join(texts)} (machine units): G92.1 ends it"
+        f"{shift} (machine units): G92.1 ends it"
     )
+
+
+def shift_at_start(values: Mapping[int, float], ini: Ini) -> str:
+    """Return the axes of a G92 or G52 that stored values put in force, "" if there is none."""
+    kept = (ini.get("RS274NGC", "DISABLE_G92_PERSISTENCE") or "").upper() in SWITCHED_OFF
+    offsets = zip(AXIS_LETTERS, _axes_from(G92_FIRST, values))
+    texts = [f"{axis}{value:g}" for axis, value in offsets if value]
+    return " ".join(texts) if kept and values.get(G92_IN_FORCE) else ""
 
 
 def _axes_from(first: int, values: Mapping[int, float]) -> list[float]:

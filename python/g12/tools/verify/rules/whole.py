@@ -8,11 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 
 from g12.machine_ini import face_joints
+from g12.tools.machine.stored_positions import shift_at_start
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
 
-G92_ACTIVE, G92_X, ROTATIONS = 5210, 5211, range(5230, 5391, 20)  # parameters of a var file
+ROTATIONS = range(5230, 5391, 20)  # parameters of a var file
 SHIFTS = ("axis_offset_x", "axis_offset_y", "axis_offset_z", "CC_axis_offset")
 SHIFT_CODE, ROTATES = re.compile(r"G(92|52)(?![.\d])"), re.compile(r"G10.*R")
 OUR_CODE = re.compile(r"\s*/?\s*(?:N\d+)?\s*(G0*1[23](?:\.[12])?|G0*7\.1)(?![.\d])")
@@ -72,10 +73,7 @@ def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
     program=True,
 )
 def stale_g92(program: TracedProgram) -> Values:
-    if not program.parameters.get(G92_ACTIVE, 0.0):
-        return None
-    axes = {a: program.parameters.get(G92_X + k, 0.0) for k, a in enumerate("XYZABC")}
-    shift = " ".join(f"{axis}{value:g}" for axis, value in axes.items() if value)
+    shift = shift_at_start(program.parameters, program.ini)
     return {"shift": shift} if shift else None
 
 
