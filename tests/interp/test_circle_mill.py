@@ -73,6 +73,12 @@ def returns(traced):
     ]
 
 
+def test_planes_from_above_a_loop_hold_in_each_of_its_turns(inch):
+    loop = ["#1 = 0", "o1 while [#1 LT 2]", "G12.2 X1 Y2 Z-.5 R.3 H1 D1", "#1 = [#1 + 1]"]
+    traced = cut(inch, f"G13.2 {CODE_WORDS}", *loop, "o1 endwhile")
+    assert traced.moves[-1].end[2] == pytest.approx(0.5 * INCH)
+
+
 def test_w_and_o_are_modal(inch):
     traced = cut(
         inch,

@@ -39,6 +39,30 @@ def lathe(running):
     return running
 
 
+@pytest.mark.parametrize("how", ["abort", "estop", "off"])
+def test_adaptive_feed_ends_with_the_face_however_that_ends(lathe, how):
+    """Where the machine is off, LinuxCNC aborts twice and drops what the first abort queued."""
+    typed(lathe, "G12.1")
+    assert lathe.stat().adaptive
+    getattr(lathe, how)()
+    lathe.enable()
+    typed(lathe, "G13.1", "G1 X38 F1000")
+    assert not lathe.stat().adaptive
+
+
+def test_adaptive_feed_ends_with_a_section_that_a_limit_switch_ends(lathe):
+    lathe.open_text(["G18 G90 G94 F100", "G12.1", "G1 X20 C5 F100", "X-20", "G13.1", "M2"])
+    lathe.start()
+    lathe.wait_for(lambda _: on_the_face(lathe))
+    lathe.set("joint.0.pos-lim-sw-in", 1)
+    lathe.wait_for(lambda status: not status.enabled)
+    lathe.set("joint.0.pos-lim-sw-in", 0)
+    lathe.enable()
+    assert [error.text for error in lathe.errors()] == ["joint 0 on limit switch error"]
+    typed(lathe, "G0 Z6")
+    assert not lathe.stat().adaptive
+
+
 def slide_and_spindle(machine):
     return pytest.approx([machine.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)], abs=1e-6)
 

@@ -101,6 +101,7 @@ class OperatedScreen(RecordingScreen):
             "feed_override": stat.feedrate,
             "tool": stat.tool_in_spindle,
             "queue": stat.queue,
+            "adaptive": bool(stat.adaptive_feed_enabled),
             "modes": modes_of(stat),
         }
 

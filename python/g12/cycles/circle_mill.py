@@ -168,7 +168,8 @@ def finish_of_call(words: Words) -> tuple[float, bool]:
 def plan_event(entries: EventEntries) -> CyclePlan:
     words, context = entries.words, entries.words.context
     circle = circle_of(entries)
-    first_plane, commanded_second = planes_of(entries)
+    given = EventPlanes(*map(words.take, entries.letters[:2]))
+    first_plane, commanded_second = planes_of(entries, given)
     second_plane = first_plane if commanded_second is None else commanded_second
     depth = words.require("Z", "the final depth")
     peck = words.take_positive("K")
@@ -200,7 +201,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
         CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
         lambda: cut_of_event(entries, circle, tool, depths),
         uncut_material(words, roughing["roughing_width"], tool),
-        commanded_planes=EventPlanes(first_plane, commanded_second),
+        commanded_planes=given,
     )
 
 
@@ -249,12 +250,11 @@ def circle_of(entries: EventEntries) -> EventCircle:
     return EventCircle(x, y, radius, side, rough_arc, finish_arc)
 
 
-def planes_of(entries: EventEntries) -> tuple[float, float | None]:
+def planes_of(entries: EventEntries, given: EventPlanes) -> tuple[float, float | None]:
     """Return the reference planes W and O, both modal; no O (None) was ever commanded."""
     words, letters, earlier = entries.words, entries.letters, entries.planes
-    first, given = words.take(letters.first_plane), words.take(letters.second_plane)
-    first = earlier.first if first is None else first
-    second = earlier.second if given is None else given
+    first = earlier.first if given.first is None else given.first
+    second = earlier.second if given.second is None else given.second
     if first is None:
         raise words.refuse(
             f"{letters.first_plane} is missing: the first reference plane,"
@@ -263,7 +263,7 @@ def planes_of(entries: EventEntries) -> tuple[float, float | None]:
     if second is not None and second < first - words.context.rounding:
         plane = f"{letters.first_plane}{number(first)}"
         rule = f"must not be below the first reference plane {plane}"
-        if given is None:
+        if given.second is None:
             rule += f": it is that of an earlier event, give a new {letters.second_plane}"
         raise words.refuse_word(letters.second_plane, second, rule)
     return first, second

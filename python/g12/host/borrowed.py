@@ -34,9 +34,9 @@ PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
 ADAPTIVE_FEED = 52  # active_m_codes
-# Reasons of an abort: the external and the commanded emergency stop, and the machine switched off.
-# In the same cycle LinuxCNC aborts once more, as the machine is not on: it drops what they queued.
-ABORTED_AGAIN = 2, 4, 6
+# Seconds: where the machine is off, by an emergency stop, a limit switch or a command, LinuxCNC
+# aborts once more, in one of the next cycles, and drops what the first abort has queued.
+ABORTED_AGAIN = 0.5
 
 
 class Saved(NamedTuple):
@@ -116,6 +116,11 @@ def restore(interp: Interp, saved: Saved, *, feed_set: bool = True) -> None:
         interp.execute(f"F{decimal(feed)}")
     else:
         interp.execute(f"G{90 + saved.distance}")
+
+
+def command_adaptive(interp: Interp, saved: Saved) -> None:
+    """Command adaptive feed even if the interpreter has it: the planner may not."""
+    interp.execute(f"M52P{saved.adaptive:d}")
 
 
 def restore_before_face(interp: Interp, saved: Saved) -> None:
@@ -231,20 +236,22 @@ def restore_left(interp: Interp) -> None:
         borrowed.clear()
 
 
-def after_abort(interp: Interp, reason: int) -> None:
-    """Restore all that the aborted borrower changed, in the planner too.
+def after_abort(interp: Interp, now: float) -> None:
+    """Restore all that the aborted borrower changed, in the planner too; ``now`` in seconds.
 
     The interpreter may be ahead, and LinuxCNC has dropped the blocks that it had queued: path
     control, F and adaptive feed may be in force in the interpreter already, but not in the planner.
     So they are commanded anyway.
     """
-    borrowed = state_of(interp).borrowed
-    if borrowed:
-        restore(interp, borrowed[0])
-        if borrowed[0].accelerations:  # the face has M52 on
-            interp.execute(f"M52P{borrowed[0].adaptive:d}")
-    if reason not in ABORTED_AGAIN:
-        borrowed.clear()
+    state = state_of(interp)
+    if state.borrowed:
+        state.aborted = now, state.borrowed[0]
+        state.borrowed.clear()
+    at, saved = state.aborted
+    if saved and now - at < ABORTED_AGAIN:
+        restore(interp, saved)
+        if saved.accelerations:  # the face has M52 on
+            command_adaptive(interp, saved)
     if not interp.cutter_comp_side:  # under compensation LinuxCNC refuses it, and no code borrows
         interp.execute(modes_in_force(interp).path_block)
     if interp.feed_rate:

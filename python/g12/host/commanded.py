@@ -56,28 +56,43 @@ class CommandedValues:
     """The commanded values of one interpreter, in mm.
 
     ``planes`` are the circle mill's reference planes, ``cutter`` is that of the last D, tool 0
-    where G41 or G42 commanded it. ``first_d`` are the first places with a D, of the program and
-    (True) of MDI.
+    where G41 or G42 commanded it.
     """
 
     def __init__(self) -> None:
         self.planes = EventPlanes()
-        self.planes_place: Place | None = None
         self.cutter: Tool | None = None
-        self.first_d: dict[bool, Place] = {}
+        self._first: dict[tuple[str, bool], Place] = {}  # by value and whether it was typed
 
-    def remember_planes(self, planes: EventPlanes, place: Place) -> None:
-        self.planes, self.planes_place = planes, place
+    def remember_planes(self, given: EventPlanes, place: Place) -> None:
+        """Note the planes that a block gives."""
+        for name, plane in given._asdict().items():
+            if plane is not None:
+                self.planes = self.planes._replace(**{name: plane})
+                self._note(name, place)
+
+    def planes_at(self, place: Place) -> EventPlanes:
+        """Return those planes that a block above a place gives."""
+        planes = self.planes._asdict().items()
+        return EventPlanes(**{name: at for name, at in planes if self._stands_above(name, place)})
 
     def remember_cutter(self, cutter: Tool, place: Place) -> None:
         self.cutter = cutter
-        first = self.first_d.get(place.is_typed)
-        if not first or not first.reaches(place):
-            self.first_d[place.is_typed] = place
+        self._note("D", place)
 
     def gives_d(self, place: Place) -> bool:
         """Return whether a cycle with D stands above a place."""
-        return any(first.reaches(place) for first in self.first_d.values())
+        return self._stands_above("D", place)
+
+    def _note(self, name: str, place: Place) -> None:
+        first = self._first.get((name, place.is_typed))
+        if not first or not first.reaches(place):
+            self._first[name, place.is_typed] = place
+
+    def _stands_above(self, name: str, place: Place) -> bool:
+        """Return whether the first block that commands a value stands above a place."""
+        firsts = (self._first.get((name, typed)) for typed in (False, True))
+        return any(first.reaches(place) for first in firsts if first)
 
 
 def commanded_of(interp: Interp) -> CommandedValues:

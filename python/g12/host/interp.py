@@ -39,13 +39,14 @@ def millimetres_per_unit(interp: Interp) -> float:
 class PackageState:
     """The package's state of one interpreter, stored on the interpreter object.
 
-    ``borrowed`` are the values to restore (`host.borrowed`). ``shown`` are the messages that are
-    shown once for each program. ``source`` is the file of the last section, ``by_hand`` the G12.1
-    in MDI.
+    ``borrowed`` are the values to restore (`host.borrowed`), ``aborted`` the one that an abort has
+    restored, with its time. ``shown`` are the messages that are shown once for each program.
+    ``source`` is the file of the last section, ``by_hand`` the G12.1 in MDI.
     """
 
     def __init__(self) -> None:
         self.borrowed: list[Any] = []
+        self.aborted: tuple[float, Any] = (0.0, None)
         self.shown: set[object] = set()
         self.texts: dict[str, str] = {}
         self.source: Any = None

@@ -7,6 +7,7 @@ reason as its entry. ngc/g12_on_abort.ngc calls this handler by a ;py comment.
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 
 from g12.host import borrowed, messages, modes
@@ -36,7 +37,7 @@ def restore_all(interp: Interp, reason: int) -> None:
 
     None of them depends on the success of another one.
     """
-    _attempt(interp, borrowed.after_abort, reason)
+    _attempt(interp, borrowed.after_abort, time.monotonic())
     if MACHINE.settings.c_clamp:
         _attempt(interp, modes.run_code, f"M{MACHINE.settings.c_clamp[1]}")
     if MACHINE.settings.on_abort_command:

@@ -145,11 +145,8 @@ def event_planes(interp: Interp) -> EventPlanes:
     A plane of another program, or of the text before an edit, would send the tool to a height that
     this program does not contain.
     """
-    commanded = commanded_of(interp)
-    place = commanded.planes_place
-    if place is None or not place.reaches(place_of_block(interp)):
-        return EventPlanes()
-    return commanded.planes.scaled(1 / millimetres_per_unit(interp))
+    planes = commanded_of(interp).planes_at(place_of_block(interp))
+    return planes.scaled(1 / millimetres_per_unit(interp))
 
 
 def remember_planes(interp: Interp, planes: EventPlanes) -> None:

@@ -86,6 +86,7 @@ def abort(interp: Interp) -> None:
     by_hand = _unlock(interp)
     if by_hand:
         state_of(interp).by_hand = by_hand._replace(ended=True)
+        borrowed.command_adaptive(interp, by_hand.saved)  # the abort before may have lost it
     if by_hand and not by_hand.ended:
         _restore(interp, by_hand)
         on, off = by_hand.code, code_of_handler(MACHINE.remaps.values(), "polar_off")

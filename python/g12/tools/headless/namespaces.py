@@ -148,7 +148,9 @@ def folder_of_turns() -> int:
         if (status.st_uid, stat.S_IMODE(status.st_mode)) == (user, 0o700):
             return folder
         os.close(folder)
-    raise StartupError(f"{path}: not a folder that only you can enter; remove it")
+    owner = os.lstat(path).st_uid
+    whose = "" if owner == user else f"; user {owner} made it, who can remove it, as root can"
+    raise StartupError(f"{path}: not a folder that only you can enter: remove it{whose}")
 
 
 @functools.cache

@@ -32,10 +32,12 @@ Move = tuple[Path, Path]  # a new file or folder, and the place that it takes
 def folder_beside(folder: Path) -> Iterator[Path]:
     """Yield an empty folder in a config's folder, for one command at a time."""
     place = folder / BESIDE
-    place.mkdir(mode=0o700, exist_ok=True)
-    handle = os.open(place, os.O_DIRECTORY | os.O_NOFOLLOW)
+    handle = os.open(folder, os.O_DIRECTORY)
     try:
         lock(handle, place)
+        if place.is_symlink():
+            raise UsageError(f"{place}: is a link; remove it")
+        place.mkdir(mode=0o700, exist_ok=True)
         clear(place)
         try:
             yield place
