@@ -120,7 +120,7 @@ def test_g91_counts_xy_from_the_tool_and_z_from_w():
     [
         ("", NONE, (0.1, 0.1), (0.1, None)),
         ("E.5", NONE, (0.1, 0.5), (0.1, 0.5)),
-        ("", EventPlanes(0.3, 0.7), (0.1, 0.7), (0.1, 0.7)),
+        ("", EventPlanes(0.3, 0.7), (0.1, 0.7), (0.1, None)),
         ("I.4", EventPlanes(0.3, None), (0.4, 0.4), (0.4, None)),
         ("E.6", EventPlanes(0.3, 0.7), (0.1, 0.6), (0.1, 0.6)),
     ],
