@@ -28,7 +28,8 @@ class CyclePlan(NamedTuple):
     Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as are
     ``other_cutter``: D is not the loaded tool, and ``kept_cutter``: without D another one counts
     than the program shows. ``commanded_cutter`` is the one that a Haas D names,
-    ``commanded_planes`` are those that it gives for later circle mill events. ``cut`` returns what is reported.
+    ``commanded_planes`` are those that an event gives for later ones. ``cut`` returns what is
+    reported.
     """
 
     locals: dict[str, float]
