@@ -190,15 +190,16 @@ def event_entries(block):
     return {name: value if name in "GDC" else value * block.unit for name, value in given.items()}
 
 
-def event_path(block, plane):
+def event_path(block, planes):
     """Return the moves of an event: to the plunge point, the levels, the finish, and back.
 
-    ``plane`` is the first reference plane of an event before, mm.
+    ``planes`` are W and O of the events before, mm; None where no event has one.
     """
     entries, here = event_entries(block), block.report.at[2] * block.unit
-    top = entries.get("W", plane)
+    top, modal = entries.get("W", planes[0]), planes[1]
     base = top if block.report.incremental else 0.0
-    second, bottom = entries.get("O", top) - here, entries["Z"] + base - here
+    second = entries.get("O", top if modal is None else modal) - here
+    bottom = entries["Z"] + base - here
     pocket, finish = entries.get("G") == 7.0, entries.get("L", 0.0)
     turn, finish_turn = ROUGH_FINISH[round(entries.get("D", 0.0))]
     side = {0: 0, 1: -turn, 2: turn}[round(entries["C"])]  # clockwise: left is outside

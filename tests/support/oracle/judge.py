@@ -107,7 +107,7 @@ class Oracle:
         block = BlockInMm(cut.report, cutter, self.settings)
         block.machine_mm = self.ini.mm
         if isinstance(cut.report.cut, EventCut):
-            path = circles.event_path(block, self._plane_before(number))
+            path = circles.event_path(block, [self._before(number, plane) for plane in "WO"])
         else:
             path = PATHS[self.dialect](block)
         first = self.moves[cut.at]
@@ -130,14 +130,14 @@ class Oracle:
                 return self.trace.table_at(each.at).diameters.get(round(d), 0.0) / 2
         return loaded if self.dialect == "haas" else 0.0
 
-    def _plane_before(self, number: int) -> float:
-        """Return W of the last event that has one, mm."""
+    def _before(self, number: int, plane: str) -> float | None:
+        """Return W or O of the last event that has one, mm."""
         for cut in reversed(self.trace.cuts[:number]):
             if isinstance(cut.report.cut, EventCut):
                 entries = circles.event_entries(BlockInMm(cut.report, 0.0, None))
-                if "W" in entries:
-                    return entries["W"]
-        return math.nan
+                if plane in entries:
+                    return entries[plane]
+        return None
 
     def _report_of_circle(
         self, cut: ReportedCut, block: BlockInMm, path: Sequence[Expected]
