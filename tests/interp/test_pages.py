@@ -19,6 +19,7 @@ PAGES = {
     "ngc/polar_shapes.md": ("lathe_mm", 3),
     "ngc/cylinder.md": ("lathe_mm", 1),
 }
+BORED = {"ngc/yasnac.md": "bore 80"}  # it enters such a hole by rapid
 PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n", re.MULTILINE)
 
 
@@ -40,9 +41,10 @@ def test_the_first_program_of_a_page_cuts_what_it_says(page, tmp_path, capsys):
     program = tmp_path / "page.ngc"
     program.write_text(program_of(page), encoding="utf-8")
     ini = SIM / f"{machine}_headless.ini"
-    assert main(["verify", str(program), "--ini", str(ini), "--json"]) == 0
+    stock = ["--stock", BORED[page]] if page in BORED else []
+    assert main(["verify", str(program), "--ini", str(ini), "--json", *stock]) == 0
     reported = json.loads(capsys.readouterr().out)
-    assert len(reported["pockets"]) + len(reported["sections"]) == cuts
+    assert sum(len(reported[kind]) for kind in ("pockets", "sections", "shapes")) == cuts
 
 
 def test_what_the_page_of_verify_shows_is_what_it_prints(tmp_path, capsys):
@@ -54,18 +56,13 @@ def test_what_the_page_of_verify_shows_is_what_it_prints(tmp_path, capsys):
     assert f"```\n{capsys.readouterr().out}```" in page
 
 
-@pytest.mark.parametrize(("number", "flats"), [(1, [[27.0] * 3]), (2, [[], []])])
-def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, flats, tmp_path, capsys):
+@pytest.mark.parametrize(("number", "sections"), [(1, 1), (2, 2)])
+def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, sections, tmp_path, capsys):
     text = (ROOT / "ngc" / "polar.md").read_text(encoding="utf-8")
     program = tmp_path / "page.ngc"
     program.write_text(programs_in(text)[number], encoding="utf-8")
     words = [str(program), "--ini", str(SIM / "lathe_mm_headless.ini"), "--stock", "40"]
     assert main(["verify", *words, "--json"]) == 0
     reported = json.loads(capsys.readouterr().out)
-    assert [
-        [programmed for programmed, _ in part["across_flats"]] for part in reported["sections"]
-    ] == [pytest.approx(sizes) for sizes in flats]
-    assert [part["reached"][0] for part in reported["sections"]] == pytest.approx(
-        [13.5] * len(flats), abs=0.005
-    )
-    assert [each for each in reported["notes"] if "stock" in each["code"]] == []
+    assert [part["deviation"] < 0.005 for part in reported["sections"]] == [True] * sections
+    assert reported["warnings"] == []
