@@ -85,7 +85,10 @@ def test_c_turns_only_where_its_clamp_is_open(case, tmp_path):
 
 
 def test_a_clamp_that_no_trace_shows_is_not_judged(tmp_path):
-    changed = {"G12": {"C_CLAMP": "M110 M111"}}
+    for code in ("M110", "M111"):
+        (tmp_path / code).touch(mode=0o755)
+    paths = {"USER_M_PATH": str(tmp_path)}
+    changed = {"G12": {"C_CLAMP": "M110 M111"}, "RS274NGC": paths}
     assert (
         "clamp-unseen 6"
         in prove_lines(tmp_path, [*LATHE, "G0 Z10", ON_FACE], "lathe_mm", changed).codes

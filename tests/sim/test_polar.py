@@ -51,7 +51,8 @@ def test_every_sample_is_cut_as_its_words_ask(request, name):
     text = (PROGRAMS / "polar" / f"{name}.ngc").read_text()
     machine.reset()
     proof = machine.proof_of_run(re.sub(r"F([57])\.", lambda feed: f"F{6 * int(feed[1])}.", text))
-    assert proof.findings == []
+    found = set(proof.finding_codes)
+    assert found == ({"no-diameter"} if name == "manual_sample" else set())  # a centre's path, T8
     assert max(each.deviation for each in proof.sections) <= TOLERANCE[units] + SAMPLING
     cut = Cut(proof.program.samples)
     assert cut.x.min() >= -1e-9

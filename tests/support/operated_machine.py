@@ -93,14 +93,15 @@ class Machine(machine.Machine):
         assert run.error is None, run.error
         return run.samples
 
-    def proof_of_run(self, text, stock: str = "") -> Proof:
+    def proof_of_run(self, text, stock: str = "", tolerance: float | None = None) -> Proof:
         """Run a program, which must end without an error; return the proof of its real motion.
 
         Verify assumes the state of the machine at its start: see `reset`.
         """
         samples = self.motion_of(text)
         given = StockText(stock) if stock else None
-        return prove(self.folder / "program.ngc", self.ini, samples=samples, stock=given)
+        judged = {"samples": samples, "stock": given, "tolerance": tolerance}
+        return prove(self.folder / "program.ngc", self.ini, **judged)
 
     def reset(self) -> None:
         """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""

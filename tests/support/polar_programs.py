@@ -54,7 +54,7 @@ def toolpath_of(name, ini):
     with Tracer(ini, reports=True) as lathe:
         traced = lathe.trace(PROGRAMS / "polar" / f"{name}.ngc")
     for at, *_, report in traced.cuts:
-        elements, mm = list(elements_of(report.cut, report.frame.mm)), report.frame.mm
+        elements, mm = list(elements_of(report, report.cut)), report.frame.mm
         radius = traced.radius(at)
         for step in contour_path(elements, report.at[2] * mm, radius):
             if step.move.curve.length:
