@@ -59,8 +59,9 @@ def test_runs_of_a_container_wait_for_those_of_the_same_user(computer):
 
 
 @pytest.mark.parametrize("plant", ["mkdir", "mkfifo", "ln -s /tmp/nothing", "ln -s /root"])
-def test_a_queue_of_another_user_is_refused(computer, plant):
-    queue = "/tmp/g12-turns-0"
-    done = computer(f"{OTHER} {plant} {queue}; timeout 60 {PLAIN} {RUN}")
-    assert f"g12 run: {queue}: not a folder that only you can enter" in done.stderr
+def test_a_queue_of_another_user_is_not_used(computer, plant):
+    planted = f"{OTHER} {plant} /tmp/g12-turns-0"
+    home = "/tmp/.g12-turns"  # HOME is /tmp in RUN
+    done = computer(f"{planted}; timeout 60 {PLAIN} {RUN}; stat -c %u%a {home}")
+    assert "s in motion" in done.stdout and done.stdout.endswith("\n0700\n"), done.stderr
     assert "Traceback" not in done.stderr

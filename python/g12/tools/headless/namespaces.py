@@ -29,6 +29,7 @@ from g12.tools.system import PYTHON
 ISOLATE = Path(__file__).with_name("namespaces_init.py")
 CONTAINED = Path(__file__).with_name("contained_init.py")
 TURNS = "/tmp/g12-turns-{}"  # without namespaces: a user's folder, whose lock marks the turn
+HOME_TURNS = "~/.g12-turns"  # where another user has taken that name
 LONGEST_QUEUE = 3600.0  # s, for the turn
 TURN_POLL = 0.1  # s
 NO_SCREEN = ("DISPLAY", "WAYLAND_DISPLAY", "INI_FILE_NAME")
@@ -138,19 +139,22 @@ def next_turn() -> int:
 
 
 def folder_of_turns() -> int:
-    """Open a folder that this user alone can open, and so lock; refuse anyone else's."""
-    path, user = TURNS.format(os.geteuid()), os.geteuid()
-    with contextlib.suppress(FileExistsError):
-        os.mkdir(path, 0o700)
-    with contextlib.suppress(OSError):
-        folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
-        status = os.fstat(folder)
-        if (status.st_uid, stat.S_IMODE(status.st_mode)) == (user, 0o700):
-            return folder
-        os.close(folder)
-    owner = os.lstat(path).st_uid
-    whose = "" if owner == user else f"; user {owner} made it, who can remove it, as root can"
-    raise StartupError(f"{path}: not a folder that only you can enter: remove it{whose}")
+    """Open a folder that this user alone can open, and so lock.
+
+    Another user may have taken the usual one; nobody else can take one in the user's home.
+    """
+    user, known = os.geteuid(), TURNS.format(os.geteuid())
+    paths = (known, os.path.expanduser(HOME_TURNS))
+    for path in paths:
+        with contextlib.suppress(OSError):
+            os.mkdir(path, 0o700)
+        with contextlib.suppress(OSError):
+            folder = os.open(path, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+            status = os.fstat(folder)
+            if (status.st_uid, stat.S_IMODE(status.st_mode)) == (user, 0o700):
+                return folder
+            os.close(folder)
+    raise StartupError(f"{known}: not a folder that only you can enter: remove it")
 
 
 @functools.cache
