@@ -48,7 +48,8 @@ def accepted(
     allowed = [each for each in expected if each.code in codes]
     met = [each for each in found if any(_meets(each, one, cuts) for one in allowed)]
     unmet = (one for one in expected if not any(_meets(each, one, cuts) for each in met))
-    rest = [each for each in found if each not in met]
+    taken = {id(each) for each in met}  # equal findings may hold arrays
+    rest = [each for each in found if id(each) not in taken]
     return [*rest, *_unmet(unmet, codes)], met
 
 

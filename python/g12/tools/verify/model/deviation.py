@@ -2,6 +2,7 @@
 """How far the tool is off the contour, the circles or the places that a planner reported, in mm."""
 
 import math
+import re
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
@@ -23,6 +24,7 @@ NEIGHBOURS = 2  # curves before and after that a corner's arc may belong to
 SHORT = 0.3  # mm: within that all
 SAMPLES = 8  # of a move
 SAME = 1e-3
+BLENDED = re.compile(r"G64 P([0-9.]+)")
 LAST_DECIMAL = 1e-3  # mm: words are rounded, and so are the chords that are measured
 OFF = kind("off", FINDING, "it is {off:fine} off its contour at {at:xyz} ({allowed:fine} allowed)")
 RUN_OFF = kind(
@@ -71,13 +73,23 @@ def _run_off(cut: Cut, program: TracedProgram) -> Iterator[Finding]:
 
 
 def allowed_off(cut: Cut, program: TracedProgram, tolerance: float | None) -> float:
-    """Return what a cut may be off; a run's sections RUN more than POLAR_TOLERANCE."""
+    """Return what a cut may be off; a run's sections RUN more than POLAR_TOLERANCE.
+
+    Elsewhere a run may round its corners by P of the program's G64.
+    """
     if tolerance is not None:
         return tolerance
     if not program.turning:
-        return WALL
+        return WALL + (_blending(cut, program) if program.real else 0.0)
     ini = program.ini
     return ini.settings.tolerance(ini.mm) * ini.mm + RUN * bool(program.real)
+
+
+def _blending(cut: Cut, program: TracedProgram) -> float:
+    """Return P of the G64 in force where a cut begins, mm."""
+    before = (event.text for event in program.trace.events if event.at <= cut.at)
+    paths = [BLENDED.match(text) for text in before if text.startswith("G6")]
+    return float(paths[-1][1]) if paths and paths[-1] else 0.0
 
 
 def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
