@@ -7,8 +7,10 @@ import shutil
 import pytest
 
 from support.killed_installs import KilledInstalls
+from support.kinematics import needs_kinematics
 
-CASES = [("haas", "update"), ("polar-kinematics", "install"), ("spindle-c", "uninstall")]
+KINEMATICS = pytest.param("polar-kinematics", "install", marks=needs_kinematics)
+CASES = [("haas", "update"), KINEMATICS, ("spindle-c", "uninstall")]
 
 
 @pytest.mark.skipif(not shutil.which("strace"), reason="strace is not installed")

@@ -96,7 +96,7 @@ def test_a_clamp_that_no_trace_shows_is_not_judged(tmp_path):
 
 
 RUNS = [  # a program, the axis along which a run is beside its path, what is found
-    ("mill_mm", [*MILL, *P], "Y", "off 5, wall 5"),
+    ("mill_mm", [*MILL, *P], "Y", "run-off 5, wall 5"),  # within P of its G64
     ("lathe_mm", [*LATHE, *HEXAGON], "X", "off 11"),
 ]
 
