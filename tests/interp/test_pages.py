@@ -7,7 +7,7 @@ import re
 import pytest
 
 from g12.tools.commands.main import main
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import ROOT, SIM, trace_text
 
 PAGES = {
     "README.md": ("mill_inch", 2),
@@ -65,4 +65,7 @@ def test_further_programs_of_polar_cut_their_shapes_from_a_bar(number, sections,
     assert main(["verify", *words, "--json"]) == 0
     reported = json.loads(capsys.readouterr().out)
     assert [part["deviation"] < 0.005 for part in reported["sections"]] == [True] * sections
+    traced = trace_text(programs_in(text)[number], SIM / "lathe_mm_headless.ini")
+    cutting = [move.end[0] for move in traced.moves if move.kind == "feed" and move.end[2] == -5]
+    assert min(cutting) == pytest.approx(27 / 2 + 12 / 2, abs=0.05)  # the flats, the cutter
     assert reported["warnings"] == []

@@ -158,5 +158,6 @@ def test_a_command_of_the_user_s_own_runs_as_well(tmp_path):
         time.sleep(0.5)
         machine.abort()
         machine.wait_for(lambda _: machine.get("motion.analog-out-01") == 7, timeout=5)
-        assert "aborted for 8.000000" in [text.strip() for _, text in machine.messages()]
+        said = "aborted for 8.000000"  # the message may arrive after the output
+        machine.wait_for(lambda _: said in {text.strip() for _, text in machine.messages()}, 5)
         assert {"G91", "G61"} <= set(machine.stat().modes.gcodes) and machine.errors() == []
