@@ -8,7 +8,6 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.polar.beside import split_beside
 from g12.polar.segments import Law, split_move
 from support.axes_of_places import along, axes_of, bend, places_of, rates
 from support.contour_geometry import Round, Straight
@@ -59,7 +58,7 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
     assume(clear_of(shape, beside))
     law = law._replace(ripple=0.01, x_hold=3.0, c_hold=3.0)
     path = along(shape)
-    split = split_beside(shape, law, beside) if beside else split_move(shape, law)
+    split = split_move(shape, law, beside)
     slides, angles, lengths = map(np.array, split)
     assert (lengths[0], lengths[-1]) == pytest.approx((0.0, shape.length))
     assert (np.diff(lengths) > 0).all()
@@ -87,17 +86,14 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
 def test_the_way_back_is_cut_into_the_same_segments(shape, law, beside):
     """They are spaced from the end nearer to the pole, where they are shortest."""
     assume(clear_of(shape, beside))
-    there, again = (
-        split_beside(one, law, beside) if beside else split_move(one, law)
-        for one in (shape, shape.reversed())
-    )
+    there, again = (split_move(one, law, beside) for one in (shape, shape.reversed()))
     assert len(there.lengths) == len(again.lengths)
     assert there.slides == pytest.approx(again.slides[::-1], abs=law.deviation)
     assert there.lengths == pytest.approx([shape.length - at for at in again.lengths[::-1]])
 
 
 def is_whole(line, law):
-    """Return whether one segment is off by 3/4 deviations at most and keeps the feed even enough.
+    """Return whether a segment of 0.64 of the full length would do, as both its ends are exact.
 
     As if the line were all the way as it is where it is nearest to the pole.
     """
@@ -107,7 +103,8 @@ def is_whole(line, law):
     first, last = abs(line.start), abs(line.end)
     growth = abs(last - first) / (first + last)
     off = abs(bend(path, at)) * line.length**2 / 8.0
-    return off <= 0.75 * law.deviation and (turning * slide) ** 2 * growth <= law.ripple
+    limits = 1.5 * 0.64**2 * law.deviation, 0.64 * law.ripple
+    return off <= limits[0] and (turning * slide) ** 2 * growth <= limits[1]
 
 
 @pytest.mark.parametrize("law", [Law(0.005, 1e9, INF, INF), Law(1e9, 0.01, INF, INF)])
@@ -121,7 +118,7 @@ def test_a_short_line_is_one_segment_while_that_keeps_the_limits(law, first, foo
         middle = 0.5 * (low + high)
         whole = is_whole(Straight(start, start + 1j * middle), law)
         low, high = (middle, high) if whole else (low, middle)
-    for length, whole in ((0.99 * low, True), (1.01 * low, False)):
+    for length, whole in ((0.64 * low, True), (1.2 * low, False)):
         ends = (start, start + 1j * length)
         for line in (Straight(*ends), Straight(*ends[::-1])):
             assert (len(split_move(line, law).lengths) == 2) is whole

@@ -25,7 +25,6 @@ from math import ceil
 from typing import NamedTuple
 
 BULGE = 1.5  # deviations: of a segment between two ends moved off the path
-WHOLE_BULGE = 0.75  # deviations: of a segment with both ends exactly on the path
 LOSS = 0.18  # segments: lost where an element ends exactly on the path
 WORTH_DIVIDING = 0.5  # segments: at an apsis nearer to an end the element is not divided
 MOST_SEGMENTS_OF_MOVE = 100_000  # of an element: more would cost LinuxCNC too much time and memory

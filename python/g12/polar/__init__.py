@@ -7,7 +7,7 @@ are in program units throughout.
 
 1. `g12.compensation`: blocks become lines and arcs in the flat plane, then the path of the tool's
    centre.
-2. ``pole``: moves that touch the spindle's centre end there. ``beside``: the path of a tool beside
+2. ``pole``: moves that touch the spindle's centre end there; the path of a tool beside
    the X line stays clear of it.
 3. `g12.moves.exact_stops`: where the tool must stop.
 4. ``face``: moves that LinuxCNC plans itself as lines and arcs, with the kinematics of the face.

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from g12.compensation.contour import PlaneMove, Plunge
 from g12.geometry.curve import Arc, Line, angle_of
-from g12.polar.beside import slide_at
 from g12.polar.follow import shares_to_check
+from g12.polar.pole import slide_at
 
 SAME_DIRECTION = 1e-6  # radians
 

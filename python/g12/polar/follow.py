@@ -28,8 +28,7 @@ from typing import NamedTuple
 
 from g12.compensation.contour import SAME_POINT, PlaneMove
 from g12.geometry.curve import Arc, Curve
-from g12.polar.beside import along_and_around, slide_at
-from g12.polar.pole import POLE
+from g12.polar.pole import POLE, along_and_around, slide_at
 
 CHECKED = 16  # points evaluated on a line, and on each quarter of an arc
 OVERSHOOT = 0.002  # seconds until polar_xzc notices a higher override

@@ -13,10 +13,15 @@ from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Plun
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.feed import Split, segments_with_feed
 from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, StepMaker
-from g12.polar.beside import along_and_around, check_pole_distance, slide_at, split_beside
 from g12.polar.face import FaceMove, FaceSwitch, in_face, positions_along
 from g12.polar.follow import FaceLimits
-from g12.polar.pole import POLE, through_pole
+from g12.polar.pole import (
+    POLE,
+    along_and_around,
+    check_pole_distance,
+    slide_at,
+    through_pole,
+)
 from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
 
@@ -120,9 +125,8 @@ class _SlideAndSpindle(StepMaker):
         self._run(move.line, "XC" if move.z0 == move.z1 else "XCZ", segments, stop)
 
     def _split_move(self, move: PlaneMove, deviation: float) -> Split:
-        law, beside = self._law(move.feed, deviation), self._settings.beside
-        curve = move.curve
-        return split_beside(curve, law, beside) if beside else split_move(curve, law)
+        law = self._law(move.feed, deviation)
+        return split_move(move.curve, law, self._settings.beside)
 
     def switch(self, line: int, stretch: FaceStretch | None) -> None:
         """Switch to the face for a stretch of the path, or back (None), if not there already."""

@@ -1,10 +1,26 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pole: the spindle's centre, where the C axis has no angle of its own.
+"""The pole, the spindle's centre, and where the slide and C have to be for a point of the plane.
 
-A path that comes closer to the pole than ``pole_radius`` is rerouted through it exactly: in along a
-radius, a rotation of C at the pole, out along another. A line that close is nearly such a radius.
-Of an arc the portion next to the pole is replaced, as far as a radius deviates from it by a fifth
-of ``pole_radius`` at most.
+At the pole C has no angle of its own. A path that comes closer to it than ``pole_radius`` is
+rerouted through it exactly: in along a radius, a rotation of C at the pole, out along another. A
+line that close is nearly such a radius. Of an arc the portion next to the pole is replaced, as far
+as a radius deviates from it by a fifth of ``pole_radius`` at most.
+
+A tool beside the X line does not pass the pole. It is ``beside`` (POLAR_TOOL_OFFSET, Fanuc's
+parameter 5464) away from the line on which the slide moves it, above zero on the side to which C
+words grow. For the tool to be at the distance r from the pole the slide has to be at s, and C at
+less than the angle of the point:
+
+                       . * tool           s = sqrt(r**2 - beside**2)
+                r . '    |
+             . '         | beside         the slide's direction e is turned from the radius
+        . '              |                by -asin(beside / r)
+    pole +---------------+---> e
+                 s
+
+No point nearer to the pole than ``beside`` can be reached, and none is commanded:
+`check_pole_distance` refuses a path within the tolerance of that circle, and segments deviate by
+less.
 """
 
 from __future__ import annotations
@@ -13,10 +29,42 @@ from collections.abc import Sequence
 from math import asin, sqrt
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
+from g12.errors import number
 from g12.geometry.curve import Arc, Line
 
 POLE = 0j
 FLAT_SHARE = 0.2  # of the pole_radius: greatest deviation from an arc of the radii that replace it
+
+
+def slide_at(point: complex, beside: float) -> tuple[float, complex]:
+    """Return the slide's position for a point of the plane, and its direction in the plane."""
+    square = (point * point.conjugate()).real
+    if not square:
+        return 0.0, 1 + 0j
+    slide = sqrt(max(0.0, square - beside * beside))
+    return slide, point * complex(slide, -beside) / square
+
+
+def along_and_around(direction: complex, slide_direction: complex) -> tuple[float, float]:
+    """Return the components of a direction along the slide's and to its left."""
+    turned = direction * slide_direction.conjugate()
+    return turned.real, turned.imag
+
+
+def check_pole_distance(
+    contour: Contour, path: Sequence[PathElement], beside: float, tolerance: float
+) -> None:
+    """Refuse a path that comes nearer to the pole than the tool can."""
+    least = abs(beside) + tolerance
+    for move in (element for element in path if isinstance(element, PlaneMove)):
+        nearest = move.curve.distance(POLE)
+        if nearest < least:
+            contour.refuse(
+                move.line,
+                f"the tool's centre would come to {number(nearest)} from the spindle's centre: it "
+                f"is {number(abs(beside))} beside X's line (POLAR_TOOL_OFFSET) and comes no "
+                f"nearer than {number(least)}",
+            )
 
 
 def through_pole(
