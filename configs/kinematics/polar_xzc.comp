@@ -49,14 +49,9 @@ net polar-in-position motion.in-position => polar-xzc.stands
 net polar-type polar-xzc.type => motion.switchkins-type
 net polar-face polar-xzc.face => motion.digital-in-03
 net polar-jog polar-xzc.jog-inhibit => motion.jog-inhibit
-net polar-line motion.program-line => polar-xzc.program-line
-net polar-hold polar-xzc.hold => motion.feed-inhibit
 net polar-speed motion.requested-vel => polar-xzc.speed
 net polar-feed-upm motion.feed-upm => polar-xzc.feed-upm
 net polar-feed polar-xzc.feed => motion.adaptive-feed
-setp polar-xzc.acceleration [AXIS_X]MAX_ACCELERATION
-setp polar-xzc.c-speed [AXIS_C]MAX_VELOCITY
-setp polar-xzc.c-acceleration [AXIS_C]MAX_ACCELERATION
 .fi
 .RE
 
@@ -68,19 +63,14 @@ itself when the machine is switched off, stopped in an emergency or jogged, and 
 \\fBend-request\\fR is set; then the request has to be withdrawn before a new one counts. While the
 face is on and no program or MDI moves the machine, jogs are inhibited.
 
-M68 E3 Q2 requests the face by hand: for lines of MDI, which were not planned ahead. M52 P1 limits
-their speed to what C can follow, the slower the nearer to the centre, and a move of a program's line
-is held.
-
-With M68 E3 Q1 and M52 P1 the operator's feed override applies up to \\fBmost-override\\fR, if that is not 0:
-\\fBfeed\\fR reduces a higher one. G12.1 sets the pin, and \\fBunit\\fR, a program's unit in the machine's,
-from which the module calculates the override.
+On the face, with M52 P1, the operator's feed override applies up to \\fBmost-override\\fR, if that is
+not 0: \\fBfeed\\fR reduces a higher one. G12.1 sets the pin, and \\fBunit\\fR, a program's unit in the
+machine's, from which the module calculates the override.
 
 .B Refusals.
 A move that has no meaning in the active type fails with a message: one to a Y other than 0 in type 0,
-and one of C in type 1. So does any move while the active type is not the requested one, and after a
-request by hand that has ended by itself, until the next request. The face is not switched on with the
-tool beyond the centre.
+and one of C in type 1. So does any move while the active type is not the requested one. The face is
+not switched on with the tool beyond the centre.
 
 .B The centre.
 In the centre the angle of C is free. It does not change there, so a path that leaves the centre in
@@ -95,26 +85,21 @@ module tells them that type 0 is X, Z and C.
 
 modparam dummy coordinates=XZC "letter of each joint";
 
-pin in float request "1 requests the face, 2 the face by hand, 3 no move, any other value X, Z and C";
+pin in float request "1 requests the face, any other value X, Z and C";
 pin in float centre "position of the X joint with the tool on the spindle's axis";
 pin in float tool_offset "of the tool from the X line: [G12]POLAR_TOOL_OFFSET";
 pin in bit enabled "the machine is on: motion.motion-enabled";
 pin in bit program "a program or MDI moves the machine, not a jog: motion.coord-mode";
 pin in bit stands "the machine is at rest: motion.in-position";
-pin in s32 program_line "line of the present move, 0 in MDI: motion.program-line";
 pin in float speed "commanded speed: motion.requested-vel";
 pin in float feed_upm "present feed, program units a minute: motion.feed-upm";
 pin in float unit = 1.0 "of the program, in the machine's";
 pin in float most_override "of the feed on the face by program, 0 for any";
-pin in float acceleration "of the face's X and Y: [AXIS_X]MAX_ACCELERATION";
-pin in float c_speed "[AXIS_C]MAX_VELOCITY";
-pin in float c_acceleration "[AXIS_C]MAX_ACCELERATION";
 pin io bit end_request "true ends the request, as an abort has to; the guard resets it";
 pin out float type "for motion.switchkins-type";
 pin out bit face "type 1 is active";
 pin out bit jog_inhibit "type 1 is active without a program or MDI: for motion.jog-inhibit";
-pin out bit hold "a program moves the face by hand: for motion.feed-inhibit";
-pin out float feed = 1.0 "share of the speed that C can follow: for motion.adaptive-feed";
+pin out float feed = 1.0 "what remains of the speed: for motion.adaptive-feed";
 
 function guard "Choose the type.";
 
@@ -131,31 +116,27 @@ author "the g12 package";
 #include <emcmotcfg.h>
 #include <kinematics.h>
 
+/* ---- The kinematics: where joints and axes are, in the type that is active. ---- */
+
 #define DEGREE (M_PI / 180.0)
 #define AT_CENTRE 1e-6 /* machine units: within this distance the angle of C is free */
 #define NO_MOVE 1e-6   /* machine units or degrees: rounding of an absent word */
 
-#define LAG (0.1 * DEGREE) /* of C by hand, where the planner's acceleration is more than C's */
-#define NEARER 1.2 /* ratio of the radius where that begins to the one where the two are equal */
-#define SETTLED 6 /* cycles at rest: LinuxCNC smooths the joints' motion over the last four */
-#define LEAST_FEED 0.01 /* by program: no override is so high that it needs less */
-#define ASIDE 0.4  /* of the acceleration: the slide needs the rest for its own motion */
-
-enum { XZC, FACE, BY_HAND };
+enum { XZC, FACE };
 static const char letters[] = "XYZABCUVW";
 
 static char *coordinates = "XZC";
 RTAPI_MP_STRING(coordinates, "letter of each joint");
 
 static struct {
-    int kind;       /* XZC or FACE */
-    int begins;     /* the face was switched on, and forward was not called since */
-    int given;      /* motion takes commands now: at the start of a cycle, before forward */
-    int spent;      /* the request ended by itself, and was not withdrawn since */
-    double origin;  /* of the face: position of the X joint */
-    double zero;    /* of the face: C in degrees on its X axis */
-    double beside;  /* distance of the tool from the X line */
-    double slide;   /* position of the slide, from the origin */
+    int active;           /* XZC or FACE */
+    int face_has_no_zero; /* the face was switched on, and the joints' positions are not known yet */
+    int takes_lines;      /* motion calls for a line of a program or MDI, not for a cycle: between the
+                             guard, at a cycle's end, and kinematicsForward */
+    int request_ended;    /* the request for the face ended by itself, and was not withdrawn since */
+    double origin;        /* of the face: position of the X joint */
+    double zero;          /* of the face: C in degrees on its X axis */
+    double beside;        /* distance of the tool from the X line */
     int joints;
     int axis[EMCMOT_MAX_JOINTS]; /* index of each joint's letter */
     int x, c;                    /* joints */
@@ -190,8 +171,8 @@ static int take_coordinates(const char *text)
 /* Put the face's X axis at the angle of C; remain in X, Z and C with the tool beyond the centre. */
 static void begin_face(const double *joint)
 {
-    state.begins = 0;
-    if (joint[state.x] < state.origin) state.kind = XZC;
+    state.face_has_no_zero = 0;
+    if (joint[state.x] < state.origin) state.active = XZC;
     state.zero = joint[state.c];
 }
 
@@ -203,12 +184,12 @@ int kinematicsForward(const double *joint, EmcPose *pose,
 
     (void)fflags;
     (void)iflags;
-    state.given = 0;
-    if (state.begins) begin_face(joint);
+    state.takes_lines = 0;
+    if (state.face_has_no_zero) begin_face(joint);
     memset(pose, 0, sizeof(*pose));
     for (k = 0; k < state.joints; k++) *axis_of(pose, state.axis[k]) = joint[k];
-    if (state.kind == FACE) {
-        slide = state.slide = joint[state.x] - state.origin;
+    if (state.active == FACE) {
+        slide = joint[state.x] - state.origin;
         angle = (joint[state.c] - state.zero) * DEGREE;
         pose->tran.x = state.origin + slide * cos(angle) - state.beside * sin(angle);
         pose->tran.y = slide * sin(angle) + state.beside * cos(angle);
@@ -220,7 +201,14 @@ int kinematicsForward(const double *joint, EmcPose *pose,
 /* Return whether the face is requested, by a request that did not end by itself. */
 static int is_face_requested(const struct __comp_state *__comp_inst)
 {
-    return (request == FACE || request == BY_HAND) && !state.spent;
+    return request == FACE && !state.request_ended;
+}
+
+/* Return whether a line of a program or MDI comes while the requested type is not active yet. The
+   present move is completed. */
+static int comes_too_early(const struct __comp_state *__comp_inst)
+{
+    return state.takes_lines && program && is_face_requested(__comp_inst) != (state.active == FACE);
 }
 
 /* Report to the operator why there are no joints: LinuxCNC shows a module's errors as its own. */
@@ -228,20 +216,6 @@ static int refuse(const char *reason)
 {
     rtapi_print_msg(RTAPI_MSG_ERR, "polar mode: %s\n", reason);
     return -1;
-}
-
-/* Refuse a line that is commanded while the active type is not the requested one. The present move is
-   completed. */
-static int refused(void)
-{
-    const struct __comp_state *__comp_inst = component;
-
-    if (!state.given || !program) return 0;
-    if (request == BY_HAND && state.spent)
-        return refuse("an abort or an error ended it, nothing moves until G13.1 or G12.1");
-    if (is_face_requested(__comp_inst) != (state.kind == FACE))
-        return refuse("the machine is about to change its kinematics, nothing moves until then");
-    return 0;
 }
 
 /* joint has the present positions: C continues from there over the full turns. */
@@ -254,13 +228,14 @@ int kinematicsInverse(const EmcPose *pose, double *joint,
 
     (void)iflags;
     (void)fflags;
-    if (refused()) return -1;
-    if (state.kind == XZC && fabs(world.tran.y) > NO_MOVE)
+    if (comes_too_early(component))
+        return refuse("the machine is about to change its kinematics, nothing moves until then");
+    if (state.active == XZC && fabs(world.tran.y) > NO_MOVE)
         return refuse("Y moves only on the face, from G12.1 to G13.1");
-    if (state.kind == FACE && fabs(world.c - state.zero) > NO_MOVE)
+    if (state.active == FACE && fabs(world.c - state.zero) > NO_MOVE)
         return refuse("C does not move by itself on the face: write X and Y, or G13.1 first");
     for (k = 0; k < state.joints; k++) joint[k] = *axis_of(&world, state.axis[k]);
-    if (state.kind == FACE) {
+    if (state.active == FACE) {
         x = world.tran.x - state.origin;
         y = world.tran.y;
         square = x * x + y * y - state.beside * state.beside; /* of the slide's position */
@@ -286,8 +261,8 @@ int kinematicsSwitch(int kind)
     struct __comp_state *__comp_inst = component;
 
     if (kind != XZC && kind != FACE) return -1;
-    state.kind = kind;
-    state.begins = kind == FACE;
+    state.active = kind;
+    state.face_has_no_zero = kind == FACE;
     state.origin = centre;
     state.beside = tool_offset;
     return 0;
@@ -311,61 +286,50 @@ EXPORT_SYMBOL(kinematicsSwitchable);
 EXPORT_SYMBOL(kinematicsSwitch);
 EXPORT_SYMBOL(kinematicsTypeFlags);
 
-/* Return the speed that C and the slide can follow where the slide is at r, whatever the
-   direction: with its own acceleration A the planner turns C by up to A / r. Where that is more
-   than C's, speed grows with r only, so that in a stop C lags by LAG at most. */
-static double followed(const struct __comp_state *__comp_inst, double r)
-{
-    double most = sqrt(2.0) * acceleration, c_most = c_acceleration * DEGREE;
-    double near = NEARER * most / c_most, per_radius = sqrt(2.0 * LAG * c_most);
-    double v = per_radius * r;
+/* ---- The guard, in each servo cycle: the type that is requested, and the feed on the face. ---- */
 
-    if (r > near) {
-        v = sqrt(pow(per_radius * near, 2) + acceleration * (r - near)); /* half of it to brake */
-        v = fmin(v, sqrt(ASIDE * acceleration * r));
-    }
-    v = fmin(v, 0.9 * c_speed * DEGREE * r);
-    if (state.beside == 0.0) return v;
-    return v * r / sqrt(r * r + state.beside * state.beside); /* the slide is so much faster */
+#define SETTLED 6 /* cycles at rest: LinuxCNC smooths the joints' motion over the last four */
+#define LEAST_FEED 0.01 /* no override is so high that it needs less */
+
+/* Choose the type. A switch during a jog would make the axes jump to their positions before it. */
+static void choose_type(struct __comp_state *__comp_inst)
+{
+    static int at_rest; /* cycles */
+
+    state.request_ended =
+        request == FACE && (state.request_ended || end_request || !enabled || !program);
+    end_request = 0;
+    at_rest = stands ? at_rest + (at_rest < SETTLED) : 0;
+    if (!enabled || (program && at_rest == SETTLED))
+        type = is_face_requested(__comp_inst) ? FACE : XZC;
+    face = state.active == FACE && !state.face_has_no_zero;
+    jog_inhibit = face && !program;
 }
 
 /* Return the operator's feed override during the last motion: the feed that LinuxCNC reports is F
    times the override times `feed` of the cycle before. */
-static double override(const struct __comp_state *__comp_inst)
+static double feed_override(const struct __comp_state *__comp_inst)
 {
-    static double known = 1.0;
+    static double last = 1.0;
 
-    if (feed_upm > 0.0 && speed > 0.0) known = feed_upm * unit / (60.0 * speed * feed);
-    return known;
+    if (feed_upm > 0.0 && speed > 0.0) last = feed_upm * unit / (60.0 * speed * feed);
+    return last;
 }
 
-/* Return the share of the commanded speed, override included, that C can follow. */
-static double share(const struct __comp_state *__comp_inst, int by_hand)
+/* Return the share of the commanded speed that is left of an override beyond the highest. */
+static double share_of_speed(const struct __comp_state *__comp_inst)
 {
-    double most = c_acceleration > 0.0 ? followed(__comp_inst, state.slide) : 0.0, turned_up;
+    double overridden = feed_override(__comp_inst);
 
-    if (by_hand) return speed > most ? most / speed : 1.0;
-    turned_up = override(__comp_inst);
-    if (!face || most_override <= 0.0 || turned_up <= most_override) return 1.0;
-    return fmax(most_override / turned_up, LEAST_FEED);
+    if (!face || most_override <= 0.0 || overridden <= most_override) return 1.0;
+    return fmax(most_override / overridden, LEAST_FEED);
 }
 
-/* A switch during a jog would make the axes jump to their positions before the jog. */
 FUNCTION(guard)
 {
-    static int at_rest; /* cycles */
-    int requested = request == FACE || request == BY_HAND, by_hand;
-
-    state.spent = requested && (state.spent || end_request || !enabled || !program);
-    end_request = 0;
-    at_rest = stands ? at_rest + (at_rest < SETTLED) : 0;
-    if (!enabled || (program && at_rest == SETTLED)) type = is_face_requested(__comp_inst) ? FACE : XZC;
-    face = state.kind == FACE && !state.begins;
-    by_hand = face && request == BY_HAND;
-    jog_inhibit = face && !program;
-    hold = by_hand && program_line > 0;
-    feed = share(__comp_inst, by_hand);
-    state.given = 1;
+    choose_type(__comp_inst);
+    feed = share_of_speed(__comp_inst);
+    state.takes_lines = 1;
 }
 
 EXTRA_SETUP()

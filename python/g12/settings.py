@@ -99,7 +99,6 @@ class Settings:
     c_clamp: tuple[int, ...] = setting((), m_codes("M10 M11"))
     c_clamp_shapes: tuple[int, ...] = setting((), m_codes("M12"))
     on_abort_command: str = setting("", ValueRule("a block", str))
-    live_spindle: str = setting("", words(*"01234567"))
 
     def tolerance(self, millimetres: float) -> float:
         """Return POLAR_TOLERANCE in machine units, which are ``millimetres`` long."""
@@ -120,9 +119,10 @@ class Settings:
         return ""
 
 
+LIVE_SPINDLE = "LIVE_SPINDLE"  # a key that only `translate` and `check` read
 TABLE: dict[str, ValueRule] = {
     each.name.upper(): each.metadata["rule"] for each in fields(Settings)
-}
+} | {LIVE_SPINDLE: words(*"01234567")}
 
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
@@ -141,6 +141,7 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
         except ValueError:
             rule = f"must be {TABLE[key].legal}"
             raise Refusal(f"[{INI_SECTION}] {key} = {text:.40}: {rule}") from None
+    values.pop(LIVE_SPINDLE.lower(), None)
     settings = Settings(**values)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")

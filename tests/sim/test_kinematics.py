@@ -59,7 +59,78 @@ def test_y_is_refused_off_the_face(lathe):
     assert place(lathe) == (20, 0, 30)
 
 
+def slide_and_spindle(machine):
+    return pytest.approx([machine.get(f"joint.{joint}.pos-cmd") for joint in (0, 2)], abs=1e-6)
+
+
+def type_each(machine, *blocks):
+    """Type blocks that move and are no errors."""
+    for block in blocks:
+        machine.mdi(block)
+        said = machine.errors()
+        assert not said, (block, said)
+
+
+def test_lines_of_mdi_move_on_the_face_until_g13_1(lathe):
+    type_each(lathe, "G0 X40 C30", *ON, "G1 X20 Y20 F3000")
+    assert place(lathe) == (20, 20, 30)
+    assert slide_and_spindle(lathe) == [800**0.5, 75]
+    type_each(lathe, "G3 X-20 I-20 J-20", "G91 G1 X-10", "G90 G0 X-30 Y0")
+    assert slide_and_spindle(lathe) == [30, 210]
+    type_each(lathe, "G13.1", "G18")
+    assert not on_the_face(lathe)
+    assert place(lathe) == (30, 0, 210)
+
+
+def test_nothing_but_x_y_and_z_moves_on_the_face_by_hand(lathe):
+    type_each(lathe, *ON, "G1 X20 Y10 F3000")
+    lathe.mdi("C5")
+    lathe.wait_for_error("C does not move by itself on the face")
+    lathe.wait_for(lambda _: not on_the_face(lathe), timeout=SOON)
+    type_each(lathe, "G13.1", *ON)
+    lathe.manual()
+    lathe.wait_for(lambda status: status.task_mode == "manual")
+    lathe.jog(X, 10)
+    time.sleep(0.2)
+    lathe.jog(X, 0)
+    lathe.wait_for_error("jog-inhibit")
+    type_each(lathe, "G13.1", "G18", "G0 X22 C10")
+    assert place(lathe) == (22, 0, 10)
+
+
+def test_a_program_on_the_face_by_hand_needs_g13_1_first(lathe):
+    type_each(lathe, *ON, "G1 X20 Y20 F3000")
+    run = lathe.run_text(["G12.1", "G1 X10", "G13.1", "M2"])
+    assert run.error.text == "G12.1 line 1: the face is on already, by hand: G13.1 first"
+    type_each(lathe, "G13.1", *ON, "G1 X20 Y20 F3000")
+    samples = lathe.motion_of(["G13.1", "G18 G90 G94", "G1 X30 Z1 F1000", "G1 X20", "M2"])
+    assert set(samples.line[samples.moving()]) == {3, 4}
+    assert not on_the_face(lathe)
+
+
 # ---------------------------------------------------------------- G12.1
+
+
+def test_g12_1_typed_is_refused(lathe):
+    lathe.mdi("G12.1")
+    assert "Write them into a program, or into a sub that MDI calls" in lathe.errors()[0].text
+    assert not on_the_face(lathe)
+
+
+@pytest.mark.parametrize("how", ["off", "limit switch"])
+def test_adaptive_feed_ends_with_the_face_where_the_machine_goes_off(lathe, how):
+    """LinuxCNC aborts twice then, and drops what the first abort has queued."""
+    start_on_the_face(lathe, SECTION)
+    if how == "off":
+        lathe.off()
+    else:
+        lathe.set("joint.0.pos-lim-sw-in", 1)
+        lathe.wait_for(lambda status: not status.enabled)
+        lathe.set("joint.0.pos-lim-sw-in", 0)
+    lathe.enable()
+    lathe.errors()
+    type_each(lathe, "G0 Z6")
+    assert not lathe.stat().adaptive
 
 
 @pytest.mark.parametrize("name", MILLIMETRES)

@@ -199,7 +199,8 @@ def test_nothing_of_a_refused_section_moves_and_mdi_is_refused(lathe):
     assert lathe.run_text(part()).error is None
     lathe.mdi("G12.1")
     assert [error.text for error in lathe.errors()] == [
-        "G12.1: is not possible in MDI: it needs the lines after it"
+        "G12.1: is not possible in MDI: it needs the lines after it. Write them into a program,"
+        " or into a sub that MDI calls"
     ]
     lathe.mdi("G13.1")
     assert lathe.errors() == []

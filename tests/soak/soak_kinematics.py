@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from soak import SEED, tries
-from support.kinematics import interrupted_by_hand, keeps_its_limits, needs_kinematics
+from support.kinematics import keeps_its_limits, needs_kinematics
 from support.operated_machine import Machine
 from support.sim_machines import SIM
 
@@ -47,15 +47,6 @@ def test_aborts_with_kinematics(name, request):
             assert again.error is None, seed
             keeps_its_limits(again.samples, seed)
             assert again.modes == whole.modes, seed
-
-
-def test_aborts_and_errors_in_mdi(request):
-    with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
-        for number in tries(request, "aborts and errors of G12.1 in MDI, and the line after", 20):
-            try:
-                interrupted_by_hand(machine, random.Random(f"{SEED} {number}"))
-            except AssertionError as error:
-                raise AssertionError(f"number {number} of seed {SEED}") from error
 
 
 def interrupt(machine, chance):

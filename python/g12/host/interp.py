@@ -41,7 +41,7 @@ class PackageState:
 
     ``borrowed`` are the values to restore (`host.borrowed`), ``aborted`` the one that an abort has
     restored, with its time. ``shown`` are the messages that are shown once for each program.
-    ``source`` is the file of the last section, ``by_hand`` the G12.1 in MDI.
+    ``source`` is the file of the last section.
     """
 
     def __init__(self) -> None:
@@ -50,7 +50,6 @@ class PackageState:
         self.shown: set[object] = set()
         self.texts: dict[str, str] = {}
         self.source: Any = None
-        self.by_hand: Any = None
 
 
 def state_of(interp: Interp) -> PackageState:

@@ -12,7 +12,6 @@ at each move. polar_xzc gets the highest feed override and enforces it by adapti
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from enum import IntEnum
 
 import hal
 
@@ -25,18 +24,11 @@ from g12.section.modes import decimal
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
 REQUEST_PIN, END_PIN = "polar-xzc.request", "polar-xzc.end-request"  # this is the newest
 CENTRE_OUTPUT, FACE_OUTPUT, FACE_INPUT = 2, 3, 3  # of M68 and M66
+OFF, FACE = 0, 1  # values of polar-xzc.request
 INPUT_RESULT, TIMED_OUT = 5399, -1.0  # parameter
 SAME_OFFSET_MM = 1e-4
 ON_THE_FACE = "G17G91.1M52P1"
 OLDER = "the module polar_xzc is older than this package: build it again, make kinematics"
-
-
-class FaceRequest(IntEnum):
-    """The values of ``polar-xzc.request``; BY_HAND that has ended blocks programs and MDI."""
-
-    OFF = 0
-    BY_PROGRAM = 1
-    BY_HAND = 2
 
 
 def face_in_force(interp: Interp) -> bool:
@@ -93,9 +85,14 @@ def leave(interp: Interp) -> None:
     interp.toolchange_flag = True
 
 
-def is_requested() -> bool:
-    """Return whether a request for the face is not withdrawn, though it may have ended."""
-    return not is_older() and hal.get_value(REQUEST_PIN) != FaceRequest.OFF
+def may_be_on_face(interp: Interp) -> bool:
+    """Return whether the machine is on the face, or was requested to be and not to leave it."""
+    return face_in_force(interp) or (
+        MACHINE.switches_kinematics
+        and bool(interp.task)
+        and not is_older()
+        and hal.get_value(REQUEST_PIN) != OFF
+    )
 
 
 def is_older() -> bool:
@@ -110,7 +107,6 @@ def is_older() -> bool:
 def to_face(
     interp: Interp,
     machine_unit: float,
-    request: FaceRequest,
     refuse: Callable[[str], Refusal],
     of_ini: Sequence[float],
     share: float = 1.0,
@@ -131,20 +127,20 @@ def to_face(
         hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")
-    _request(interp, FaceRequest.OFF)  # the last request may have ended by itself
-    _request(interp, request)
+    _request(interp, OFF)  # the last request may have ended by itself
+    _request(interp, FACE)
     yield f"M66P{FACE_INPUT}L3Q{decimal(MACHINE.settings.polar_switch_time)}"
 
 
 def to_axes(interp: Interp, of_ini: Sequence[float]) -> Iterator[str]:
     """Switch back to X, Z and C, with the INI's accelerations; yield the block to wait for."""
-    _request(interp, FaceRequest.OFF)
+    _request(interp, OFF)
     yield f"M66P{FACE_INPUT}L4Q{decimal(MACHINE.settings.polar_switch_time)}"
     set_accelerations(of_ini)  # only now, after the wait: LinuxCNC reads ahead
 
 
-def _request(interp: Interp, request: FaceRequest) -> None:
-    interp.execute(f"M68E{FACE_OUTPUT}Q{request:d}")
+def _request(interp: Interp, request: int) -> None:
+    interp.execute(f"M68E{FACE_OUTPUT}Q{request}")
 
 
 def has_switched(interp: Interp) -> bool:

@@ -10,8 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from g12.host import borrowed, messages, modes
-from g12.host.handlers import face_by_hand
+from g12.host import borrowed, kinematics_switch, messages, modes
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import error_text
@@ -57,4 +56,4 @@ def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> Non
 def after_abort_on_face(interp: Interp) -> None:
     interp.read("")  # or LinuxCNC would go on with the last block executed here
     if MACHINE.face:
-        face_by_hand.abort(interp)
+        kinematics_switch.leave(interp)

@@ -11,13 +11,7 @@ from g12.errors import BlockRefusal
 from g12.host import messages
 from g12.host.interp import MOVE_WORDS, words_in
 from g12.host.machine import MACHINE
-from g12.host.section.kind import (
-    NOT_IN_MDI,
-    SectionKind,
-    check_ini,
-    is_typed,
-    run_section,
-)
+from g12.host.section.kind import SectionKind, check_ini, refuse_typed, run_section
 from g12.moves.setup import SectionSetup
 from g12.section.codes import SectionCodes, codes_with_word
 from g12.section.start import SectionStart
@@ -30,8 +24,7 @@ def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
     block, code = self.blocks[self.remap_level], messages.code_of_block(self)
     if not (block.c_flag and block.c_number == 0.0):
-        if is_typed(self):
-            raise BlockRefusal(code, NOT_IN_MDI)
+        refuse_typed(self)
         yield from run_section(self, CYLINDER_SECTION)
     elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
         raise BlockRefusal(code, f"{RADIUS}0 must be alone in its block")

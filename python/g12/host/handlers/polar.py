@@ -7,19 +7,13 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from g12.errors import BlockRefusal, Refusal
-from g12.host import borrowed, messages
-from g12.host.handlers import aborts, face_by_hand
+from g12.host import borrowed, kinematics_switch, messages
+from g12.host.call_frame import CallFrame
+from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, words_in
-from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.section.kind import (
-    NOT_IN_MDI,
-    SectionKind,
-    check_ini,
-    is_typed,
-    run_section,
-)
-from g12.host.section.start import start_of_section
+from g12.host.program_lines import ProgramLines, read_source
+from g12.host.section.kind import SectionKind, check_ini, is_typed, refuse_typed, run_section
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionSetup
 from g12.polar import plan as polar
@@ -28,6 +22,8 @@ from g12.polar.start import check_section_start, polar_setup
 from g12.section.codes import SectionCodes, codes_of_section
 from g12.section.start import SectionStart
 from g12.shapes import SHAPE_SUBS
+
+MDI_LINE = 0  # the number of a line in MDI
 
 
 def check_at_start() -> None:
@@ -41,16 +37,14 @@ def check_at_start() -> None:
 @messages.waiting_handler
 def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and execute a section: the handler of G12.1, which yields to wait."""
-    if is_typed(self):
-        yield from run_by_hand(self)
-    else:
-        in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
-        yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
+    refuse_typed(self)
+    in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
+    yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
 
 
 @messages.waiting_handler
 def polar_off(self, **words) -> Iterator[int]:
-    """End the face of a G12.1 in MDI: the handler of G13.1 outside a section.
+    """Leave the face that an interrupted section has left on: the handler of G13.1 outside one.
 
     Otherwise it is a safety line. Typed in MDI it restores what an interrupted section left where
     no ON_ABORT_COMMAND did. With a P word it is itself one, of an earlier version of the package:
@@ -66,18 +60,21 @@ def polar_off(self, **words) -> Iterator[int]:
     if is_typed(self):
         borrowed.restore_left(self)
     messages.settle(self)
-    if MACHINE.switches_kinematics and self.task:
-        yield from face_by_hand.switch_off(self)
+    if kinematics_switch.may_be_on_face(self):
+        yield from _leave_face(self)
 
 
-def run_by_hand(interp: Interp) -> Iterator[int]:
-    """Switch on in MDI, where no following lines can be read: they could be an old program's."""
-    start = start_of_section(interp, 0)
-    if not MACHINE.switches_kinematics:
-        raise BlockRefusal(start.location.code, NOT_IN_MDI)
-    if face_in_force(interp):
-        raise BlockRefusal(start.location.code, "is already on")
-    yield from face_by_hand.switch_on(interp, start, polar_section_setup(start).words.beside)
+def _leave_face(interp: Interp) -> Iterator[int]:
+    code, mdi = messages.code_of_block(interp), messages.in_mdi(interp)
+    home = read_source(interp.filename) if not mdi else None
+    frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
+    line = ProgramLines(interp, home).line if home else MDI_LINE
+    frame.enter()
+    for block in kinematics_switch.to_axes(interp, ()):
+        yield from frame.execute_and_wait(block)
+    frame.leave(line)
+    if not kinematics_switch.has_switched(interp):
+        raise BlockRefusal(code, kinematics_switch.not_switched())
 
 
 def polar_section_setup(start: SectionStart) -> SectionSetup[PolarSettings]:

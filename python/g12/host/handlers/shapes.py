@@ -17,7 +17,7 @@ from g12.host.handlers.polar import polar_section_setup
 from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.section.kind import check_clamp, check_ini
+from g12.host.section.kind import FACE_ON, check_clamp, check_ini
 from g12.host.section.output import STOP_HERE
 from g12.host.section.start import is_alone, start_of_section
 from g12.moves.setup import SectionSetup
@@ -54,7 +54,7 @@ def polar_shape(self, **words):
     level = self.call_level - 1  # the sub's
     name = shape_at_work(self)
     if face_in_force(self):
-        raise BlockRefusal(name, "G12.1 is on, by hand: G13.1 first")
+        raise BlockRefusal(name, FACE_ON)
     start = start_of_shape(self, name)
     setup = polar_section_setup(start)
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]

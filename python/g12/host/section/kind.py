@@ -31,7 +31,11 @@ from g12.section.start import SectionStart
 
 TYPED = 1  # call level of a block outside any sub
 REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
-NOT_IN_MDI = "is not possible in MDI: it needs the lines after it"
+NOT_IN_MDI = (
+    "is not possible in MDI: it needs the lines after it. Write them into a program,"
+    " or into a sub that MDI calls"
+)
+FACE_ON = "the face is on already, by hand: G13.1 first"
 
 
 class SectionKind(NamedTuple, Generic[Planning]):
@@ -59,6 +63,12 @@ def check_ini() -> None:
 def is_typed(interp: Interp) -> bool:
     """Return whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
     return messages.in_mdi(interp) and interp.call_level == TYPED
+
+
+def refuse_typed(interp: Interp) -> None:
+    """Refuse a section typed in MDI, where no following lines can be read."""
+    if is_typed(interp):
+        raise BlockRefusal(messages.code_of_block(interp), NOT_IN_MDI)
 
 
 def following_lines(interp: Interp) -> ProgramLines:
@@ -120,7 +130,7 @@ def _section(
     """Return the section; refuse to begin it where it cannot."""
     start = start_of_section(interp, program.shown_line, kind.letters)
     if face_in_force(interp):
-        raise start.location.refuse("the face is on already, by hand: G13.1 first")
+        raise start.location.refuse(FACE_ON)
     setup = kind.setup(start)
     check_clamp(start.location.refuse)
     borrowed.begin(interp)

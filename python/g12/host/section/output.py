@@ -244,7 +244,6 @@ class SectionOutput:
             yield from kinematics_switch.to_face(
                 interp,
                 self.machine_unit,
-                kinematics_switch.FaceRequest.BY_PROGRAM,
                 refuse,
                 of_ini,
                 step.share,

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from g12.machine_ini import Remap, face_joints, m_codes_of, remap_lines
+from g12.settings import INI_SECTION, LIVE_SPINDLE
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
@@ -28,7 +29,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
     clamp = [f"M{code}" for code in settings.c_clamp]
     own = dict(zip(("clamp C", "unclamp C"), clamp))
     own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
-    live = settings.live_spindle
+    live = ini.get(INI_SECTION, LIVE_SPINDLE) or ""
     holes: dict[str, Any] = {"clamp": " ".join(clamp)} if clamp else {}
     holes |= {"spindle": int(live)} if live else {}
     of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}

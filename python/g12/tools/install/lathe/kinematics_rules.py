@@ -40,7 +40,6 @@ GUARD_PINS = (
     "motion.digital-in-03",
     "motion.switchkins-type",
     "motion.jog-inhibit",
-    "motion.feed-inhibit",
     "motion.adaptive-feed",
     "motion.feed-upm",
 )

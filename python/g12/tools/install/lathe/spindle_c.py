@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from g12.ini_sections import leading_number
 from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints
-from g12.settings import INI_SECTION
+from g12.settings import INI_SECTION, LIVE_SPINDLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import KINEMATICS, ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
@@ -381,7 +381,7 @@ def drive_misspelt(config: Config) -> Iterator[ConfigFinding]:
 
 def live_spindle_missing(config: Config) -> Iterator[ConfigFinding]:
     """Find a machine that has no such spindle as its live tool needs."""
-    said = int((config.settings.live_spindle if config.settings else "") or 0)
+    said = int((config.settings and config.ini.get(INI_SECTION, LIVE_SPINDLE)) or 0)
     live = said or int(any(PROLOG in remap.handlers for _, remap in config.remaps))
     spindles = leading_number(config.ini.get("TRAJ", "SPINDLES") or "") or 1
     loaded = loaded_spindles(config)
