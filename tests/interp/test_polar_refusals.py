@@ -90,7 +90,7 @@ PROGRAMS = [
      "the X axis would go to 310 mm (radius), beyond its limit 300 mm"),
     (section("G1 X14", first=FIRST.replace("G21", "G20"), start="G0 X1 Z1", feed="F4"), 6,
      "the X axis would go to 355.6 mm, beyond its limit 300 mm (G20 is active)"),
-    (section("G1 X30", "C360"), 7, "the X axis would go to 302.106802 mm, beyond its limit 300 mm:"
+    (section("G1 X30", "C360"), 7, "the X axis would go to 302.141163 mm, beyond its limit 300 mm:"
      " C and H are lengths here, not degrees"),
     ([line for line in section("G1 G41 X12") if line != "T1 M6"], 5,
      "G41 needs a tool in the spindle: its radius is compensated"),
