@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pictures beside the forms: what each entry measures, from above and from the side.
+"""The drawings of the forms and of the codes' pages: what each entry or word measures.
 
     python3 .ci/form_pictures.py
 
 draws them anew. ngcgui shows a picture of the form's name and halves one of 320 x 240 dots or
-more. Lengths here are shares of the plan view's half width, angles degrees.
+more. Lengths here are shares of the plan view's half width, angles degrees. A drawing of a code's
+page has the words of the block in place of the form's entries.
 """
 
 from math import cos, radians, sin
@@ -20,6 +21,7 @@ from matplotlib.patches import Arc, Circle, Polygon, Rectangle
 NGC = Path(__file__).resolve().parents[1] / "ngc"
 UNITS = ("mm", "inch")
 DOTS, DOTS_PER_INCH = (319, 239), 100
+PAGE_DOTS_PER_INCH = 240
 INK, FAINT, STOCK, CUT = "#1f2933", "#8d99a6", "#e9dcc3", "#ffffff"
 TOOL, PATH, WORD = "#c9d6df", "#1971c2", "#a61e4d"
 WORDS = {"fontsize": 6.4, "color": WORD, "ha": "center", "va": "center"}
@@ -27,6 +29,9 @@ NOTE = {"fontsize": 5.8, "color": INK, "ha": "center"}
 PLATE = {"boxstyle": "square,pad=0.12", "facecolor": "white", "edgecolor": "none", "alpha": 0.85}
 ARROW = {"arrowstyle": "<->", "lw": 0.6, "color": WORD, "shrinkA": 0, "shrinkB": 0,
          "mutation_scale": 5}  # fmt: skip
+AT_DEPTH = {"tool’s Z": -0.5}
+EVENT_WORDS = {letter: letter for letter in "LCOW"}
+CODE_WORDS = {"L": "Q", "C": "H", "O": "E", "W": "I"}  # of G12.2 and G13.2
 Point = tuple[float, float]
 
 
@@ -35,14 +40,30 @@ def at(radius: float, angle: float) -> Point:
     return radius * cos(radians(angle)), radius * sin(radians(angle))
 
 
+def at_from(centre: Point, radius: float, angle: float) -> Point:
+    """Return a point by its distance and direction from another."""
+    x, y = at(radius, angle)
+    return centre[0] + x, centre[1] + y
+
+
 def views() -> tuple[Figure, Axes, Axes]:
     """Return an empty picture with the view from above and the one from the side."""
     figure = Figure(figsize=tuple(dots / DOTS_PER_INCH for dots in DOTS), dpi=DOTS_PER_INCH)
-    plan, side = figure.add_axes((0, 0, 0.63, 1)), figure.add_axes((0.63, 0, 0.37, 1))
+    return figure, *two_views(figure)
+
+
+def two_views(figure: Figure, bottom: float = 0, height: float = 1) -> tuple[Axes, Axes]:
+    """Add the two views to a share of a picture's height."""
+    plan = figure.add_axes((0, bottom, 0.63, height))
+    side = figure.add_axes((0.63, bottom, 0.37, height))
     for axes, left, right in ((plan, -1.15, 1.15), (side, -0.66, 0.9)):
         axes.set(xlim=(left, right), ylim=(-1.3, 1.3), aspect="equal")
         axes.axis("off")
-    return figure, plan, side
+    return plan, side
+
+
+def save(figure: Figure, path: Path, dots_per_inch: int = DOTS_PER_INCH) -> None:
+    figure.savefig(path, dpi=dots_per_inch, facecolor="white", metadata={"Software": None})
 
 
 def measure(axes: Axes, start: Point, end: Point, words: str, where: float = 0.5) -> None:
@@ -58,9 +79,9 @@ def circle(axes: Axes, radius: float, *, centre: Point = (0, 0), fill: str = "no
     axes.add_patch(Circle(centre, radius, facecolor=fill, edgecolor=line, **style))
 
 
-def tool(axes: Axes, radius: float, centre: Point) -> None:
+def tool(axes: Axes, radius: float, centre: Point, word: str = "T") -> None:
     circle(axes, radius, centre=centre, fill=TOOL)
-    axes.text(*centre, "T", **WORDS)
+    axes.text(*centre, word, **WORDS)
 
 
 def turn(axes: Axes, radius: float, start: float, end: float) -> None:
@@ -95,29 +116,35 @@ def section(side: Axes, heights: dict[str, float], levels: tuple[float, ...] = (
         side.text(0.45, height, words, **{**WORDS, "ha": "left"})
 
 
-def pocket(plan: Axes, rings: tuple[float, ...] = (), boss: float = 0) -> None:
-    """Draw a pocket of radius 1 with rings of the tool's centre, the tool and its turn."""
+def pocket(plan: Axes, rings: tuple[float, ...] = (), boss: float = 0, word: str = "T") -> None:
+    """Draw a pocket of radius 1 with rings of the tool's centre, the tool and its turn.
+
+    ``word`` names the tool.
+    """
     circle(plan, 1.0, fill=CUT, width=1.2)
     for radius in rings:
         circle(plan, radius, dashed=True, line=FAINT)
     circle(plan, boss, fill=STOCK, width=0.6, line=FAINT)
-    tool(plan, 0.26, at(0.74, 0))
+    tool(plan, 0.26, at(0.74, 0), word)
     turn(plan, 0.74, 22, 75)
     plan.text(0, 1.12, "G  12 clockwise, 13 counterclockwise", **NOTE)
 
 
-def haas(plan: Axes, side: Axes) -> None:
-    pocket(plan, (0.4, 0.7))
+def haas(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    pocket(plan, (0.4, 0.7), word="D" if page else "T")
     measure(plan, (0, 0), at(0.4, 140), "I", 0.55)
     measure(plan, (0, 0), at(1.0, 205), "K", 0.62)
     measure(plan, at(0.4, 290), at(0.7, 290), "Q")
     cross(plan, "X Y")
-    section(side, {"retract": 0.85, "Z top": 0.3, "Z depth": -0.5}, (0.033, -0.233))
+    heights = (
+        {"tool’s Z": 0.85, "Z": -0.5} if page else {"retract": 0.85, "Z top": 0.3, "Z depth": -0.5}
+    )
+    section(side, heights, (0.033, -0.233))
     side.text(-0.54, -0.1, "L", **WORDS)
 
 
-def yasnac(plan: Axes, side: Axes) -> None:
-    pocket(plan, (0.62,))
+def yasnac(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    pocket(plan, (0.62,), word="D" if page else "T")
     plan.plot((0, 0.36), (0, 0), color=PATH, lw=1.1, ls=(0, (3, 2)))
     measure(plan, (0, 0), at(0.62, 105), "R", 0.62)
     measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
@@ -125,18 +152,19 @@ def yasnac(plan: Axes, side: Axes) -> None:
     measure(plan, at(0.5, 300), at(0.8, 300), "Q")
     cross(plan, "X Y", (-0.05, -0.14))
     plan.text(0, -1.2, "I below 0: begun on the −X side", **NOTE)
-    section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
+    section(side, AT_DEPTH if page else {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
 
 
-def mitsubishi(plan: Axes, side: Axes) -> None:
-    pocket(plan, boss=0.48)
+def mitsubishi(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    pocket(plan, boss=0.48, word="D" if page else "T")
     plan.add_patch(Arc((0.37, 0), 0.74, 0.74, theta1=180, theta2=360, color=PATH, lw=1.1))
     measure(plan, (0, 0), at(1.0, 205), "I", 0.62)
     cross(plan, "X Y", (-0.02, 0.14))
-    section(side, {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
+    section(side, AT_DEPTH if page else {"retract": 0.85, "rapid to": 0.42, "Z depth": -0.5})
 
 
-def circle_mill(plan: Axes, side: Axes) -> None:
+def circle_mill(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    words = CODE_WORDS if page else EVENT_WORDS
     circle(plan, 0.92, fill=CUT, width=1.2)
     circle(plan, 0.8, dashed=True, line=FAINT)
     for radius in (0.28, 0.56):
@@ -144,11 +172,13 @@ def circle_mill(plan: Axes, side: Axes) -> None:
     tool(plan, 0.24, at(0.56, -90))
     measure(plan, (0, 0), at(0.88, 205), "R", 0.6)
     measure(plan, at(0.28, 60), at(0.56, 60), "J")
-    plan.annotate("L", at(0.8, 20), at(1.06, 20), arrowprops={**ARROW, "arrowstyle": "->"}, **WORDS)
+    plan.annotate(
+        words["L"], at(0.8, 20), at(1.06, 20), arrowprops={**ARROW, "arrowstyle": "->"}, **WORDS
+    )
     cross(plan, "X Y", (0.0, 0.12))
-    plan.text(0, 1.12, "C  0 on, 1 left, 2 right of the circle", **NOTE)
+    plan.text(0, 1.12, f"{words['C']}  0 on, 1 left, 2 right of the circle", **NOTE)
     plan.text(0, -1.2, "D  0 CW, 1 CCW, 2 CW/CCW, 3 CCW/CW", **NOTE)
-    section(side, {"O": 0.85, "W": 0.42, "Z": -0.5}, (0.1, -0.2, -0.44))
+    section(side, {words["O"]: 0.85, words["W"]: 0.42, "Z": -0.5}, (0.1, -0.2, -0.44))
     measure(side, (-0.38, 0.42), (-0.38, 0.1), "K")
 
 
@@ -281,23 +311,109 @@ def side_holes(plan: Axes, side: Axes) -> None:
     side.text(0.5, -1.08, "Z0", **WORDS)
 
 
+def axes_of(plan: Axes, right: str, up: str) -> None:
+    """Draw the two directions of a flat drawing from its zero."""
+    for end, word, place in (((1.1, 0), right, (1.06, -0.13)), ((0, 1.1), up, (-0.06, 1.06))):
+        plan.annotate("", end, (0, 0), arrowprops={**ARROW, "arrowstyle": "-|>", "color": INK})
+        plan.text(*place, word, **{**WORDS, "ha": "right"})
+
+
+def polar(plan: Axes, side: Axes) -> None:
+    """Draw the words of a section on the face of a bar, seen from the tool."""
+    circle(plan, 0.95, line=FAINT, dashed=True)
+    straight = [(0.25, 0.5), (-0.5, 0.5), (-0.5, -0.5), (0.5, -0.5), (0.5, 0.25)]
+    rounded = [at_from((0.25, 0.25), 0.25, angle) for angle in range(0, 91, 10)]
+    outline = [*straight, *rounded]
+    plan.add_patch(Polygon(outline, closed=True, facecolor=STOCK, edgecolor=INK, lw=1.2))
+    axes_of(plan, "X", "C or Y")
+    tool(plan, 0.17, (0.67, -0.15))
+    along = {**ARROW, "arrowstyle": "-|>", "color": PATH}
+    plan.annotate("", (0.67, 0.24), (0.67, 0.03), arrowprops=along)
+    plan.text(0.76, 0.12, "F", **WORDS)
+    measure(plan, (0.5, 0.25), (0.25, 0.25), "I")
+    measure(plan, (0.25, 0.25), at_from((0.25, 0.25), 0.25, 60), "R", 0.9)
+    measure(plan, (0, -0.68), (0.5, -0.68), "")
+    plan.text(0.25, -0.8, "X, in G7 twice this", **WORDS)
+    measure(plan, (-0.66, 0), (-0.66, 0.5), "C")
+    plan.text(0, 1.2, "the face, seen from the tool", **NOTE)
+    box(side, -0.6, -0.45, 0.65, 0.9, STOCK)
+    box(side, 0.1, -0.1, 0.7, 0.2, TOOL)
+    side.plot((0.05, 0.05), (-0.95, 0.9), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(0.05, -1.08, "Z0", **WORDS)
+    side.text(-0.28, 0.62, "turns as C", **WORDS)
+
+
+def cylinder(plan: Axes, side: Axes) -> None:
+    """Draw the words of a section on a turned surface, unrolled and seen from outside."""
+    box(plan, -0.9, -0.8, 1.9, 1.75, STOCK)
+    axes_of(plan, "C", "Z")
+    tool(plan, 0.16, (0.6, 0.55))
+    corner = (-0.5, 0.1)
+    arc = [at_from(corner, 0.3, angle) for angle in range(0, 91, 10)]
+    plan.plot(*zip((-0.2, -0.5), *arc, (-0.8, 0.4)), color=INK, lw=1.2)
+    measure(plan, corner, (-0.5, 0.4), "K", 0.45)
+    measure(plan, corner, (-0.2, 0.1), "J")
+    measure(plan, corner, at_from(corner, 0.3, 40), "R", 0.85)
+    measure(plan, (-0.9, -0.95), (1.0, -0.95), "")
+    plan.text(0.05, -1.14, "360° of C: π · diameter long", **NOTE)
+    plan.text(0, 1.15, "the surface unrolled, seen from outside", **NOTE)
+    circle(side, 0.5, centre=(0.1, -0.2), fill=STOCK)
+    box(side, 0.02, 0.15, 0.16, 0.9, TOOL)
+    measure(side, (0.1, -0.2), at_from((0.1, -0.2), 0.5, 240), "")
+    side.text(0.14, -0.85, "C of G7.1: radius", **WORDS)
+    measure(side, (-0.3, -0.2), (-0.3, 0.15), "")
+    side.plot((-0.42, 0.1), (0.15, 0.15), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(-0.5, 0.25, "X", **WORDS)
+
+
 ON_A_MILL = (haas, yasnac, mitsubishi, circle_mill)
 ON_A_BAR = (polygon, slot, face_pocket, face_holes, side_holes)
 
 
-def draw_all() -> None:
-    """Write every picture, for each unit's form the same."""
+ON_PAGES = (haas, yasnac, mitsubishi, circle_mill)
+ON_A_LATHE = (polar, cylinder)
+
+
+def plate(plan: Axes) -> None:
+    """Draw the plate that a mill's cycle cuts."""
+    plan.add_patch(Rectangle((-1.1, -1.06), 2.2, 2.12, facecolor=STOCK, edgecolor="none"))
+
+
+def draw_pages() -> None:
+    """Write the drawings of the codes' pages."""
+    for draw in (*ON_PAGES, *ON_A_LATHE):
+        figure, plan, side = views()
+        if draw in ON_PAGES:
+            plate(plan)
+        draw(plan, side, **({"page": True} if draw in ON_PAGES else {}))
+        save(figure, NGC / "pictures" / f"{draw.__name__}_words.png", PAGE_DOTS_PER_INCH)
+
+
+def draw_holes() -> None:
+    """Write the drawing of the holes' page: on the face, and on the side beneath it."""
+    width, height = (dots / DOTS_PER_INCH for dots in DOTS)
+    figure = Figure(figsize=(width, 2 * height), dpi=DOTS_PER_INCH)
+    for draw, bottom in ((face_holes, 0.5), (side_holes, 0)):
+        plan, side = two_views(figure, bottom, 0.5)
+        bar_end(plan)
+        draw(plan, side)
+    save(figure, NGC / "pictures" / "holes_words.png", PAGE_DOTS_PER_INCH)
+
+
+def draw_forms() -> None:
+    """Write the picture of every form, for each unit's the same."""
     for draw in (*ON_A_MILL, *ON_A_BAR):
         figure, plan, side = views()
         if draw in ON_A_MILL:
-            plan.add_patch(Rectangle((-1.1, -1.06), 2.2, 2.12, facecolor=STOCK, edgecolor="none"))
+            plate(plan)
         else:
             bar_end(plan)
         draw(plan, side)
         for unit in UNITS:
-            figure.savefig(NGC / f"form_{draw.__name__}_{unit}.png", dpi=DOTS_PER_INCH,
-                           facecolor="white", metadata={"Software": None})  # fmt: skip
+            save(figure, NGC / f"form_{draw.__name__}_{unit}.png")
 
 
 if __name__ == "__main__":
-    draw_all()
+    draw_forms()
+    draw_pages()
+    draw_holes()
