@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Write ngcgui's file of every form, in mm and inch: python3 .ci/forms.py"""
+"""Write ngcgui's file of every form, in mm and inch: python3 .ci/forms.py."""
 
 import sys
 from pathlib import Path

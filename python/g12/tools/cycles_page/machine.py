@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The machine that a screen is at: its tools, its work offsets and where it stands."""
 
+import os
 import re
 from importlib import import_module
 from pathlib import Path
@@ -38,8 +39,12 @@ def tools_of(ini: Ini) -> dict[int, Tool]:
 
 
 def machine_state(ini: Ini) -> MachineState:
-    """Return how the running machine stands; without one, how its var file has it."""
-    running = _status()
+    """Return how the machine of this screen stands; without one, how its var file has it.
+
+    LinuxCNC tells its screens by INI_FILE_NAME which machine is theirs.
+    """
+    screen = os.environ.get("INI_FILE_NAME")
+    running = _status() if screen and Path(screen).resolve() == Path(ini.path).resolve() else None
     if running is not None:
         return _state_of(running)
     return MachineState(_saved(ini), 0, (0.0,) * len(AXIS_LETTERS))
@@ -51,7 +56,7 @@ def _status():
         linuxcnc = import_module("linuxcnc")
         status = linuxcnc.stat()
         status.poll()
-    except (ImportError, RuntimeError):
+    except (ImportError, RuntimeError, SystemError):
         return None
     return status
 

@@ -115,7 +115,9 @@ class Page:
 
     def values(self) -> dict[str, float]:
         """Return the numbers of the form; refuse the first that is none."""
-        return {entry.name: read_entry(entry, self.texts[entry.name]) for entry in self.form.entries}
+        return {
+            entry.name: read_entry(entry, self.texts[entry.name]) for entry in self.form.entries
+        }
 
     def shown(self, entry: Entry) -> bool:
         """Return whether an entry matters as the others stand."""

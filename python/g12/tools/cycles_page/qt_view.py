@@ -24,9 +24,9 @@ from qtpy.QtWidgets import (
 from g12.tools.cycles_page.page import Page, choice_of
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch, fitted
 from g12.tools.cycles_page.steps import number_text
-from g12.tools.cycles_page.view import COLOURS, FORM_ROWS, label_of, picture_of, tool_text
+from g12.tools.cycles_page.view import COLOURS, FORM_ROWS, hint_of, label_of, picture_of, tool_text
 from g12.tools.errors import UsageError
-from g12.tools.forms.table import CHOICE, TOOL, Entry
+from g12.tools.forms.table import CHOICE, Entry
 
 
 class Drawing(QWidget):
@@ -62,7 +62,8 @@ class CyclesView(QWidget):
 
     def __init__(self, ini: str, opened: Callable[[str], None], parent=None) -> None:
         super().__init__(parent)
-        self.opened, self.edited = opened, None
+        self.opened = opened
+        self.edited: int | None = None  # the step that is shown
         self.arrived.connect(self._show_sketch)
         self.page = Page(ini, self.arrived.emit)
         self._build()
@@ -150,7 +151,7 @@ class CyclesView(QWidget):
             return box
         line = QLineEdit(text)
         line.setObjectName(entry.name)
-        line.setToolTip(f"0: {entry.zero}" if entry.zero else "")
+        line.setToolTip(hint_of(entry))
         line.textChanged.connect(partial(self.page.type, entry.name))
         return line
 

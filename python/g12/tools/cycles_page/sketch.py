@@ -6,6 +6,7 @@ unrolled surface.
 """
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -23,6 +24,7 @@ X, Y, Z, C = (AXIS_LETTERS.index(letter) for letter in "XYZC")
 PLANES = {17: (X, Y), 18: (Z, X), 19: (Y, Z)}  # first and second axis
 LINEAR = "XYZUVW"
 NEAR = 1e-6  # machine units; a limit may be reached
+IN_FORM = re.compile(r" line \d+ of form_\w+\.ngc")  # which the operator does not see
 STEP = math.radians(5)  # of an arc, or of a turn of C, between two drawn points
 PLAN, FACE, UNROLLED = "from above", "the face", "the surface, unrolled"
 READY, MESSAGE, REFUSED = "ready", "message", "refused"
@@ -70,14 +72,18 @@ class Sketcher:
         except TraceFailure as problem:
             return Sketch(REFUSED, str(problem))
         view, paths = view_of(form), [path_of(move) for move in trace.moves]
-        drawn_moves = zip(trace.moves, paths)
-        lines = [Line(move.kind == "rapid", seen(path, view)) for move, path in drawn_moves]
-        drawn = {"view": view, "lines": lines, "radius": _cutter(trace)}
-        refused = (trace.error and trace.error.rule) or self._beyond(trace.moves, paths)
+        moves = zip(trace.moves, paths)
+        lines = [Line(move.kind == "rapid", seen(path, view)) for move, path in moves]
+        kind, said = self._outcome(trace, paths)
+        return Sketch(kind, said, view, lines, _cutter(trace))
+
+    def _outcome(self, trace: Trace, paths: Sequence[np.ndarray]) -> tuple[str, str]:
+        """Return the state and the sentence of a trace."""
+        refused = trace.error.rule if trace.error else self._beyond(trace.moves, paths)
         if refused:
-            return Sketch(REFUSED, refused, **drawn)
+            return REFUSED, IN_FORM.sub("", refused)
         said = "; ".join(dict.fromkeys(message.text for message in trace.messages))
-        return Sketch(MESSAGE if said else READY, said or self._summary(trace), **drawn)
+        return (MESSAGE, said) if said else (READY, self._summary(trace))
 
     def _setup(self, state: MachineState) -> list[str]:
         """Return the blocks that bring a fresh interpreter to the machine's state."""

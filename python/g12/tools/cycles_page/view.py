@@ -28,10 +28,14 @@ UNITS = {
 
 
 def label_of(entry: Entry, unit: str) -> str:
-    """Return what stands beside an entry: words, unit, what 0 leaves out."""
+    """Return what stands beside an entry: words and unit."""
     measured = UNITS.get(entry.kind, {}).get(unit)
-    words = f"{entry.label}, {measured}" if measured else entry.label
-    return f"{words} (0: {entry.zero})" if entry.zero else words
+    return f"{entry.label}, {measured}" if measured else entry.label
+
+
+def hint_of(entry: Entry) -> str:
+    """Return what an entry's 0 leaves out."""
+    return f"0: {entry.zero}" if entry.zero else ""
 
 
 def picture_of(form: Form, unit: str) -> Path:

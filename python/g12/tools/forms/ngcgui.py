@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The files of ngcgui and the calls of the forms, from the table."""
 
-import re
-
 from g12.tools.forms.table import MILL, Form
 
 LICENCE = "(SPDX-License-Identifier: GPL-2.0-or-later)\n"
@@ -54,8 +52,7 @@ def _body(form: Form, unit: str) -> str:
         end = "o<form_face_end> call [#<off>] [#<imperial>] [#<diameters>] [#<spindle>]\n"
     text = form.body.replace("START\n", f"o<{begin}> call [{CODES[unit]}] {_arguments(start)}\n")
     text = text.replace("OMITTED\n", omitted)
-    text = re.sub("ENTRIES (.*)", lambda match: _arguments(match[1]), text)
-    return text + end
+    return text.replace("ENTRIES", _arguments(form.call)) + end
 
 
 def _arguments(names: str) -> str:

@@ -44,6 +44,7 @@ class Form(NamedTuple):
     start: str  # arguments of the start after its common ones, names of entries
     body: str  # from the start's call to the end's
     end: str  # the height that a mill's form ends at
+    call: str = ""  # the entries of the body's call, ENTRIES
 
     @property
     def omitted(self) -> tuple[str, ...]:
@@ -134,7 +135,7 @@ CIRCLE_FORMS = (
             levels("levels", "L levels", "levels", 2),
             CODE,
             length("i", "I first radius", "first radius I", 10, 0.4),
-            length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle, of radius I"),
+            length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle"),
             length("q", "Q ring to ring", "stepover Q", 8, 0.35),
         ),
         "x y retract top z",
@@ -151,7 +152,8 @@ o<clearing> endif
     ),
     Form(
         "yasnac", "yasnac", "Circle, Yasnac",
-        "Circle cutting, G12/G13 as on Yasnac. Lengths are {lengths}, radii are those of the circle",
+        "Circle cutting, G12/G13 as on Yasnac. Lengths are {lengths}, radii are those of the"
+        " circle",
         "one circle; the words of ngc/yasnac.md", MILL,
         (
             *mill(10, 5, 2000),
@@ -183,8 +185,8 @@ o<words> endif
     ),
     Form(
         "mitsubishi", "mitsubishi", "Circle, Mitsubishi",
-        "Circular cutting, G12/G13 as on Mitsubishi. Lengths are {lengths}, the radius is that of the"
-        " circle",
+        "Circular cutting, G12/G13 as on Mitsubishi. Lengths are {lengths}, the radius is that of"
+        " the circle",
         "one circle; the words of ngc/mitsubishi.md", MILL,
         (
             *mill(6, 3, 2000),
@@ -204,7 +206,8 @@ G#<code> I#<i> D#<tool>
     ),
     Form(
         "circle_mill", "circle-mill", "Circle mill event",
-        "Circle mill event, pocket or perimeter. Lengths are {lengths}, 0 leaves an entry in [ ] out",
+        "Circle mill event, pocket or perimeter. Lengths are {lengths}, 0 leaves an entry in [ ]"
+        " out",
         "one event; its entries as in ngc/circle_mill.ngc", MILL,
         (
             tool(5, 2), SPINDLE, COOLANT,
@@ -218,7 +221,7 @@ G#<code> I#<i> D#<tool>
             Entry("d", "D sense, 0 to 3", "direction, rough / finish", CHOICE, 0,
                   choices=((0, "CW / CW"), (1, "CCW / CCW"), (2, "CW / CCW"), (3, "CCW / CW"))),
             Entry("c", "C side, 0 to 2", "tool", CHOICE, 2,
-                  choices=((2, "right of the circle"), (1, "left of the circle"), (0, "on the circle"))),
+                  choices=((2, "right of it"), (1, "left of it"), (0, "on the circle"))),
             left_out("k", "[K] plunge depth", "depth per plunge K", LENGTH, "at once", 3, 0.12),
             left_out("j", "[J] pass width", "roughing width J", LENGTH, "the tool less 0.25 mm"),
             left_out("l", "[L] finish", "finish L", LENGTH, "no finish", 0.3, 0.01),
@@ -234,8 +237,9 @@ o<no_event> endif
 START
 OMITTED
 #<_g12_strict> = 1
-o<circle_mill> call ENTRIES event x y z w o r d c k j l p f v
+o<circle_mill> call ENTRIES
 """, "o",
+        "event x y z w o r d c k j l p f v",
     ),
 )  # fmt: skip
 
@@ -298,8 +302,10 @@ FACE_FORMS = (
         """\
 START
 OMITTED
-o<polar_polygon> call ENTRIES sides across_flats depth stock_diameter corner_radius per_pass allowance feed plunge_feed angle
+o<polar_polygon> call ENTRIES
 """, "",
+        "sides across_flats depth stock_diameter corner_radius per_pass allowance feed "
+        "plunge_feed angle",
     ),
     Form(
         "slot", "polar-shapes", "Slot on a bar's end",
@@ -317,8 +323,9 @@ o<polar_polygon> call ENTRIES sides across_flats depth stock_diameter corner_rad
         """\
 START
 OMITTED
-o<polar_slot> call ENTRIES width length depth per_pass allowance feed plunge_feed angle
+o<polar_slot> call ENTRIES
 """, "",
+        "width length depth per_pass allowance feed plunge_feed angle",
     ),
     Form(
         "face_pocket", "polar-shapes", "Round pocket on a bar's end",
@@ -336,8 +343,9 @@ o<polar_slot> call ENTRIES width length depth per_pass allowance feed plunge_fee
         """\
 START
 OMITTED
-o<polar_pocket> call ENTRIES x c diameter depth per_pass allowance feed plunge_feed
+o<polar_pocket> call ENTRIES
 """, "",
+        "x c diameter depth per_pass allowance feed plunge_feed",
     ),
     Form(
         "face_holes", "polar-shapes", "Holes on a bar's end",
@@ -353,8 +361,9 @@ o<polar_pocket> call ENTRIES x c diameter depth per_pass allowance feed plunge_f
         """\
 START
 OMITTED
-o<face_holes> call ENTRIES count circle_diameter first_angle step depth height feed peck dwell kind
+o<face_holes> call ENTRIES
 """, "",
+        "count circle_diameter first_angle step depth height feed peck dwell kind",
     ),
     Form(
         "side_holes", "polar-shapes", "Holes round a bar",
@@ -374,8 +383,9 @@ o<face_holes> call ENTRIES count circle_diameter first_angle step depth height f
 START
 G0 X#<clear>
 OMITTED
-o<side_holes> call ENTRIES count z first_angle step surface_diameter depth height feed peck dwell kind
+o<side_holes> call ENTRIES
 """, "",
+        "count z first_angle step surface_diameter depth height feed peck dwell kind",
     ),
 )  # fmt: skip
 
