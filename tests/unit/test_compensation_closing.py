@@ -6,10 +6,11 @@ import math
 
 import pytest
 
-from g12.compensation.closing import Closing, closing_of
 from g12.compensation.compensated import (
+    Closing,
     CompensatedContour,
     PathOfMove,
+    closing_of,
     compensated_contours,
     in_plane,
 )
@@ -174,7 +175,7 @@ def test_a_contour_is_what_lies_between_two_ramps(under_compensation, expected):
     cuts = [PathOfMove(move, (move,), sign == "+") for move, sign in zip(made, under_compensation)]
     found = [
         (tuple(move.line for move in each.moves), {ramp.move.line for ramp in each.ramps})
-        for each in compensated_contours(Contour(50.0, 0.0), cuts, NEAR)
+        for each in compensated_contours(Contour(50.0, 0.0, 0.0), cuts, NEAR)
     ]
     assert found == expected
 
@@ -187,7 +188,7 @@ def test_moves_are_one_in_the_plane_if_ends_centre_and_sweep_are_the_same():
     assert len(set(map(in_plane, moves))) == len(moves)
     for move in moves:
         near = move.curve._replace(start=move.start + 1e-9)
-        again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, curve=near)
+        again = move._replace(line=7, feed=1.0, offset=-2.0, h0=3.0, h1=5.0, curve=near)
         assert in_plane(again) == in_plane(move)
 
 
@@ -195,7 +196,7 @@ def test_beyond_the_ends_of_an_open_contour_nobody_knows():
     """Before, after and beside an angle, and on its own lines."""
     moves = line(0, 10, 0, 0, offset=3.0), line(0, 0, 20, 0, offset=3.0)
     cuts = [PathOfMove(move, (), True) for move in moves]
-    angle = CompensatedContour(Contour(50.0, 0.0), cuts, [], NEAR)
+    angle = CompensatedContour(Contour(50.0, 0.0, 0.0), cuts, [], NEAR)
     beyond = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
     assert [angle.clearance(point)[1] for point in beyond] == [True] * 6
     heights = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}

@@ -116,9 +116,9 @@ def test_a_size_correction_is_still_refused_where_the_contour_meets_itself():
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_a_refusal_names_the_code_of_the_program_also_with_a_negative_diameter(side):
-    contour = Contour(20.0, 0.0)
-    contour.compensation(side, -1.0, line=1)
-    contour.line(10.0, 0.0, line=1, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0)
+    contour.compensate(side, -1.0, at=1)
+    contour.straight(10.0, 0.0, at=1, feed=100.0)
     assert refusal(contour) == f"G12.1 line 1: G{side} needs a block of the contour after its G1"
 
 
@@ -194,7 +194,9 @@ def test_leads_that_cross_are_told(side):
 def test_what_a_loop_cuts_again_is_told_once():
     drawn = Drawn(extended(5.0, 5.0), LEFT, 3.0, [])
     contour, again = contour_of(drawn), contour_of(drawn)
-    contour.line(again.elements[0].start.real, again.elements[0].start.imag, line=9001, feed=300.0)
+    contour.straight(
+        again.elements[0].start.real, again.elements[0].start.imag, at=9001, feed=300.0
+    )
     contour.elements += again.elements
     assert refusal(contour) == ""
     assert len(contour.notes) == 1
@@ -310,17 +312,17 @@ def stacked(radius, *laps):
         at + 2j * radius * (to - from_) / abs(to - from_)
         for at, from_, to in ((first, first, second), (last, before, last))
     )
-    contour = Contour(80.0, AIR)
-    contour.line(start.real, start.imag, line=1, feed=300.0)
-    contour.compensation(LEFT, radius, line=2)
-    contour.line(first.real, first.imag, line=2, feed=300.0)
+    contour = Contour(80.0, 0.0, AIR)
+    contour.straight(start.real, start.imag, at=1, feed=300.0)
+    contour.compensate(LEFT, radius, at=2)
+    contour.straight(first.real, first.imag, at=2, feed=300.0)
     for line, (z, corners) in enumerate(laps, 3):
         heights = z if isinstance(z, list) else [z] * len(corners)
-        contour.line(z=heights[0], line=line, feed=300.0)
+        contour.straight(height=heights[0], at=line, feed=300.0)
         for corner, height in zip(corners, heights):
-            contour.line(corner.real, corner.imag, height, line=line, feed=300.0)
-    contour.compensation(40, 0.0, line=90)
-    contour.line(end.real, end.imag, line=90, feed=300.0)
+            contour.straight(corner.real, corner.imag, height, at=line, feed=300.0)
+    contour.compensate(40, 0.0, at=90)
+    contour.straight(end.real, end.imag, at=90, feed=300.0)
     return contour
 
 

@@ -46,23 +46,23 @@ def section(*parts, ramp=None):
 
     Z may be that of each shape.
     """
-    contour, line = Contour(90.0, UP), 1
+    contour, line = Contour(90.0, 0.0, UP), 1
     for part, height in parts:
         heights = height if isinstance(height, list) else [height] * len(part.shapes)
         first, last = part.shapes[0], part.shapes[-1]
         start = first.start + (ramp or away(part)) * first.direction(0.0)
         end = last.end + (ramp or away(part)) * last.direction(1.0)
-        contour.line(start.real, start.imag, line=line, feed=300.0)
-        contour.line(z=heights[0], line=line, feed=300.0)
-        contour.compensation(part.side, part.radius, line=line + 1)
-        contour.line(first.start.real, first.start.imag, line=line + 1, feed=300.0)
+        contour.straight(start.real, start.imag, at=line, feed=300.0)
+        contour.straight(height=heights[0], at=line, feed=300.0)
+        contour.compensate(part.side, part.radius, at=line + 1)
+        contour.straight(first.start.real, first.start.imag, at=line + 1, feed=300.0)
         for after, (z, shape) in enumerate(zip(heights, part.shapes), line + 2):
-            contour.line(z=z, line=after, feed=300.0)
+            contour.straight(height=z, at=after, feed=300.0)
             add(contour, shape, line=after, feed=300.0)
         line += 2 + len(part.shapes)
-        contour.compensation(40, 0.0, line=line)
-        contour.line(end.real, end.imag, line=line, feed=300.0)
-        contour.line(z=UP, line=line + 1, feed=300.0)
+        contour.compensate(40, 0.0, at=line)
+        contour.straight(end.real, end.imag, at=line, feed=300.0)
+        contour.straight(height=UP, at=line + 1, feed=300.0)
         line += 2
     return contour
 

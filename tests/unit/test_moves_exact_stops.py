@@ -10,10 +10,11 @@ from functools import partial
 
 import pytest
 
-from g12.compensation.contour import Mark, Plunge
+from g12.compensation.contour import Plunge
 from g12.geometry.curve import Line
 from g12.moves import exact_stops
-from g12.polar.plan import quickness
+from g12.polar.polar_section import quickness
+from g12.section.modes import Action
 from support import planned_moves
 
 FEED = 600.0  # 10 per second
@@ -27,8 +28,8 @@ def stops(path, rounding, x, c):
     return exact_stops.stops(path, rounding, quick)
 
 
-def line(x0, c0, x1, c1, z0=0.0, z1=0.0, feed=FEED):
-    return planned_moves.line(x0, c0, x1, c1, z0, z1, feed=feed)
+def line(x0, c0, x1, c1, h0=0.0, h1=0.0, feed=FEED):
+    return planned_moves.line(x0, c0, x1, c1, h0, h1, feed=feed)
 
 
 def first_stops(path, rounding, x=1000.0, c=C):
@@ -82,12 +83,12 @@ ALONG_X, ALONG_C = [line(20, 0, 30, 0), (40, 0)], [line(30, -5, 30, 0), (30, 10)
 @pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
 def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, stop):
     """X, Z and C are as quick as each other here: the steeper of both parts takes all of it."""
-    slope = line(30, 0, *on, z0=2.0, z1=2.0 + 10.0 * rise)
+    slope = line(30, 0, *on, h0=2.0, h1=2.0 + 10.0 * rise)
     bend, steep = math.atan(rise), max(1.0, abs(rise)) / math.hypot(1.0, rise)
     rounding = share * abs(math.sin(bend / 2)) * 10.0**2 / 2000.0
     far_x, far_c = 2 * on[0] - 30, 2 * on[1]
-    onwards = line(on[0], on[1], far_x, far_c, z0=slope.z1, z1=slope.z1 + 10.0 * rise)
-    up = [level._replace(z0=2.0, z1=2.0), slope, onwards]
+    onwards = line(on[0], on[1], far_x, far_c, h0=slope.h1, h1=slope.h1 + 10.0 * rise)
+    up = [level._replace(h0=2.0, h1=2.0), slope, onwards]
     assert stops(up, rounding / steep, 1000.0, C)[0] is stop
     on = level.start
     beyond = line(on.real, on.imag, 2 * on.real - 30, 2 * on.imag, 2.0, 2.0)
@@ -114,5 +115,5 @@ def test_at_the_pole_the_tool_always_stops():
 
 
 def test_marks_are_looked_through():
-    path = [RIGHT_ANGLE[0], Mark(2, "M8"), RIGHT_ANGLE[1]]
+    path = [RIGHT_ANGLE[0], Action(2, "M8", None), RIGHT_ANGLE[1]]
     assert stops(path, 0.5 * ROUNDING, 1000.0, C) == [True, False, True]

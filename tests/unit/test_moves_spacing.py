@@ -8,7 +8,7 @@ import pytest
 
 from g12.errors import Refusal
 from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, Stretch, TooManySegments, spaced
-from g12.polar.plan import PolarSettings, plan
+from g12.polar.polar_section import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
 from g12.geometry.curve import angle_of
-from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceSwitch, blending_halves, in_face, positions_along
-from g12.polar.plan import PolarSettings, plan
+from g12.moves.steps import FaceSwitch, Segments
+from g12.polar.face import blending_halves, in_face, positions_along
+from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
@@ -68,7 +68,7 @@ def test_positions_along_a_move_include_its_end_and_the_farthest(move, off):
 
 def contour(*points, feed=2000.0):
     """Return a contour of lines from X30 on."""
-    drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
+    drawn = Contour(30.0, 0.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
     x, c = 30.0, 0.0
     for number, (to_x, to_c) in enumerate(points, 7):
         drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))
@@ -78,9 +78,9 @@ def contour(*points, feed=2000.0):
 
 def test_arcs_on_the_face_leave_the_machine_at_their_end():
     """Clockwise over three quarters of a circle, C goes from 0 to 90 about a centre far out."""
-    drawn = Contour(60.0, 0.0)
-    drawn.arc(-1, 40.0, 20.0, i=-20.0, line=7, feed=1000.0)
-    drawn.line(40.0, 30.0, -1.0, line=8, feed=1000.0)
+    drawn = Contour(60.0, 0.0, 0.0)
+    drawn.arc(-1, 40.0, 20.0, i=-20.0, at=7, feed=1000.0)
+    drawn.straight(40.0, 30.0, -1.0, at=8, feed=1000.0)
     made = plan(drawn, SETTINGS, c=10.0)
     there, arc_on, line_on, back = made.steps
     for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
@@ -94,7 +94,7 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
 def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew():
     made = plan(contour((30, 20), (0.2, 20), (0.2, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
-    assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
+    assert {step.line for step in made.steps if isinstance(step, Segments)} == {9}
     *_, at = (k for k, step in enumerate(made.steps) if isinstance(step, FaceSwitch) and step.on)
     switch, again = made.steps[at : at + 2]
     assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
@@ -110,4 +110,4 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     assert down.move == Plunge(9, 500.0, 0.0, -1.0)
     assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.segments
     assert back == FaceSwitch(9, False, made.position)
-    assert made.position.z == -1.0
+    assert made.position.height == -1.0

@@ -9,7 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import MoveDemands
+from g12.polar.face import MoveDemands
 from support.face_moves import LIMITS, arcs, line, lines, motion
 
 

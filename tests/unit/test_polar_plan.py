@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.moves.steps import BlockMoves
-from g12.polar.plan import PolarSettings, plan, quickness
+from g12.moves.steps import Segments
+from g12.polar.polar_section import PolarSettings, plan, quickness
+from g12.section.modes import Action
 from support.axes_of_places import rates
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, add, cuts, path, programmed
@@ -48,7 +49,7 @@ def drawings(draw, most=5, beside=ON_LINE):
 
 
 def runs(planned):
-    return [step for step in planned.steps if isinstance(step, BlockMoves)]
+    return [step for step in planned.steps if isinstance(step, Segments)]
 
 
 # What is cut is the contour.
@@ -129,12 +130,12 @@ def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
 def test_what_is_left_out_of_a_contour_is_taken_from_the_tolerance():
     """A step of 0.0013 in a side is left out under compensation."""
     step = 0.0013
-    contour = Contour(30.0, -15.0)
-    contour.compensation(41, 5.0, line=1)
+    contour = Contour(30.0, 0.0, -15.0)
+    contour.compensate(41, 5.0, at=1)
     for line, (x, c) in enumerate(
         [(20, -15), (20, -14), (20, 0), (20 + step, 0), (20 + step, 15), (20 + step, 16)], 1
     ):
-        contour.line(x, c, line=line, feed=250.0)
+        contour.straight(x, c, at=line, feed=250.0)
     made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line in (3, 5)]
     side = [Straight(15 - 14j, 15 + 0j), Straight(15 + step + 0j, 15 + step + 15j)]
     assert 0.6 * TOLERANCE < distance(path(made), side).max() <= TOLERANCE
@@ -214,9 +215,9 @@ def test_no_splitting_needs_many_segments_less(shapes):
 def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
     contour = programmed([Straight(10 + 0j, -8 + 0j)], feed=300.0)
     assert runs(plan(contour, LATHE, c=0.0)) == [
-        BlockMoves(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
-        BlockMoves(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
-        BlockMoves(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
+        Segments(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
+        Segments(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
+        Segments(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
     ]
 
 
@@ -241,9 +242,9 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
 
 
 def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
-    contour = Contour(20.0, 0.0, beside=-3.0)
-    contour.line(10.0, 0.0, line=7, feed=100.0)
-    contour.line(2.9, 0.0, line=8, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0, beside=-3.0)
+    contour.straight(10.0, 0.0, at=7, feed=100.0)
+    contour.straight(2.9, 0.0, at=8, feed=100.0)
     with pytest.raises(Refusal) as refused:
         plan(contour, EXACT._replace(beside=-3.0), c=0.0)
     assert refused.value.message == (
@@ -267,8 +268,8 @@ def test_a_tool_hardly_beside_its_line_needs_the_same_segments_as_one_on_it(shap
     """For an even feed at F60, or, if the axes are too slow for that, for the tolerance alone."""
     machine = EXACT._replace(x_acceleration=1000.0 * quick, c_acceleration=3600.0 * quick)
     on_line = plan(programmed([shape], feed=feed), machine, c=0.0).steps[0].segments
-    contour = Contour(shape.start.real, 0.0, beside=1e-4)
-    contour.line(c=0.0, line=1, feed=feed)
+    contour = Contour(shape.start.real, 0.0, 0.0, beside=1e-4)
+    contour.straight(second=0.0, at=1, feed=feed)
     add(contour, shape, line=2, feed=feed)
     beside = plan(contour, machine._replace(beside=1e-4), c=0.0).steps[-1].segments
     assert len(beside) == len(on_line)
@@ -296,17 +297,17 @@ def test_stops_where_blending_would_cut_the_corner(shapes, feed, lines):
 
 
 def test_marks_keep_their_place_and_segments_their_lines():
-    contour = Contour(10.0, 2.0)
-    contour.mark("M8", line=1)
-    contour.line(12.0, 0.0, line=2, feed=100.0)
-    contour.line(z=-1.0, line=3, feed=50.0)
-    contour.mark("S500", line=4)
-    contour.line(12.0, 3.0, line=5, feed=100.0)
-    contour.mark("M9", line=6)
+    contour = Contour(10.0, 0.0, 2.0)
+    contour.mark(Action(1, "M8", None))
+    contour.straight(12.0, 0.0, at=2, feed=100.0)
+    contour.straight(height=-1.0, at=3, feed=50.0)
+    contour.mark(Action(4, "S500", None))
+    contour.straight(12.0, 3.0, at=5, feed=100.0)
+    contour.mark(Action(6, "M9", None))
     steps = plan(contour, LATHE, c=0.0).steps
-    order = [step.line if isinstance(step, BlockMoves) else step for step in steps]
+    order = [step.line if isinstance(step, Segments) else step.text for step in steps]
     assert order == ["M8", 2, 3, "S500", 5, "M9"]
-    assert steps[2] == BlockMoves(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
+    assert steps[2] == Segments(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
 
 
 def test_goes_on_after_a_block_that_waits_for_the_machine():
@@ -314,32 +315,34 @@ def test_goes_on_after_a_block_that_waits_for_the_machine():
     first = programmed(whole[:1])
     planned = plan(first, LATHE, c=30.0)
     second = first.continued(planned.end)
-    assert (second.x, second.c) == (5.0, 10.0)
+    assert (second.first, second.second) == (5.0, 10.0)
     end = whole[1].end
-    second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, line=2, feed=250.0)
+    second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, at=2, feed=250.0)
     after = plan(second, LATHE, c=30.0)
     assert distance(path(cuts(second, after, 30.0)), whole[1:]).max() <= TOLERANCE
-    assert after.position.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).position.c)
+    assert after.position.turn == pytest.approx(
+        plan(programmed(whole), LATHE, c=30.0).position.turn
+    )
 
 
 def test_what_the_segments_leave_over_of_both_slides_comes_last():
-    contour = Contour(10.0, 0.0)
+    contour = Contour(10.0, 0.0, 0.0)
     end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
-    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, line=2, feed=250.0)
+    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, at=2, feed=250.0)
     *_, rest = runs(plan(contour, LATHE, c=0.0))
     assert (rest.axes, rest.stop) == ("XZ", True)
     assert (rest.segments[0][0], rest.segments[0][2]) == (abs(end), 0.0003)
-    contour = Contour(10.0, 0.0)
-    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, line=2, feed=250.0)
+    contour = Contour(10.0, 0.0, 0.0)
+    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, at=2, feed=250.0)
     assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
 
 
 def test_segments_that_keep_x_stay_within_the_tolerance():
     """Two circles, one after the other: without a stop segments are as far off as they may be."""
     centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
-    contour = Contour(25.4718, 0.0)
+    contour = Contour(25.4718, 0.0, 0.0)
     for line in (1, 2):
-        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, line=line, feed=300.0)
+        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, at=line, feed=300.0)
     made = cuts(contour, plan(contour, LATHE, c=0.0))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE

@@ -18,24 +18,24 @@ from support.contour_geometry import shape_of
 REACH = 0.0025
 
 
-def line(x0, c0, x1, c1, z0=0.0, z1=0.0):
-    return planned_moves.line(x0, c0, x1, c1, z0, z1, number=3)
+def line(x0, c0, x1, c1, h0=0.0, h1=0.0):
+    return planned_moves.line(x0, c0, x1, c1, h0, h1, number=3)
 
 
-def arc(cx, cc, x0, c0, sweep, z0=0.0, z1=0.0):
-    return planned_moves.arc(complex(cx, cc), complex(x0, c0), sweep, z0, z1, number=3)
+def arc(cx, cc, x0, c0, sweep, h0=0.0, h1=0.0):
+    return planned_moves.arc(complex(cx, cc), complex(x0, c0), sweep, h0, h1, number=3)
 
 
 def led(*path, reach=REACH, refused=False):
-    return through_pole(Contour(10.0, 0.0), list(path), reach, refused)
+    return through_pole(Contour(10.0, 0.0, 0.0), list(path), reach, refused)
 
 
 def ends(parts):
     """Return the ends of moves, one after the other, and check that they are."""
     for one, other in zip(parts, parts[1:]):
-        assert (one.end, one.z1) == (pytest.approx(other.start, abs=1e-12), pytest.approx(other.z0))
-    first, places = parts[0], [(part.end.real, part.end.imag, part.z1) for part in parts]
-    return [(first.start.real, first.start.imag, first.z0), *places]
+        assert (one.end, one.h1) == (pytest.approx(other.start, abs=1e-12), pytest.approx(other.h0))
+    first, places = parts[0], [(part.end.real, part.end.imag, part.h1) for part in parts]
+    return [(first.start.real, first.start.imag, first.h0), *places]
 
 
 @pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
@@ -63,12 +63,12 @@ def test_of_a_small_circle_a_sixth_on_either_side_is_replaced_at_most(radius):
 
 def at_pole(plunge):
     """Return a plunge in the pole as a line of no length in the plane."""
-    return plunge if not isinstance(plunge, Plunge) else line(0, 0, 0, 0, plunge.z0, plunge.z1)
+    return plunge if not isinstance(plunge, Plunge) else line(0, 0, 0, 0, plunge.h0, plunge.h1)
 
 
 def points(move, count):
     """Return places of a move, complex, and their heights."""
-    return shape_of(move.curve).points(count), np.linspace(move.z0, move.z1, count)
+    return shape_of(move.curve).points(count), np.linspace(move.h0, move.h1, count)
 
 
 beside = st.sampled_from([0.0, 0.5, -0.5, 0.9, -0.9, 1.1, -1.1, 4.0]).map(lambda b: b * REACH)

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Mark, Plunge
-from g12.polar.follow import FaceLimits, MoveDemands
+from g12.compensation.contour import Plunge
+from g12.polar.face import FaceLimits, MoveDemands
 from g12.polar.quickest import ACCELERATION_SHARES, quickest
+from g12.section.modes import Action
 from support import planned_moves
 from support.growth import growth
 
@@ -69,7 +70,7 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
 
 
 FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
-MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
+MARK, PLUNGE = Action(2, "M8", None), Plunge(3, 500.0, 0.0, -1.0)
 
 
 def test_marks_and_plunges_go_with_what_is_in_front():

@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.polar.words import POLAR_WORDS
+from g12.polar.polar_section import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, check_block, check_codes, check_letters
 from g12.section.line import BlockLocation, split_line
 

@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import LONGEST_BLOCK, Refusal
-from g12.polar.words import POLAR_WORDS
+from g12.polar.polar_section import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, alone, m_code_alone
 from g12.section.line import BlockLocation, line_named, split_line, split_words
 from g12.section.modes import (

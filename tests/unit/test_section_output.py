@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a planned section hands to the interpreter, block by block."""
 
-from types import SimpleNamespace
-
 import pytest
 
 from g12.errors import Refusal
 from g12.host import borrowed
 from g12.host.interp import PackageState
-from g12.host.section.output import STOP_HERE, Action, PathControl, SectionOutput
-from g12.moves.steps import BlockMoves
-from g12.section.modes import SectionModes
+from g12.host.section_output import STOP_HERE, PathControl, SectionOutput
+from g12.machine_ini import Axis
+from g12.moves.setup import SectionMachine
+from g12.moves.steps import Segments
+from g12.polar.polar_section import Polar
+from g12.section.modes import Action, SectionModes
+from g12.settings import Settings
 from support.section_starts import START
 
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
@@ -92,8 +94,9 @@ class Canon:
 
 
 def emission_of(interp):
-    setup = SimpleNamespace(tolerance=0.005, words=SimpleNamespace(beside=0.0))
-    return SectionOutput(interp, START, setup, canon=Canon(interp))
+    axes = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
+    section = Polar(START, SectionMachine(frozenset(axes), Settings(), axes))
+    return SectionOutput(interp, section, canon=Canon(interp))
 
 
 def handed_over(steps, interp=None, exact=()):
@@ -103,7 +106,7 @@ def handed_over(steps, interp=None, exact=()):
 
 
 def run(stop=False, line=7, axes="XC", segments=LINE):
-    return BlockMoves(line, axes, segments, stop)
+    return Segments(line, axes, segments, stop)
 
 
 SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from g12.errors import Refusal, number
 from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
-from g12.shapes import holes, polygon, round_pocket, slot
+from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine, check_nearest
 from g12.shapes.holes import HoleMachine
 from support.planner_context import MM, reported
@@ -23,8 +23,8 @@ LATHE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 LIVE = HoleMachine(c=0.0, spindle=0, spindle_code=3, speed=500.0, beside=0.0, diameters=True)
 PLANS = {
     "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
-    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
-    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
+    "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
+    "polar_pocket": (pockets.ROUND_POCKET_ENTRIES, pockets.plan_round_pocket),
     "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
     "side_holes": (holes.SIDE_HOLES, holes.plan_side_holes),
     "face_hole_at": (holes.FACE_HOLE_AT, holes.plan_face_hole_at),
