@@ -32,19 +32,6 @@ def test_a_coordinate_left_out_stays():
     assert (contour.first, contour.second, contour.height) == (-4.0, 3.0, 1.0)
 
 
-def test_a_move_to_nowhere_is_none():
-    contour = started()
-    contour.straight(10.0, 0.0, 5.0, at=1, feed=100.0)
-    assert contour.elements == []
-
-
-def arc_of(turn, *end, **words):
-    contour = started()
-    contour.arc(turn, *end, at=1, feed=100.0, **words)
-    (arc,) = contour.elements
-    return arc.curve
-
-
 coordinate = st.floats(-30.0, 30.0)
 point = st.builds(complex, coordinate, coordinate)
 
@@ -63,34 +50,6 @@ def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn
         assert arc.end == pytest.approx(end, abs=1e-9)
         assert arc.curve.centre == pytest.approx(centre, abs=1e-9)
         assert arc.curve.sweep == pytest.approx(turn * angle, abs=1e-9)
-
-
-@pytest.mark.parametrize("words", [dict(i=-3.0), dict(j=4.0), dict(i=-3.0, j=4.0)])
-@pytest.mark.parametrize("turn", [1, -1])
-@pytest.mark.parametrize("end", [(), (10.0, 0.0), (10.0, 1e-12)])
-def test_no_end_or_the_start_as_end_is_a_full_circle(turn, end, words):
-    arc = arc_of(turn, *end, **words)
-    assert arc.sweep == turn * 2 * math.pi
-    assert arc.centre == complex(10.0 + words.get("i", 0.0), words.get("j", 0.0))
-
-
-def test_a_rounded_centre_is_moved_to_be_as_far_from_both_ends():
-    arc = arc_of(1, 0.0, 10.0, i=-10.0, j=0.004)
-    assert abs(10.0 - arc.centre) == pytest.approx(abs(10j - arc.centre))
-    assert abs(arc.centre) < 0.004
-
-
-@pytest.mark.parametrize("side", [40, 41])
-def test_compensation_that_is_in_force_already_changes_nothing(side):
-    contour = started()
-    contour.compensate(41, 2.0, at=1)
-    contour.straight(second=5.0, at=1, feed=100.0)
-    if side == 40:
-        contour.compensate(40, 0.0, at=2)
-        contour.straight(second=9.0, at=2, feed=100.0)
-    contour.compensate(side, 2.0, at=3)
-    contour.arc(1, i=-1.0, at=3, feed=100.0)
-    assert contour.side == side
 
 
 def block(contour, text, line):
@@ -264,22 +223,6 @@ def test_the_end_of_an_arc_may_be_off_its_circle(radius, options, off, word, sha
         assert not closes and "does not close" in refusal.message
     else:
         assert closes
-
-
-@pytest.mark.parametrize(("rounding", "taken"), [(0.9e-6, True), (1.1e-6, False)])
-def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
-    """Ends so near to each other are one place."""
-    contour = started()
-    contour.compensate(41, 2.0, at=1)
-    arc = dict(first=10.0 - rounding, second=0.0, radius=4.0, at=1, feed=100.0)
-    if taken:
-        contour.straight(second=2.0 - rounding, at=1, feed=100.0)
-        with pytest.raises(Refusal, match="a full circle needs I and J"):
-            started().arc(1, **arc)
-        return
-    with pytest.raises(Refusal, match="must be at least the tool radius"):
-        contour.straight(second=2.0 - rounding, at=1, feed=100.0)
-    started().arc(1, **arc)
 
 
 # A tool that stands beside the programmed place until a G1 takes it there.

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Cutter compensation in the plane: the tool touches the part, and nothing it cannot reach."""
 
-import cmath
-import math
 import random
 
 import numpy as np
@@ -14,11 +12,9 @@ from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.section.modes import Action
-from support.contour_geometry import Round, Straight, distance, shape_of
-from support.planned_cuts import add
+from support.contour_geometry import distance, shape_of
 from support.random_contours import (
     TOLERANCE,
-    Drawn,
     as_shapely,
     contour_of,
     drawn,
@@ -110,52 +106,6 @@ def mark(contour, line):
     contour.mark(Action(line, "M8", None))
 
 
-def down(contour, line):
-    contour.straight(height=-1.0, at=line, feed=100.0)
-
-
-@pytest.mark.parametrize(
-    ("blocks", "radius", "expected"),
-    [
-        # ramps square to the contour, an inside corner at the crossing of the parallels
-        ([to(20, 5), to(20, 15)], 2.0, {1: (10.0, 7.0), 2: (18.0, 7.0), 3: (18.0, 15.0)}),
-        ([down, mark, to(20, 5), mark, down, to(20, 15)], 2.0, {1: (10.0, 7.0), 4: (18.0, 7.0)}),
-        ([to(20, 5), to(20, 9), to(10, 9)], 2.0, {2: (18.0, 7.0), 3: None}),  # used up
-        ([to(20, 5), to(20, -15)], 2.0, {2: (20.0, 7.0), 3: (22.0, -15.0)}),  # rounded
-        ([to(20, 5), to(15, 5)], 2.0, {3: (15.0, 3.0)}),  # straight back
-        ([to(20, 5), to(20, 15)], 0.0, {1: (10.0, 5.0), 2: (20.0, 5.0), 3: (20.0, 15.0)}),
-    ],
-)
-def test_where_the_tools_centre_ends_each_block(blocks, radius, expected):
-    ends = joined(*blocks, radius=radius)
-    assert {line: ends.get(line) for line in expected} == expected
-
-
-@pytest.mark.parametrize(
-    ("bend", "by", "segments"),
-    [
-        (0.0280, 0.0, 1),  # a 25th of the tolerance nearer to the corner than an arc
-        (0.0286, 0.0, 2),
-        (0.0049, 1.0, 1),  # gap of two tolerances
-        (0.0051, 1.0, 2),
-    ],
-)
-def test_parallels_are_joined_where_nobody_could_tell(bend, by, segments):
-    """An outside corner of a few minutes of arc, from a line to a line or to an arc."""
-    way, corner = cmath.exp(1j * bend), 20 + 5j
-    follows = Round(corner, corner + 5j * by * way, by) if by else Straight(corner, corner + way)
-    contour = Contour(10.0, 0.0, 0.0)
-    contour.compensate(42, 2.0, at=1)
-    contour.straight(10.0, 5.0, at=1, feed=100.0)
-    contour.straight(20.0, 5.0, at=2, feed=100.0)
-    add(contour, follows, line=3, feed=100.0)
-    contour.compensate(40, 0.0, at=4)
-    contour.straight(30.0, -10.0, at=4, feed=100.0)
-    made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
-    assert len(made) == segments
-    assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
-
-
 @pytest.mark.parametrize("beside", [0.0, 0.001])
 def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all(beside):
     """Its Z remains; where it is hardly square a short move remains as well."""
@@ -208,19 +158,6 @@ def test_too_tight_names_both_lines(blocks, message):
         joined(*blocks)
     assert refused.value.message == f"G12.1 {message}"
     assert len(refused.value.message) < LONGEST_MESSAGE
-
-
-@pytest.mark.parametrize(
-    ("shapes", "side", "radius"),
-    [
-        ([Straight(-15j, -3 + 6j), Round(-3 + 6j, -1.5 + 9j, 2 * math.pi)], LEFT, 3.0),
-        ([Straight(4 + 2j, 0j), Round(0j, 1 - 2j, -2 * math.pi)], RIGHT, 0.5),
-        ([Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)], LEFT, 1.0),  # it curls back onto the tool
-    ],
-)
-def test_a_line_and_an_arc_that_come_too_near_to_each_other(shapes, side, radius):
-    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
-        along_part(contour_of(Drawn(shapes, side, radius, shapes)))
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])

@@ -11,7 +11,7 @@ from shapely.geometry import LineString, Point
 
 from g12.compensation import centre_path as simplify
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Plunge
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.geometry.curve import Line
 from g12.polar.polar_section import PolarSettings, plan
@@ -32,14 +32,6 @@ def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
     contour.compensate(40, 0.0, at=90)
     contour.straight(*points[-1], at=90, feed=600.0)
     return contour
-
-
-def test_rounding_does_not_add_up():
-    contour = Contour(10.0, 0.0, 0.0)
-    for _ in range(40):
-        contour.straight(second=contour.second + 5e-7, at=1, feed=100.0)
-    assert contour.second == pytest.approx(2e-5)
-    assert contour.elements[-1].end.imag == pytest.approx(2e-5, abs=2e-6)
 
 
 # Under compensation.
@@ -105,13 +97,6 @@ def test_many_points_in_a_row_are_looked_at_once():
     assert len(looked) < 100 * len(line)
 
 
-def test_a_ramp_does_not_become_one_line_with_a_contour_that_goes_on_straight():
-    """The tool would go along on the contour itself where it should be beside it."""
-    points = [(20.0, -20.0), (20.0, 0.0), (19.0, 0.0), (19.0, 20.0), (10.0, 30.0)]
-    contour = programmed(*points, side=41, radius=3.0, start=(20.0, -30.0))
-    assert refused(contour)
-
-
 size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 
@@ -131,36 +116,6 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
 
 
 # What stands between when a short move has gone.
-
-
-def line_to(start, end, number, z=0.0):
-    return planned_moves.line(*start, *end, 0.0, z, number=number, offset=2.0)
-
-
-def bend(start, end, number, sweep=0.5):
-    """Return an arc from point to point."""
-    start, end = complex(*start), complex(*end)
-    centre = (end - start * cmath.exp(1j * sweep)) / (1 - cmath.exp(1j * sweep))
-    return planned_moves.arc(centre, start, sweep, number=number, offset=2.0)
-
-
-@pytest.mark.parametrize("z", [0.0, -1.0])
-@pytest.mark.parametrize("follows", [line_to, bend])
-@pytest.mark.parametrize("before", [line_to, bend])
-def test_the_moves_beside_a_short_one_meet(before, follows, z):
-    """A line gives way to an arc; between two arcs a line remains. The short one's Z is kept."""
-    one, other = before((0, 0), (10, 5), 1), follows((10.001, 5), (20, 0), 3)
-    short = line_to((10, 5), (10.001, 5), 2, z)
-    kept, moved = simplify.without_short_moves([one, short, other], 0.0015)
-    assert moved == pytest.approx(0.001)
-    if follows is line_to:
-        other = other._replace(curve=Line(one.end, other.end))
-    elif before is line_to:
-        one = one._replace(curve=Line(one.start, other.start))
-    between = [] if z == 0.0 else [Plunge(2, 100.0, 0.0, z)]
-    if before is follows is bend:
-        between.append(other._replace(curve=Line(one.end, other.start)))
-    assert kept == [one, *between, other]
 
 
 # Fillets of the tool's radius.

@@ -64,17 +64,6 @@ def test_a_little_z_and_depth_are_left_to_the_next_move_and_to_the_end():
     assert made == [*ends]
 
 
-def test_segments_that_keep_z_stay_within_the_tolerance():
-    """Two circles, one after the other: without a stop segments are as far off as they may be."""
-    contour, arm = empty(), 3.186 + 2j
-    for line in (1, 2):
-        contour.arc(1, 0.0, 0.0, i=arm.real, j=arm.imag, at=line, feed=100.0)
-    places = [
-        math.radians(c) * RADIUS + 1j * z for run in runs(contour) for z, c, _, _ in run.segments
-    ]
-    assert abs(abs(np.array(places) - arm) - abs(arm)).max() < 0.005
-
-
 def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     contour = empty()
     contour.straight(height=18.0, at=1, feed=100.0)
@@ -203,15 +192,6 @@ def test_one_code_switches_on_and_off():
     assert not codes.begins(block(g=72)) and not codes.ends(block(g=72, C=0.0))
 
 
-@pytest.mark.parametrize(
-    ("raw", "text", "relative"),
-    [("G1 W-5 H.3", "g1z-5c.3", "ZC"), ("U1", "x1", "X"), ("Z1 C[round[2]]", "z1c[round[2]]", "")],
-)
-def test_increments_are_rewritten(raw, text, relative):
-    line = split_line(raw, CYLINDER_WORDS)
-    assert (line.text, line.relative, line.rewritten) == (text, relative, bool(relative))
-
-
 WORDS = "the section's words are Z, C, X, W, H and U"
 
 
@@ -232,12 +212,3 @@ def test_words_that_are_refused(text, why):
         check_letters(line, CYLINDER_WORDS, START.location)
         check_codes(line.codes, CYLINDER_WORDS, False, START.location)
     assert refused.value.message == f"G7.1 line 7: {why}"
-
-
-@pytest.mark.parametrize(
-    "text", ["Z1 C2 X3 F4 S5 P6 R7", "W1 H2 U3", "J1 K2", "I1 K2", "G17", "G18", "G19", "M3"]
-)
-def test_words_that_are_taken(text):
-    line = split_line(text, CYLINDER_WORDS)
-    check_letters(line, CYLINDER_WORDS, START.location)
-    check_codes(line.codes, CYLINDER_WORDS, False, START.location)

@@ -9,9 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
-from g12.geometry.curve import angle_of
 from g12.moves.steps import FaceSwitch, Segments
-from g12.polar.face import blending_halves, in_face, positions_along
+from g12.polar.face import blending_halves, in_face
 from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
@@ -37,33 +36,12 @@ def test_an_arc_whose_acceleration_blending_would_halve(following, halved):
     assert blending_halves(arc((20, 0), 10, 0, pi / 2), following) is halved
 
 
-def test_a_plunge_and_a_line_are_blended_by_an_arc_a_plunge_and_an_arc_are_not():
-    plunge, straight = Plunge(1, 100.0, 0.0, -1.0), line((0, 10), (20, 10))
-    assert not blending_halves(straight, plunge)
-    assert not blending_halves(plunge, straight)
-    assert blending_halves(plunge, arc((20, 0), 10, 0, pi / 2))
-
-
 @settings(max_examples=200)
 @given(st.one_of(lines, arcs), st.floats(-20, 20))
 def test_the_face_is_the_plane_turned(move, angle):
     turned = in_face(move, angle)
     before, after = motion(move)[0], motion(turned)[0]
     assert after * np.exp(1j * angle) == pytest.approx(before, abs=1e-9)
-
-
-@settings(max_examples=200)
-@given(st.one_of(lines, arcs), st.floats(-20, 20))
-def test_positions_along_a_move_include_its_end_and_the_farthest(move, off):
-    points = motion(move)[0]
-    if abs(points).min() < 0.5:
-        return
-    begin = angle_of(move.start) + off
-    positions = positions_along(move, begin)
-    angles = np.unwrap(np.angle(points))
-    assert positions[-1][0] == pytest.approx(abs(move.end))
-    assert positions[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
-    assert max(radius for radius, *_ in [*positions, (abs(points[0]),)]) >= abs(points).max() - 1e-4
 
 
 def contour(*points, feed=2000.0):

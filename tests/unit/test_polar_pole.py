@@ -10,7 +10,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
-from g12.geometry.curve import Arc, Line
+from g12.geometry.curve import Arc
 from g12.polar.pole import through_pole
 from support import planned_moves
 from support.contour_geometry import shape_of
@@ -36,21 +36,6 @@ def ends(parts):
         assert (one.end, one.h1) == (pytest.approx(other.start, abs=1e-12), pytest.approx(other.h0))
     first, places = parts[0], [(part.end.real, part.end.imag, part.h1) for part in parts]
     return [(first.start.real, first.start.imag, first.h0), *places]
-
-
-@pytest.mark.parametrize("sweep", [2 * math.pi, -2 * math.pi])
-@pytest.mark.parametrize(("beside", "passes"), [(0.0, 1), (0.9 * REACH, 1), (1.1 * REACH, 0)])
-def test_a_circle_through_the_pole(sweep, beside, passes):
-    """Radii take the place of what is within a fifth of the reach of them on either side."""
-    made = led(arc(5 + beside, 0, 10 + beside, 0, sweep, 0.0, -4.0))
-    assert [type(part.curve) for part in made] == ([Arc, Line, Line, Arc] if passes else [Arc])
-    if passes:
-        first, to, fro, second = made
-        assert ends(made)[2] == pytest.approx((0.0, 0.0, -2.0))
-        assert first.curve.sweep == pytest.approx(second.curve.sweep)
-        length = abs(to.start)
-        assert length**2 / 8 / 5 == pytest.approx(0.2 * REACH, rel=0.02) if not beside else True
-        assert abs(fro.end) == pytest.approx(length)
 
 
 @pytest.mark.parametrize("radius", [0.003, 0.0039])

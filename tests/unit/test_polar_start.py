@@ -8,7 +8,6 @@ import pytest
 from g12.errors import Refusal
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.setup import SectionMachine
-from g12.moves.steps import Segments
 from g12.polar.face import FaceLimits
 from g12.polar.polar_section import Polar
 from g12.settings import Settings
@@ -54,14 +53,6 @@ def test_where_no_section_begins(found, rule):
     with pytest.raises(Refusal) as refused:
         section(**found)
     assert str(refused.value) == f"G12.1 line 7: {rule}"
-
-
-def test_a_section_may_begin_near_the_centre_on_a_machine_with_x_and_c():
-    section(letters="XC", position=at(1e-3))
-    for letters in ("XYZ", "ZC"):
-        with pytest.raises(Refusal) as refused:
-            section(letters=letters)
-        assert refused.value.message == "G12.1 line 7: needs a machine with an X and a C axis"
 
 
 @pytest.mark.parametrize(
@@ -138,16 +129,3 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
     assert section().rules.beside == section().planning.beside == 0.0
     assert section(Settings(polar_pole="refuse")).planning.pole_refused
     assert not section().planning.pole_refused
-
-
-@pytest.mark.parametrize(
-    ("machine_unit", "millimetre", "unit"),
-    [(1.0, 1.0, "mm"), (INCH, 1.0, "in"), (1.0, 1 / INCH, "in"), (1 / INCH, 1 / INCH, "mm")],
-)
-def test_the_travel_is_told_in_the_machines_unit(machine_unit, millimetre, unit):
-    limits = section(machine_unit=machine_unit, millimetre=millimetre).limits
-    far, off = 200.0 * machine_unit, START.offsets
-    for axis, place in (("X", (far, 0.0, 0.0)), ("Z", (0.0, 0.0, far))):
-        beyond = limits.beyond([Segments(3, "XCZ", [(*place, 1.0)], False)])
-        assert (beyond.axis, beyond.unit) == (axis, unit)
-        assert beyond.position == pytest.approx(200.0 + off[axis] / machine_unit)

@@ -113,19 +113,6 @@ SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
 RELEASED = ["F100"]
 
 
-def test_the_section_begins_with_a_stop_and_its_second_part_does_not():
-    interp = Interpreter()
-    emission = emission_of(interp)
-    for _ in range(2):
-        assert list(emission.run([run()], MODES, ())) == []
-    assert interp.begins == 7 and STOP_HERE not in interp.done
-
-
-def test_a_programmed_tolerance_is_kept():
-    interp = Interpreter(tolerance=0.1, merging=0.2)
-    assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
-
-
 @pytest.mark.parametrize(("tolerance", "blended"), [(0.1, [SMOOTH, "G64P0.1Q0"]), (0.001, [])])
 def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance, blended):
     interp = Interpreter(tolerance=tolerance)
@@ -179,10 +166,6 @@ def test_feed_per_revolution_is_left_and_comes_back_with_each_part(feed_mode, fi
     assert interp.motion_mode == 30
 
 
-def test_comments_need_no_modes():
-    assert handed_over([Action(8, "(MSG,x)", None), run()]).done[:2] == ["(MSG,x)", SMOOTH]
-
-
 def test_path_control_commanded_inside_stays():
     g64, g61 = Action(8, "G64P0.1", MODES), Action(10, "G61", MODES)
     done = handed_over([run(), g64, run(line=9), g61, run(line=11)]).done
@@ -190,12 +173,6 @@ def test_path_control_commanded_inside_stays():
     assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
     back = ["G64P0.1Q0.1", "G61", *RELEASED]
     assert done[third:] == ["G61", SMOOTH, FIRST, *NEXT, STOP_HERE, *back]
-
-
-def test_saved_state_is_that_of_its_call_level():
-    interp = handed_over([Action(8, "M70", MODES, level=3)])
-    assert interp.levels[interp.done.index("M70")] == 3
-    assert interp.call_level == 1
 
 
 @pytest.mark.parametrize(
