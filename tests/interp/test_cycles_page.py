@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The Cycles page on the simulated machines: drawn as typed, refused in words, a program that runs."""
+"""The Cycles page on the simulated machines: drawn as typed, refused in words, a program."""
 
 import os
 import resource
+import subprocess
 import threading
 import time
 
@@ -14,7 +15,7 @@ from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import FACE, PLAN, READY, REFUSED, UNROLLED, MachineState, fitted
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini
-from support.sim_machines import SIM, trace_text
+from support.sim_machines import ROOT, SIM, trace_text, with_package
 
 NOWHERE = MachineState({}, 0, (0.0,) * 9)
 
@@ -181,16 +182,12 @@ def test_the_drawing_fills_its_place(page):
     sketch = page("mill_mm").show("haas", tool="5", i="8", q="8")
     scale = fitted(sketch, 400, 300)
     pixels = scale.pixels(np.array([[-30.0, 0.0], [30.0, 0.0]]))
-    assert 0 <= pixels.min() and pixels[1, 0] - pixels[0, 0] == pytest.approx(0.92 * 300)
+    assert pixels.min() >= 0 and pixels[1, 0] - pixels[0, 0] == pytest.approx(0.92 * 300)
 
 
 @pytest.mark.parametrize("toolkit", ["qt", "gtk"])
 def test_the_page_opens_and_draws_in_both_toolkits(toolkit, tmp_path):
     """In a process of its own, under a screen that nobody sees."""
-    import subprocess
-
-    from support.sim_machines import ROOT, with_package
-
     script = ROOT / "tests/support" / f"{toolkit}_page.py"
     environment = with_package(os.environ) | {
         "XDG_STATE_HOME": str(tmp_path),

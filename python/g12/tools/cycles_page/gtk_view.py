@@ -21,12 +21,11 @@ from g12.tools.cycles_page.opening import open_in_linuxcnc
 from g12.tools.cycles_page.page import Page, choice_of
 from g12.tools.cycles_page.sketch import MESSAGE, REFUSED, fitted
 from g12.tools.cycles_page.steps import number_text
-from g12.tools.cycles_page.view import COLOURS, FORM_ROWS, hint_of, label_of, picture_of, tool_text
+from g12.tools.cycles_page.view import COLOURS, hint_of, label_of, picture_of, tool_text
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
-THUMBNAIL = 150  # pixels wide
-FORM_WIDTH = 360  # pixels at least
+THUMBNAIL, FORM_WIDTH, DRAWING = 96, 220, (150, 150)  # pixels; the last two at least
 DASH = (4, 3)  # of a rapid
 
 
@@ -48,84 +47,90 @@ class CyclesView(Gtk.Box):
         self.connect("destroy", lambda *_: self.page.close())
         self._build()
         if self.page.forms:
-            self.cycles.select_row(self.cycles.get_row_at_index(0))
+            self.cycles.set_active(0)
 
     def _build(self) -> None:
-        self.cycles, self.steps = Gtk.ListBox(), Gtk.ListBox()
+        self.cycles, self.steps = Gtk.ComboBox(), Gtk.ListBox()
         self.grid = Gtk.Grid(column_spacing=6, row_spacing=1)
-        self.title, self.tool_label = Gtk.Label(xalign=0), Gtk.Label(xalign=0)
-        self.said = Gtk.Label(xalign=0, wrap=True, max_width_chars=50)
+        self.tool_label = Gtk.Label(xalign=0, wrap=True)
+        self.said = Gtk.Label(xalign=0, wrap=True, max_width_chars=30)
         self.drawing = Gtk.DrawingArea()
-        self.drawing.set_size_request(260, 240)
+        self.drawing.set_size_request(*DRAWING)
         self.drawing.connect("draw", self._draw)
-        for form in self.page.forms:
-            self.cycles.add(self._thumbnail(picture_of(form, self.page.unit), form.title))
-        self.cycles.connect("row-selected", self._selected)
+        self._offer_forms()
         self.steps.connect("row-activated", lambda _, row: self._edit(row.get_index()))
-        middle, right = (Gtk.Box(orientation=Gtk.Orientation.VERTICAL, spacing=4) for _ in "12")
-        for part in (self.title, self.grid, self.tool_label, self.said):
-            middle.pack_start(part, False, False, 0)
-        for (name, action), box in self._actions(middle, right):
+        form, right = (Gtk.Box(orientation=Gtk.Orientation.VERTICAL, spacing=4) for _ in "12")
+        left = Gtk.Box(orientation=Gtk.Orientation.VERTICAL, spacing=4)
+        for part in (self.grid, self.tool_label):
+            form.pack_start(part, False, False, 0)
+        left.pack_start(self.cycles, False, False, 0)
+        left.pack_start(self._scrolled(form, width=FORM_WIDTH), True, True, 0)
+        left.pack_start(self.said, False, False, 0)
+        for (name, action), box in self._actions(left, right):
             button = Gtk.Button(label=name)
             button.connect("clicked", partial(self._try, action))
             box.pack_start(button, True, True, 0)
         right.pack_start(self.drawing, True, True, 0)
-        right.pack_start(self._scrolled(self.steps, height=90), False, True, 0)
-        self.pack_start(self._scrolled(self.cycles, width=THUMBNAIL + 24), False, False, 0)
-        self.pack_start(self._scrolled(middle, width=FORM_WIDTH), True, True, 0)
+        right.pack_start(self._scrolled(self.steps, height=60), False, True, 0)
+        self.pack_start(left, False, False, 0)
         self.pack_start(right, True, True, 0)
 
-    def _actions(self, middle: Gtk.Box, right: Gtk.Box):
+    def _offer_forms(self) -> None:
+        """Fill the choice of cycles: a picture and a name each."""
+        model, pictures, names = (
+            Gtk.ListStore(GdkPixbuf.Pixbuf, str),
+            Gtk.CellRendererPixbuf(),
+            Gtk.CellRendererText(wrap_width=110),
+        )
+        for form in self.page.forms:
+            picture = str(picture_of(form, self.page.unit))
+            small = GdkPixbuf.Pixbuf.new_from_file_at_size(picture, THUMBNAIL, THUMBNAIL)
+            model.append([small, form.title])
+        self.cycles.set_model(model)
+        for renderer, kind, column in ((pictures, "pixbuf", 0), (names, "text", 1)):
+            self.cycles.pack_start(renderer, False)
+            self.cycles.add_attribute(renderer, kind, column)
+        self.cycles.connect("changed", self._selected)
+
+    def _actions(self, left: Gtk.Box, right: Gtk.Box):
         """Yield each button's name, what it does, and the row that it stands in."""
         form, steps = Gtk.Box(), Gtk.Box()
-        middle.pack_end(form, False, False, 0)
+        left.pack_end(form, False, False, 0)
         right.pack_end(steps, False, False, 0)
         yield from (
             ((name, do), form) for name, do in (("Add", self._add), ("Replace", self._replace))
         )
-        named = (
-            ("▲", partial(self._move, -1)),
-            ("▼", partial(self._move, 1)),
-            ("Delete", self._delete),
-            ("Load", self._load),
-            ("Save", self._save),
-            ("Open", self._open),
-        )
-        yield from ((each, steps) for each in named)
-
-    @staticmethod
-    def _thumbnail(picture: Path, title: str) -> Gtk.Widget:
-        if not picture.is_file():
-            return Gtk.Label(label=title)
-        small = GdkPixbuf.Pixbuf.new_from_file_at_size(str(picture), THUMBNAIL, THUMBNAIL)
-        image = Gtk.Image.new_from_pixbuf(small)
-        image.set_tooltip_text(title)
-        return image
+        files = Gtk.Box()
+        right.pack_end(files, False, False, 0)
+        yield ("▲", partial(self._move, -1)), steps
+        yield ("▼", partial(self._move, 1)), steps
+        yield ("Delete", self._delete), steps
+        yield ("Load", self._load), files
+        yield ("Save", self._save), files
+        yield ("Open", self._open), files
 
     @staticmethod
     def _scrolled(child: Gtk.Widget, width: int = -1, height: int = -1) -> Gtk.ScrolledWindow:
         window = Gtk.ScrolledWindow()
         window.set_size_request(width, height)
+        window.set_policy(Gtk.PolicyType.NEVER, Gtk.PolicyType.AUTOMATIC)
         window.add(child)
         return window
 
     # The form.
 
-    def _selected(self, _list, row) -> None:
-        if row is not None:
-            self.page.select(self.page.forms[row.get_index()])
-            self._show_form()
+    def _selected(self, _choice) -> None:
+        self.page.select(self.page.forms[self.cycles.get_active()])
+        self._show_form()
 
     def _show_form(self) -> None:
         for child in self.grid.get_children():
             self.grid.remove(child)
-        self.title.set_markup(f"<b>{GLib.markup_escape_text(self.page.form.title)}</b>")
-        for place, entry in enumerate(self.page.form.entries):
-            row, column = place % FORM_ROWS, 2 * (place // FORM_ROWS)
+        for row, entry in enumerate(self.page.form.entries):
             label = Gtk.Label(label=label_of(entry, self.page.unit), xalign=0)
             self.widgets[entry.name] = self._widget(entry)
-            self.grid.attach(label, column, row, 1, 1)
-            self.grid.attach(self.widgets[entry.name], column + 1, row, 1, 1)
+            self.grid.attach(label, 0, row, 1, 1)
+            self.grid.attach(self.widgets[entry.name], 1, row, 1, 1)
         self.grid.show_all()
         self._show_sketch()
 
@@ -138,7 +143,8 @@ class CyclesView(Gtk.Box):
             box.set_active(choice_of(entry, text))
             box.connect("changed", partial(self._chosen, entry))
             return box
-        line = Gtk.Entry(text=text, width_chars=8, xalign=1)
+        line = Gtk.Entry(text=text, width_chars=7, max_width_chars=7, xalign=1)
+        line.set_size_request(60, -1)
         line.set_tooltip_text(hint_of(entry))
         line.connect("changed", lambda widget: self.page.type(entry.name, widget.get_text()))
         return line
@@ -257,4 +263,4 @@ def get_handlers(_halcomp, builder, _useropts) -> list:
     view = CyclesView(os.environ["INI_FILE_NAME"], open_in_linuxcnc)
     window.add(view)
     view.show_all()
-    return [view]
+    return []

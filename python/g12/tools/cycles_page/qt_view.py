@@ -15,8 +15,8 @@ from qtpy.QtWidgets import (
     QLabel,
     QLineEdit,
     QListWidget,
-    QListWidgetItem,
     QPushButton,
+    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -24,9 +24,11 @@ from qtpy.QtWidgets import (
 from g12.tools.cycles_page.page import Page, choice_of
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch, fitted
 from g12.tools.cycles_page.steps import number_text
-from g12.tools.cycles_page.view import COLOURS, FORM_ROWS, hint_of, label_of, picture_of, tool_text
+from g12.tools.cycles_page.view import COLOURS, hint_of, label_of, picture_of, tool_text
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
+
+THUMBNAIL = 120, 90  # pixels
 
 
 class Drawing(QWidget):
@@ -35,7 +37,7 @@ class Drawing(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.sketch = Sketch(READY, "")
-        self.setMinimumSize(300, 300)
+        self.setMinimumSize(200, 200)
 
     def paintEvent(self, _event) -> None:  # noqa: N802 - Qt's name
         painter = QPainter(self)
@@ -74,42 +76,32 @@ class CyclesView(QWidget):
         super().closeEvent(event)
 
     def _build(self) -> None:
-        self.cycles, self.grid = QListWidget(), QGridLayout()
+        self.cycles, self.grid, self.form = QComboBox(), QGridLayout(), QWidget()
         self.said, self.drawing, self.steps = QLabel(wordWrap=True), Drawing(), QListWidget()
-        self.tool_label = QLabel()
-        self.cycles.setIconSize(QSize(150, 112))
-        self.cycles.setFixedWidth(180)
+        self.tool_label = QLabel(wordWrap=True)
+        self.cycles.setIconSize(QSize(*THUMBNAIL))
         for form in self.page.forms:
-            item = QListWidgetItem(QIcon(str(picture_of(form, self.page.unit))), "")
-            item.setToolTip(form.title)
-            self.cycles.addItem(item)
-        self.cycles.currentRowChanged.connect(self._select)
+            self.cycles.addItem(QIcon(str(picture_of(form, self.page.unit))), form.title)
+        self.cycles.currentIndexChanged.connect(self._select)
         self.steps.currentRowChanged.connect(self._edit)
-        middle, right = QVBoxLayout(), QVBoxLayout()
-        self.title = QLabel()
-        for part in (self.title, self.tool_label, self.said):
-            middle.addWidget(part)
-        middle.insertLayout(1, self.grid)
-        middle.addStretch()
-        middle.addLayout(self._buttons((("Add", self._add), ("Replace", self._replace))))
+        self.form.setLayout(self.grid)
+        scrolled = QScrollArea(widgetResizable=True)
+        scrolled.setWidget(self.form)
+        left, right = QVBoxLayout(), QVBoxLayout()
+        left.addWidget(self.cycles)
+        left.addWidget(scrolled, 1)
+        left.addWidget(self.tool_label)
+        left.addWidget(self.said)
+        left.addLayout(self._buttons((("Add", self._add), ("Replace", self._replace))))
+        up, down = partial(self._move, -1), partial(self._move, 1)
         right.addWidget(self.drawing, 3)
         right.addWidget(self.steps, 1)
-        right.addLayout(
-            self._buttons(
-                (
-                    ("▲", partial(self._move, -1)),
-                    ("▼", partial(self._move, 1)),
-                    ("Delete", self._delete),
-                    ("Load", self._load),
-                    ("Save", self._save),
-                    ("Open", self._open),
-                )
-            )
-        )
+        right.addLayout(self._buttons((("▲", up), ("▼", down), ("Delete", self._delete))))
+        files = ("Load", self._load), ("Save", self._save), ("Open", self._open)
+        right.addLayout(self._buttons(files))
         box = QHBoxLayout(self)
-        box.addWidget(self.cycles)
-        box.addLayout(middle, 1)
-        box.addLayout(right, 1)
+        box.addLayout(left, 2)
+        box.addLayout(right, 3)
 
     def _buttons(self, named) -> QHBoxLayout:
         row = QHBoxLayout()
@@ -130,13 +122,11 @@ class CyclesView(QWidget):
     def _show_form(self) -> None:
         while self.grid.count():
             self.grid.takeAt(0).widget().deleteLater()
-        self.title.setText(self.page.form.title)
         self.widgets = {}
-        for place, entry in enumerate(self.page.form.entries):
-            row, column = place % FORM_ROWS, 2 * (place // FORM_ROWS)
-            self.grid.addWidget(QLabel(label_of(entry, self.page.unit)), row, column)
+        for row, entry in enumerate(self.page.form.entries):
+            self.grid.addWidget(QLabel(label_of(entry, self.page.unit)), row, 0)
             self.widgets[entry.name] = self._widget(entry)
-            self.grid.addWidget(self.widgets[entry.name], row, column + 1)
+            self.grid.addWidget(self.widgets[entry.name], row, 1)
         self._show_sketch()
 
     def _widget(self, entry: Entry) -> QWidget:

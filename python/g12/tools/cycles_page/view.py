@@ -8,7 +8,6 @@ from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
 from g12.tools.forms.table import ANGLE, FEED, LENGTH, SECONDS, SPEED, Entry, Form
 
 NGC = Path(__file__).resolve().parents[4] / "ngc"
-FORM_ROWS = 12  # entries above each other
 COLOURS = {
     READY: "#2b7a3d",
     MESSAGE: "#a86500",
