@@ -38,6 +38,9 @@ def words(*known: str) -> ValueRule:
     return ValueRule(" or ".join(known), lambda text: known[known.index(text.lower())])
 
 
+FLAG = ValueRule("0 or 1", lambda text: bool(("0", "1").index(text)))
+
+
 def number_rule(least: float | None = None, most: float = math.inf) -> ValueRule:
     """Return the rule of a finite number up to ``most``, from ``least`` on (None: above zero)."""
 
@@ -91,7 +94,7 @@ class Settings:
     # From 0.00001 on: that is below the resolution of any machine.
     polar_tolerance: float | None = setting(None, number_rule(least=0.00001))
     polar_pole: str = setting("rotate", words("rotate", "refuse"))
-    polar_kinematics: str = setting("0", words("0", "1"))
+    polar_kinematics: bool = setting(False, FLAG)
     polar_switch_time: float = setting(10.0, number_rule(most=3600.0))
     polar_tool_offset: float = setting(0.0, number_rule(least=-math.inf))
     cylinder_word: str = setting("radius", words("radius", "diameter"))
