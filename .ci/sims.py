@@ -252,7 +252,7 @@ def sections(machine: Machine, screen: str) -> Iterator[Section]:
 
 
 CYCLES = "../../python/g12/tools/cycles_page/gtk_view.py ../include/cycles.ui"
-CYCLES_TAB = ["EMBED_TAB_NAME = Cycles", f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} -u {CYCLES}"]
+CYCLES_COMMAND = f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} -u {CYCLES}"
 FACE_VIEW = "USER_COMMAND_FILE = ../include/axis_face.py"
 
 
@@ -268,7 +268,8 @@ def display(machine: Machine, screen: str) -> list[str]:
     if screen == "axis" and machine.slides[-1].letter == "C" and machine.face is None:
         lines += ["LATHE = 1", "# The key V shows the face too.", FACE_VIEW]
     if screen != "headless":
-        lines += CYCLES_TAB if screen == "axis" else ["EMBED_TAB_NAME = Cycles", *CYCLES_TAB[1:]]
+        place = ["EMBED_TAB_LOCATION = ntb_user_tabs"] if screen == "gmoccapy" else []
+        lines += ["EMBED_TAB_NAME = Cycles", *place, CYCLES_COMMAND]
         lines += [f"NGCGUI_SUBFILE = form_{form}_{machine.unit}.ngc" for form in machine.forms]
     return lines
 

@@ -28,6 +28,7 @@ XVFB_START = 60.0  # s for a screen to come up
 INCOMPLETE = "Namespace GtkSource not available"
 HARMLESS = (
     "Attribute error",  # gmoccapy, of each desktop setting that it cannot copy
+    "[GladeVCP.QTVCP.QT_ISTAT]",  # of each entry of [DISPLAY] that it does without
     "emc.ini: error: Cannot open",  # ngcgui in AXIS on 2.10, for the keys of its entries
 )
 

@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 import gi
 
 gi.require_version("Gtk", "3.0")
-from gi.repository import Gdk, GdkPixbuf, GLib, Gtk
+from gi.repository import Gdk, GdkPixbuf, GLib, Gtk, Pango
 
 from g12.tools.cycles_page.opening import open_in_linuxcnc
 from g12.tools.cycles_page.page import Page, choice_of
@@ -25,7 +25,8 @@ from g12.tools.cycles_page.view import COLOURS, hint_of, label_of, picture_of, t
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
-THUMBNAIL, FORM_WIDTH, DRAWING = 96, 220, (150, 150)  # pixels; the last two at least
+THUMBNAIL, FORM_WIDTH, DRAWING = 80, 200, (120, 150)  # pixels; the last two at least
+CHOICE_WIDTH = 7  # letters
 DASH = (4, 3)  # of a rapid
 
 
@@ -80,7 +81,7 @@ class CyclesView(Gtk.Box):
         model, pictures, names = (
             Gtk.ListStore(GdkPixbuf.Pixbuf, str),
             Gtk.CellRendererPixbuf(),
-            Gtk.CellRendererText(wrap_width=110),
+            Gtk.CellRendererText(wrap_width=90),
         )
         for form in self.page.forms:
             picture = str(picture_of(form, self.page.unit))
@@ -104,7 +105,7 @@ class CyclesView(Gtk.Box):
         right.pack_end(files, False, False, 0)
         yield ("▲", partial(self._move, -1)), steps
         yield ("▼", partial(self._move, 1)), steps
-        yield ("Delete", self._delete), steps
+        yield ("✕", self._delete), steps
         yield ("Load", self._load), files
         yield ("Save", self._save), files
         yield ("Open", self._open), files
@@ -140,11 +141,12 @@ class CyclesView(Gtk.Box):
             box = Gtk.ComboBoxText()
             for _, words in entry.choices:
                 box.append_text(words)
+            (shown,) = box.get_cells()
+            shown.set_properties(ellipsize=Pango.EllipsizeMode.END, width_chars=CHOICE_WIDTH)
             box.set_active(choice_of(entry, text))
             box.connect("changed", partial(self._chosen, entry))
             return box
         line = Gtk.Entry(text=text, width_chars=7, max_width_chars=7, xalign=1)
-        line.set_size_request(60, -1)
         line.set_tooltip_text(hint_of(entry))
         line.connect("changed", lambda widget: self.page.type(entry.name, widget.get_text()))
         return line

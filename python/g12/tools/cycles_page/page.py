@@ -14,6 +14,7 @@ from pathlib import Path
 
 from g12.lengths import is_inch
 from g12.machine_ini import remap_lines
+from g12.settings import INI_SECTION, LIVE_TOOL
 from g12.tools.cycles_page.machine import Tool, machine_state, tools_of
 from g12.tools.cycles_page.sketch import REFUSED, MachineState, Sketch, Sketcher
 from g12.tools.cycles_page.steps import (
@@ -35,7 +36,6 @@ HANDLERS = {  # of a REMAP line: the feature whose forms it makes possible
     "polar_shape": "polar-shapes",
 }
 KEPT = "g12/cycles-page.json"  # below XDG_STATE_HOME
-LIVE_TOOL = "LIVE_TOOL"  # of [G12]: the M codes that start and stop a lathe's driven tool
 
 
 class Page:
@@ -89,7 +89,7 @@ class Page:
         """Return the text that an entry begins with on this machine."""
         if entry.kind == TOOL:
             return number_text(self._default_tool())
-        live = (self.ini.get("G12", LIVE_TOOL) or "").upper().replace("M", " ").split()
+        live = (self.ini.get(INI_SECTION, LIVE_TOOL) or "").upper().replace("M", " ").split()
         if entry.name in ("on", "off") and len(live) == 2:
             return live[("on", "off").index(entry.name)]
         return number_text(entry.default(self.unit))
