@@ -1,17 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Open the Cycles page in Qt, add a step, write its picture: qt_page.py INI PICTURE."""
+"""Open the Cycles page as Probe Basic does, add a step, draw it: qt_page.py INI PICTURE."""
 
+import importlib.util
+import os
 import sys
 import time
+from pathlib import Path
 
 from qtpy.QtWidgets import QApplication, QLineEdit
 
-from g12.tools.cycles_page.qt_view import CyclesView
-
 ini, picture = sys.argv[1:]
+os.environ["INI_FILE_NAME"] = ini
+folder = f"{Path(ini).resolve().parents[1]}/include/probe_basic/"  # USER_TABS_PATH
+tab = os.listdir(folder)[0]
+file = os.path.join(os.path.dirname(folder), tab, tab + ".py")
+spec = importlib.util.spec_from_file_location("user_tab", file)
+module = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(module)
 app = QApplication([])
-opened = []
-view = CyclesView(ini, opened.append)
+view = module.UserTab()
+assert view.objectName() == "CYCLES"
 view.resize(1100, 640)
 view.show()
 
