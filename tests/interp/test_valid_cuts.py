@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Random valid programs of every cycle, shape and section, judged by the oracle of the planners.
 
-What the oracle sees is proved by tests/faults. Contours that sections report are those that
+Contours that sections report are those that
 LinuxCNC itself reads where C is the Y of a mill.
 """
 
