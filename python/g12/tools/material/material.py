@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import Point, Polygon, box
+from shapely.geometry import MultiLineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -70,8 +70,7 @@ class Sweep:
 
 class Material:
     def __init__(self, shape: BaseGeometry, top: float, period: float = 0.0) -> None:
-        self.shape, self.top = shape, -math.inf if shape.is_empty else top
-        self._period = period
+        self.shape, self.top, self._period = shape, top, period
         self._sweeps: list[Sweep] = []
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
@@ -105,9 +104,11 @@ class Material:
             for each in self.sweeps_of(moves)
         )
 
-    def is_met(self, moves: range) -> bool:
-        """Return whether a range of moves goes where material was at first."""
-        return any(self.shape.intersects(each.shape) for each in self.sweeps_of(moves))
+    def is_under(self, line: np.ndarray, radius: float) -> bool:
+        """Return whether a cutter along a line (n, 2) is over or in what was material at first."""
+        lines = MultiLineString([each.tolist() for each in self._unrolled(line, radius)])
+        away = self.shape.distance(lines) if not self.shape.is_empty else math.inf
+        return away < radius - ALLOWED
 
     def standing(
         self, region: BaseGeometry, level: float, before: float = math.inf
@@ -167,7 +168,7 @@ class Material:
 
     def surrounds(self, region: BaseGeometry, level: float) -> bool:
         """Return whether a portion of a region was material above a level, or in a hole of it."""
-        if level + SAME_LEVEL > self.top:
+        if self.shape.is_empty or level + SAME_LEVEL > self.top:
             return False
         return any(self._without_holes.intersects(each) for each, _ in self._turned(region))
 

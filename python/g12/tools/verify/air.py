@@ -37,9 +37,11 @@ def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
-    top, lowest = solids.top(cut.surface), lowest_of(cut, solids)
+    top = solids.top(cut.surface)
+    lowest = min((each.level for each in solids.made_by(cut)), default=math.inf)
     place = solids.program.tip(cut.at, cut.surface)[0]
     if lowest > top - LEVEL:
+        lowest = lowest_of(cut, solids)
         values = {"above": lowest - top, "hint": MINUS if lowest > top + LEVEL else ""}
         yield Finding(AIR, cut.line, values, place, cut.file)
     elif not solids.removes(cut):
@@ -80,4 +82,3 @@ def _lies_outside(cut: Cut, solids: Solids) -> bool:
     if not pocket or not solids.stock.is_whole:
         return False
     return bool(cut.goes.difference(solids.unbored).area > LEAST_GONE)
-

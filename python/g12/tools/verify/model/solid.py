@@ -149,8 +149,11 @@ class Solids:
         return self._materials[cut.surface].removes(cut.moves)
 
     def is_met(self, cut: Cut) -> bool:
-        """Return whether a cut is where the stock was."""
-        return self._materials[cut.surface].is_met(cut.moves)
+        """Return whether a cut is over the stock or in it."""
+        material, tip = self._materials[cut.surface], self.program.tip
+        fed = (i for i in cut.moves if self.program.moves[i].kind != "rapid")
+        lines = (tip(i, cut.surface)[:, :2] for i in fed)
+        return any(material.is_under(line, self.program.cutter(cut.at)) for line in lines)
 
     def surrounds(self, tip: np.ndarray, index: int, side: float) -> bool:
         """Return whether a tool's tip is below the top, inside of what the stock was."""
