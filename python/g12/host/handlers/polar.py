@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from g12.errors import BlockRefusal, Refusal
+from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.handlers import aborts
@@ -58,7 +58,7 @@ def polar_off(self, **words) -> Iterator[int]:
     """
     block = self.blocks[self.remap_level]
     if words_in(block, MOVE_WORDS):
-        raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
+        raise Refusal("must be alone in its block", messages.code_of_block(self))
     if block.p_flag:
         aborts.restore_all(self, round(block.p_number))
         aborts.after_abort_on_face(self)
@@ -80,7 +80,7 @@ def _leave_face(interp: Interp) -> Iterator[int]:
         yield from frame.execute_and_wait(block)
     frame.leave(line)
     if not kinematics_switch.has_switched(interp):
-        raise BlockRefusal(code, kinematics_switch.not_switched())
+        raise Refusal(kinematics_switch.not_switched(), code)
 
 
 def _codes(code: str) -> SectionCodes:
