@@ -16,7 +16,7 @@ from interpreter import INTERP_ERROR, INTERP_OK
 
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.host import borrowed
-from g12.host.interp import Interp, state_of
+from g12.host.interp import Interp, kept
 from g12.host.program_lines import line_at, running_file
 
 NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
@@ -145,9 +145,13 @@ def message(text: str) -> None:
     emccanon.MESSAGE(text)
 
 
+class ShownOnce(set[object]):
+    """The messages that were shown, by program and key."""
+
+
 def message_once(interp: Interp, key: object, text: str) -> None:
     """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
-    shown, once = state_of(interp).shown, (main_program(interp), key)
+    shown, once = kept(interp, ShownOnce), (main_program(interp), key)
     if once not in shown:
         shown.add(once)
         message(text)

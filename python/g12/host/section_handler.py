@@ -23,7 +23,6 @@ from g12.host.interp import (
     ParsedBlock,
     millimetres_per_unit,
     position_of,
-    state_of,
     words_in,
 )
 from g12.host.kinematics_switch import face_in_force
@@ -167,12 +166,10 @@ def refuse_typed(interp: Interp) -> None:
 def following_lines(interp: Interp) -> ProgramLines:
     """Return the lines after the block; refuse a program whose file is missing."""
     try:
-        program = ProgramLines(interp, state_of(interp).source)
+        return ProgramLines(interp)
     except OSError as problem:
         rule = f"the program's file cannot be read while it runs: {problem.strerror}"
         raise Refusal(rule, messages.code_of_block(interp)) from None
-    state_of(interp).source = program.home
-    return program
 
 
 def run_section(
