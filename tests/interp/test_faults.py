@@ -6,14 +6,17 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support.sim_machines import SIM
 
-TOPLEVEL = """\
+RAISING = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12.host.handlers import cycles
-from g12.polar import polar_section
 def broken(*_, **__):
     raise KeyError("wire")
+"""
+TOPLEVEL = f"""\
+{RAISING}
+from g12.host.handlers import cycles
+from g12.polar import polar_section
 cycles.plan_pocket = polar_section.plan = broken
 """
 BROKEN = """\
@@ -71,14 +74,13 @@ SectionOutput._move_on_face = borrowed.restore = broken
 
 
 def test_an_end_that_fails_names_the_fault_and_gives_back_once(tmp_path):
-    with tracer_of(tmp_path, "lathe_mm", TOPLEVEL.partition("cycles.plan")[0] + END_FAILS) as tracer:
+    with tracer_of(tmp_path, "lathe_mm", RAISING + END_FAILS) as tracer:
         error = tracer.trace_text(SECTION).error
     assert error.text.endswith("KeyError: 'wire'")
 
 
 def test_the_face_is_left_even_if_the_modes_cannot_be_restored(tmp_path):
-    toplevel = TOPLEVEL.partition("cycles.plan")[0] + RESTORING_FAILS
-    with tracer_of(tmp_path, "lathe_mm_kinematics", toplevel) as tracer:
+    with tracer_of(tmp_path, "lathe_mm_kinematics", RAISING + RESTORING_FAILS) as tracer:
         trace = tracer.trace_text(SECTION)
     assert "off the face" in [text for _, text in trace.messages]
 

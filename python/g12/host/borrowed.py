@@ -23,8 +23,8 @@ from g12.host.interp import (
     PER_REVOLUTION,
     PLANE_CODES,
     Interp,
-    millimetres_per_unit,
     kept,
+    millimetres_per_unit,
 )
 from g12.host.program_lines import without_line
 from g12.section.block_rules import NO_CODE, GGroup

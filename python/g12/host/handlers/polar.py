@@ -12,7 +12,7 @@ from g12.host.call_frame import CallFrame
 from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, words_in
 from g12.host.machine import MACHINE
-from g12.host.program_lines import ProgramLines, read_source
+from g12.host.program_lines import ProgramLines
 from g12.host.section_handler import (
     check_ini,
     is_typed,
@@ -72,9 +72,9 @@ def polar_off(self, **words) -> Iterator[int]:
 
 def _leave_face(interp: Interp) -> Iterator[int]:
     code, mdi = messages.code_of_block(interp), messages.in_mdi(interp)
-    home = read_source(interp.filename) if not mdi else None
-    frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
-    line = ProgramLines(interp, home).line if home else MDI_LINE
+    program = None if mdi else ProgramLines(interp)
+    frame = CallFrame(interp, program.home.filename if program else messages.NO_FILE)
+    line = program.line if program else MDI_LINE
     frame.enter()
     for block in kinematics_switch.to_axes(interp, ()):
         yield from frame.execute_and_wait(block)
