@@ -39,7 +39,7 @@ def test_cuts_as_their_words_ask(kind, tmp_path, request):
 @pytest.mark.parametrize("kind", MACHINES)
 def test_programs_as_they_run(kind, tmp_path, capsys):
     """With feeds ten times as high, so that it does not take an hour."""
-    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 2)
+    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 1)
     program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
     ini = copy_of_machines(tmp_path) / "machine.ini"
     ini.write_text(

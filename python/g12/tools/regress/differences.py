@@ -168,8 +168,9 @@ def _stretches(old: Sequence[Hashable], new: Sequence[Hashable]) -> Iterator[tup
 
 
 def changes(was: RecordedStep, now: RecordedStep, tolerance: Tolerance) -> list[Change]:
-    if isinstance(was, Note) or isinstance(now, Note):
+    if isinstance(was, Note) and isinstance(now, Note):
         return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
+    assert isinstance(was, Move) and isinstance(now, Move)
     found = [
         Change(axis, b - a, a, b)
         for axis, a, b, most in zip(AXIS_LETTERS, was.end, now.end, tolerance.ends)
