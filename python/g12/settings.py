@@ -38,6 +38,9 @@ def words(*known: str) -> ValueRule:
     return ValueRule(" or ".join(known), lambda text: known[known.index(text.lower())])
 
 
+FLAG = ValueRule("0 or 1", lambda text: bool(("0", "1").index(text)))
+
+
 def number_rule(least: float | None = None, most: float = math.inf) -> ValueRule:
     """Return the rule of a finite number up to ``most``, from ``least`` on (None: above zero)."""
 
@@ -91,7 +94,7 @@ class Settings:
     # From 0.00001 on: that is below the resolution of any machine.
     polar_tolerance: float | None = setting(None, number_rule(least=0.00001))
     polar_pole: str = setting("rotate", words("rotate", "refuse"))
-    polar_kinematics: str = setting("0", words("0", "1"))
+    polar_kinematics: bool = setting(False, FLAG)
     polar_switch_time: float = setting(10.0, number_rule(most=3600.0))
     polar_tool_offset: float = setting(0.0, number_rule(least=-math.inf))
     cylinder_word: str = setting("radius", words("radius", "diameter"))
@@ -119,10 +122,12 @@ class Settings:
         return ""
 
 
-LIVE_SPINDLE = "LIVE_SPINDLE"  # a key that only `translate` and `check` read
+# Keys that only the tools read.
+LIVE_SPINDLE, LIVE_TOOL = "LIVE_SPINDLE", "LIVE_TOOL"
+OF_TOOLS = {LIVE_SPINDLE: words(*"01234567"), LIVE_TOOL: m_codes("M33 M35")}
 TABLE: dict[str, ValueRule] = {
     each.name.upper(): each.metadata["rule"] for each in fields(Settings)
-} | {LIVE_SPINDLE: words(*"01234567")}
+} | OF_TOOLS
 
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
@@ -141,8 +146,8 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
         except ValueError:
             rule = f"must be {TABLE[key].legal}"
             raise Refusal(f"[{INI_SECTION}] {key} = {text:.40}: {rule}") from None
-    values.pop(LIVE_SPINDLE.lower(), None)
-    settings = Settings(**values)
+    read = {key: value for key, value in values.items() if key.upper() not in OF_TOOLS}
+    settings = Settings(**read)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
     if settings.c_clamp_shapes and not settings.c_clamp:

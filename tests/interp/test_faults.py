@@ -11,10 +11,10 @@ import sys
 sys.path.insert(0, "{python}")
 import remap
 from g12.host.handlers import cycles
-from g12.polar import plan
+from g12.polar import polar_section
 def broken(*_, **__):
     raise KeyError("wire")
-cycles.plan_pocket = plan.plan = broken
+cycles.plan_pocket = polar_section.plan = broken
 """
 BROKEN = """\
 import sys
@@ -30,7 +30,7 @@ PROGRAMS = {  # of the half whose codes they use
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
     ),
 }
-SHORT = "from g12.host.section import run\nrun.MOST_SECTION_LINES = 99\n"
+SHORT = "from g12.host import section_run\nsection_run.MOST_SECTION_LINES = 99\n"
 
 
 def tracer_of(folder, machine, toplevel, **values):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from g12.request.context import Tool
-from g12.shapes import polygon, round_pocket, slot
+from g12.shapes import pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM
@@ -22,8 +22,8 @@ LEFT = -9999
 CUTTER = {1: 6.0, 2: 5.0, 3: 3.0}
 PLANNERS = {
     "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
-    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
-    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
+    "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
+    "polar_pocket": (pockets.ROUND_POCKET_ENTRIES, pockets.plan_round_pocket),
 }
 MACHINE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 EXAMPLES = {

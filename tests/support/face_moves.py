@@ -7,7 +7,7 @@ from math import pi, radians
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import FaceLimits
+from g12.polar.face import FaceLimits
 from support import planned_moves
 from support.contour_geometry import shape_of
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from g12.compensation.contour import Contour
 from g12.geometry.curve import Line
-from g12.moves.steps import BlockMoves
+from g12.moves.steps import Segments
 
 SAGITTA = 2e-4  # of the chords that stand for a segment
 
@@ -22,7 +22,7 @@ def programmed(shapes, *, feed=250.0, by_radius=False):
     That is on the positive X axis, or beside it.
     """
     start = shapes[0].start
-    contour = Contour(start.real, 0.0, beside=start.imag)
+    contour = Contour(start.real, 0.0, 0.0, beside=start.imag)
     for line, shape in enumerate(shapes, 1):
         add(contour, shape, line=line, feed=feed, by_radius=by_radius)
     return contour
@@ -32,14 +32,14 @@ def add(contour, shape, *, line, feed, by_radius=False):
     """Add a shape that begins where the contour stands."""
     end = shape.end
     if isinstance(shape, Line):
-        contour.line(end.real, end.imag, line=line, feed=feed)
+        contour.straight(end.real, end.imag, at=line, feed=feed)
         return
     arm = shape.centre - shape.start
     words = dict(i=arm.real, j=arm.imag)
     if by_radius:
         words = dict(radius=math.copysign(shape.radius, math.pi - abs(shape.sweep)))
     turn = 1 if shape.sweep > 0.0 else -1
-    contour.arc(turn, end.real, end.imag, line=line, feed=feed, **words)
+    contour.arc(turn, end.real, end.imag, at=line, feed=feed, **words)
 
 
 class Cut(NamedTuple):
@@ -90,7 +90,7 @@ def cuts(contour, plan, c=0.0, beside=0.0):
     """Return the segments of a plan whose plane has its zero angle at ``c`` degrees."""
     x, angle, z = contour.start
     degrees, made = c + math.degrees(angle), []
-    for count, run in enumerate(step for step in plan.steps if isinstance(step, BlockMoves)):
+    for count, run in enumerate(step for step in plan.steps if isinstance(step, Segments)):
         for to_x, to_c, to_z, feed in run.segments:
             assert "X" in run.axes or (to_x == x and to_c == degrees)
             assert "Z" in run.axes or to_z == z

@@ -38,14 +38,14 @@ def contour_of(drawn, depth=-1.0):
     first, last = drawn.shapes[0], drawn.shapes[-1]
     start = first.start + away(drawn) * first.direction(0.0)
     end = last.end + away(drawn) * last.direction(1.0)
-    contour = Contour(abs(start), depth)
-    contour.line(start.real, start.imag, line=1, feed=300.0)
-    contour.compensation(drawn.side, drawn.radius, line=2)
-    contour.line(first.start.real, first.start.imag, line=2, feed=300.0)
+    contour = Contour(abs(start), 0.0, depth)
+    contour.straight(start.real, start.imag, at=1, feed=300.0)
+    contour.compensate(drawn.side, drawn.radius, at=2)
+    contour.straight(first.start.real, first.start.imag, at=2, feed=300.0)
     for line, shape in enumerate(drawn.shapes, 3):
         add(contour, shape, line=line, feed=300.0)
-    contour.compensation(40, 0.0, line=9000)
-    contour.line(end.real, end.imag, line=9000, feed=300.0)
+    contour.compensate(40, 0.0, at=9000)
+    contour.straight(end.real, end.imag, at=9000, feed=300.0)
     return contour
 
 

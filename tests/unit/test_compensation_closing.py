@@ -6,17 +6,14 @@ import math
 
 import pytest
 
-from g12.compensation.closing import Closing, closing_of
 from g12.compensation.compensated import (
-    CompensatedContour,
     PathOfMove,
+    closing_of,
     compensated_contours,
-    in_plane,
 )
 from g12.compensation.contour import Contour
-from g12.geometry.curve import Line
 from support.contour_geometry import Round, Straight, lines
-from support.planned_moves import arc, line
+from support.planned_moves import line
 from support.random_contours import closed
 
 NEAR = 0.02
@@ -77,41 +74,11 @@ def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius,
     assert closing([first, second, third, last], radius).closed is closes
 
 
-@pytest.mark.parametrize(("gap", "closes"), [(0.019, True), (0.021, False)])
-def test_places_near_to_each_other_close_a_contour(gap, closes):
-    around = Round(10 + 0j, 0j, -2 * math.pi + gap / 10)
-    assert closing([around]).closed is closes
-    sides = closed(SQUARE)
-    short = [*sides[:-1], Straight(sides[-1].start, sides[-1].end - gap)]
-    assert closing(short).closed is closes
-
-
 def test_of_a_contour_that_does_not_close_all_is_contour():
     zigzag = lines((0, 0), (20, 0), (20, 20), (45, 20))
     found = closing(zigzag)
     assert found == (0, 0.0, 2, 25.0, False, False)
     assert [found.shares(k, zigzag[0]) for k in (-1, 3)] == [(0.0, 0.0)] * 2
-
-
-def test_a_contour_that_ends_where_it_began_closes_though_it_crosses_itself_beside_its_end():
-    """What is beyond that is shorter than four radii of the tool."""
-    sides = lines((0, 0), (0, 50), (3, 50))
-    sides += [Round(3 + 50j, 26.5 + 23.5j, cmath.phase((-26.5 - 23.5j) / (-23.5 + 26.5j)))]
-    for radius, start in ((1.0, 47j), (6.0, 0j)):
-        assert ends_of(sides, radius) == (True, start, start)
-
-
-def test_what_lies_beyond_the_closing_is_no_contour():
-    first, *others, last = closed(SQUARE)
-    sides = [Straight(first.start + 5j, first.end), *others, Straight(last.start, last.end + 15)]
-    found = closing(sides)
-    assert found[:4] == (0, pytest.approx(5.0), 3, pytest.approx(20.0))
-    parts = [found.shares(k, curve) for k, curve in enumerate(sides)]
-    assert parts == [
-        (pytest.approx(0.2), 1.0), (0.0, 1.0), (0.0, 1.0), (0.0, pytest.approx(20 / 35)),
-    ]  # fmt: skip
-    line = Line(0j, 2 + 0j)  # what is only rounding of a move is no part of a contour
-    assert Closing(0, 2.0 - 1e-12, 4, 1.0, True, False).shares(0, line) == (0.0, 0.0)
 
 
 def crossing(shapes):
@@ -136,15 +103,6 @@ def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
     for _ in range(off):
         sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
     assert crossing(sides) is closes
-
-
-@pytest.mark.parametrize(("share", "closes"), [(0.48, False), (0.55, True)])
-def test_two_moves_meet_in_the_second_half_of_the_last(share, closes):
-    """An arc that goes through the line before it, so far after their joint."""
-    centre = 5 + 15j / math.tan(0.45 * math.pi)
-    bow = [Straight(-20 + 0j, 20 + 0j), Round(20 + 0j, centre, -0.9 * math.pi / share)]
-    assert closing(bow).closed is closes
-    assert not closes or ends_of(bow) == (True, -10 + 0j, -10 + 0j)
 
 
 @pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
@@ -174,30 +132,6 @@ def test_a_contour_is_what_lies_between_two_ramps(under_compensation, expected):
     cuts = [PathOfMove(move, (move,), sign == "+") for move, sign in zip(made, under_compensation)]
     found = [
         (tuple(move.line for move in each.moves), {ramp.move.line for ramp in each.ramps})
-        for each in compensated_contours(Contour(50.0, 0.0), cuts, NEAR)
+        for each in compensated_contours(Contour(50.0, 0.0, 0.0), cuts, NEAR)
     ]
     assert found == expected
-
-
-def test_moves_are_one_in_the_plane_if_ends_centre_and_sweep_are_the_same():
-    moves = [line(0.0, 0.0, 1.0, 0.0), line(0.0, 0.0, 0.0, 1.0), line(0.0, 0.0, 1.0, 1e-5)]
-    moves += [line(1.0, 0.0, 0.0, 0.0), line(0.0, 1e-5, 1.0, 0.0)]
-    moves += [arc(centre, 0j, 2 * math.pi) for centre in (2 + 0j, -2 + 0j, 2j)]
-    moves += [arc(2 + 0j, 0j, -2 * math.pi)]
-    assert len(set(map(in_plane, moves))) == len(moves)
-    for move in moves:
-        near = move.curve._replace(start=move.start + 1e-9)
-        again = move._replace(line=7, feed=1.0, offset=-2.0, z0=3.0, z1=5.0, curve=near)
-        assert in_plane(again) == in_plane(move)
-
-
-def test_beyond_the_ends_of_an_open_contour_nobody_knows():
-    """Before, after and beside an angle, and on its own lines."""
-    moves = line(0, 10, 0, 0, offset=3.0), line(0, 0, 20, 0, offset=3.0)
-    cuts = [PathOfMove(move, (), True) for move in moves]
-    angle = CompensatedContour(Contour(50.0, 0.0), cuts, [], NEAR)
-    beyond = [11j, 3 + 11j, -3 + 11j, 21 + 0j, 21 + 3j, 21 - 3j]
-    assert [angle.clearance(point)[1] for point in beyond] == [True] * 6
-    heights = {3 + 9j: 3.0, -3 + 9j: -3.0, 3 + 2j: 2.0, -3 - 4j: -5.0, 19 + 1j: 1.0, 19 - 1j: -1.0}
-    for point, clearance in heights.items():
-        assert angle.clearance(point) == (pytest.approx(clearance), False)

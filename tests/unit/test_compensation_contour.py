@@ -11,37 +11,25 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
 from g12.errors import LONGEST_MESSAGE, Refusal
+from g12.section.modes import Action
 from support import planned_moves
 
 
 def started(**options):
-    return Contour(10.0, 5.0, **options)
+    return Contour(10.0, 0.0, 5.0, **options)
 
 
 def test_a_coordinate_left_out_stays():
     contour = started()
-    contour.line(c=3.0, line=1, feed=100.0)
-    contour.line(x=-4.0, line=2, feed=50.0)
-    contour.line(z=1.0, line=3, feed=25.0)
+    contour.straight(second=3.0, at=1, feed=100.0)
+    contour.straight(first=-4.0, at=2, feed=50.0)
+    contour.straight(height=1.0, at=3, feed=25.0)
     assert contour.elements == [
         planned_moves.line(10.0, 0.0, 10.0, 3.0, 5.0, 5.0),
         planned_moves.line(10.0, 3.0, -4.0, 3.0, 5.0, 5.0, number=2, feed=50.0),
         Plunge(3, 25.0, 5.0, 1.0),
     ]
-    assert (contour.x, contour.c, contour.z) == (-4.0, 3.0, 1.0)
-
-
-def test_a_move_to_nowhere_is_none():
-    contour = started()
-    contour.line(10.0, 0.0, 5.0, line=1, feed=100.0)
-    assert contour.elements == []
-
-
-def arc_of(turn, *end, **words):
-    contour = started()
-    contour.arc(turn, *end, line=1, feed=100.0, **words)
-    (arc,) = contour.elements
-    return arc.curve
+    assert (contour.first, contour.second, contour.height) == (-4.0, 3.0, 1.0)
 
 
 coordinate = st.floats(-30.0, 30.0)
@@ -55,53 +43,29 @@ def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn
     end = centre - arm * cmath.exp(1j * turn * angle)
     by_centre = dict(i=arm.real, j=arm.imag)
     for words in (by_centre, dict(radius=math.copysign(radius, math.pi - angle))):
-        contour = Contour(start.real, 5.0, start.imag)
-        contour.arc(turn, end.real, end.imag, -2.0, line=1, feed=100.0, **words)
+        contour = Contour(start.real, start.imag, 5.0)
+        contour.arc(turn, end.real, end.imag, -2.0, at=1, feed=100.0, **words)
         (arc,) = contour.elements
-        assert (arc.start, arc.z0, arc.z1) == (start, 5.0, -2.0)
+        assert (arc.start, arc.h0, arc.h1) == (start, 5.0, -2.0)
         assert arc.end == pytest.approx(end, abs=1e-9)
         assert arc.curve.centre == pytest.approx(centre, abs=1e-9)
         assert arc.curve.sweep == pytest.approx(turn * angle, abs=1e-9)
 
 
-@pytest.mark.parametrize("words", [dict(i=-3.0), dict(j=4.0), dict(i=-3.0, j=4.0)])
-@pytest.mark.parametrize("turn", [1, -1])
-@pytest.mark.parametrize("end", [(), (10.0, 0.0), (10.0, 1e-12)])
-def test_no_end_or_the_start_as_end_is_a_full_circle(turn, end, words):
-    arc = arc_of(turn, *end, **words)
-    assert arc.sweep == turn * 2 * math.pi
-    assert arc.centre == complex(10.0 + words.get("i", 0.0), words.get("j", 0.0))
-
-
-def test_a_rounded_centre_is_moved_to_be_as_far_from_both_ends():
-    arc = arc_of(1, 0.0, 10.0, i=-10.0, j=0.004)
-    assert abs(10.0 - arc.centre) == pytest.approx(abs(10j - arc.centre))
-    assert abs(arc.centre) < 0.004
-
-
-@pytest.mark.parametrize("side", [40, 41])
-def test_compensation_that_is_in_force_already_changes_nothing(side):
-    contour = started()
-    contour.compensation(41, 2.0, line=1)
-    contour.line(c=5.0, line=1, feed=100.0)
-    if side == 40:
-        contour.compensation(40, 0.0, line=2)
-        contour.line(c=9.0, line=2, feed=100.0)
-    contour.compensation(side, 2.0, line=3)
-    contour.arc(1, i=-1.0, line=3, feed=100.0)
-    assert contour.side == side
-
-
 def block(contour, text, line):
     """Give a contour a block, as "arc turn=1 x=3 radius=4"; its feed is 100 if it says none."""
     name, *words = text.split()
-    values = {key: json.loads(value) for key, value in (word.split("=") for word in words)}
-    if name in ("line", "arc"):
+    pairs = (word.split("=") for word in words)
+    values = {ROLES.get(key, key): json.loads(value) for key, value in pairs}
+    if name in ("straight", "arc"):
         values.setdefault("feed", 100.0)
-    getattr(contour, name)(**values, line=line)
+    if name == "mark":
+        contour.mark(Action(line, "M8", None))
+    else:
+        getattr(contour, name)(**values, at=line)
 
 
-def refused(*blocks, start=(10.0, 5.0), **options):
+def refused(*blocks, start=(10.0, 0.0, 5.0), **options):
     """Return the sentence with which the last of the blocks from line 1 on is refused."""
     contour = Contour(*start, **options)
     for line, text in enumerate(blocks[:-1], 1):
@@ -112,8 +76,9 @@ def refused(*blocks, start=(10.0, 5.0), **options):
     return refusal.value.message
 
 
-ON = "compensation side=41 radius=2"
-RAMP = "line c=5"
+ROLES = {"x": "first", "c": "second", "z": "height"}
+ON = "compensate side=41 radius=2"
+RAMP = "straight c=5"
 OWN_BLOCK = "G41 needs a G1 with X or C in its own block"
 DIAMETER = "it would close with X read as a diameter (POLAR_X = diameter)"
 
@@ -121,7 +86,7 @@ DIAMETER = "it would close with X read as a diameter (POLAR_X = diameter)"
 @pytest.mark.parametrize(
     ("blocks", "message"),
     [
-        (["line x=3 feed=0"], "F0 must be above zero (no feed commanded?)"),
+        (["straight x=3 feed=0"], "F0 must be above zero (no feed commanded?)"),
         (["arc turn=1 x=3 i=-1 feed=-1"], "F-1 must be above zero (no feed commanded?)"),
         (["arc turn=1 x=3 i=-1 radius=4"], "G3: either R or I and J, not both"),
         (["arc turn=-1 x=3 i=0 j=0"], "G2 needs R, or the centre in I and J"),
@@ -138,13 +103,13 @@ DIAMETER = "it would close with X read as a diameter (POLAR_X = diameter)"
             ["arc turn=-1 x=0 c=5 i=-5"],
             "G2 does not close: its centre is 5 from the start, 7.071068 from the end; " + DIAMETER,
         ),
-        ([ON, "mark action=8"], OWN_BLOCK),
+        ([ON, "mark"], OWN_BLOCK),
         ([ON, "close"], OWN_BLOCK),
         ([ON, RAMP], OWN_BLOCK),
-        ([ON, "compensation side=40 radius=0"], OWN_BLOCK),
+        ([ON, "compensate side=40 radius=0"], OWN_BLOCK),
         ([ON, "arc turn=1 x=3 radius=9"], "G41 with G3: compensation is switched by a G1 only"),
         *(
-            ([f"line {word}=-2e6"], f"{word.upper()}-2000000 is no length: at most 1000000")
+            ([f"straight {word}=-2e6"], f"{word.upper()}-2000000 is no length: at most 1000000")
             for word in "xcz"
         ),
         *(
@@ -171,41 +136,41 @@ def test_refused_blocks(blocks, message):
 )
 def test_a_ramp_is_at_least_as_long_as_the_tool_radius(length, side, message):
     contour = started()
-    contour.compensation(side, 2.0, line=7)
+    contour.compensate(side, 2.0, at=7)
     with pytest.raises(Refusal) as refusal:
-        contour.line(c=length, z=-1.0, line=7, feed=100.0)
+        contour.straight(second=length, height=-1.0, at=7, feed=100.0)
     assert refusal.value.message == f"G12.1 line 7: {message}"
 
 
 def under_compensation(code="G12.1"):
     contour = started(code=code)
-    contour.compensation(41, 2.0, line=1)
-    contour.line(c=5.0, line=1, feed=100.0)
+    contour.compensate(41, 2.0, at=1)
+    contour.straight(second=5.0, at=1, feed=100.0)
     return contour
 
 
 def test_what_compensation_in_force_refuses():
     contour = under_compensation()
     with pytest.raises(Refusal, match=r"^G12\.1 line 2: G42: cancel G41 of line 1 with G40 first$"):
-        contour.compensation(42, 2.0, line=2)
+        contour.compensate(42, 2.0, at=2)
     contour = under_compensation()
-    contour.compensation(40, 0.0, line=3)
+    contour.compensate(40, 0.0, at=3)
     with pytest.raises(Refusal, match=r"^G12\.1 line 3: the G1 with G40 is 1 long: .* radius 2$"):
-        contour.line(c=6.0, line=3, feed=100.0)
+        contour.straight(second=6.0, at=3, feed=100.0)
     contour = under_compensation("G12.3")
     with pytest.raises(
         Refusal, match=r"^G12\.3 line 9: G41 of line 1 is still on: G40 is missing$"
     ):
-        contour.close(line=9)
+        contour.close(at=9)
 
 
 def test_no_block_may_wait_for_the_machine_under_compensation():
-    contour = Contour(10.0, 0.0)
-    contour.wait(line=1)
-    contour.compensation(42, 2.0, line=2)
-    contour.line(10.0, 5.0, line=2, feed=100.0)
+    contour = Contour(10.0, 0.0, 0.0)
+    contour.wait(at=1)
+    contour.compensate(42, 2.0, at=2)
+    contour.straight(10.0, 5.0, at=2, feed=100.0)
     with pytest.raises(Refusal, match=r"^G12\.1 line 3: M66 waits .* G42 of line 2 is on$"):
-        contour.wait(line=3)
+        contour.wait(at=3)
 
 
 # X words that may be radii or diameters.
@@ -228,7 +193,7 @@ def test_no_block_may_wait_for_the_machine_under_compensation():
     ],
 )
 def test_the_reading_of_x_that_closes_the_arc_is_named(blocks, start, diameter, reading):
-    message = refused(*blocks, start=(start, 0.0), diameter=diameter)
+    message = refused(*blocks, start=(start, 0.0, 0.0), diameter=diameter)
     named = f"it would close with X read as a {reading} (POLAR_X = {reading})"
     assert message.endswith(named) if reading else "it would close" not in message
 
@@ -250,30 +215,14 @@ ROUNDED = dict(radius_tolerance=0.0127)
 )
 def test_the_end_of_an_arc_may_be_off_its_circle(radius, options, off, word, share, closes):
     """The radius of a half circle may be too small."""
-    contour, off = Contour(radius, 0.0, **options), share * off
+    contour, off = Contour(radius, 0.0, 0.0, **options), share * off
     end, value = ((0.0, radius + off), -radius) if word == "i" else ((-radius, 0.0), radius - off)
     try:
-        contour.arc(1, *end, **{word: value}, line=1, feed=100.0)
+        contour.arc(1, *end, **{word: value}, at=1, feed=100.0)
     except Refusal as refusal:
         assert not closes and "does not close" in refusal.message
     else:
         assert closes
-
-
-@pytest.mark.parametrize(("rounding", "taken"), [(0.9e-6, True), (1.1e-6, False)])
-def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
-    """Ends so near to each other are one place."""
-    contour = started()
-    contour.compensation(41, 2.0, line=1)
-    arc = dict(x=10.0 - rounding, c=0.0, radius=4.0, line=1, feed=100.0)
-    if taken:
-        contour.line(c=2.0 - rounding, line=1, feed=100.0)
-        with pytest.raises(Refusal, match="a full circle needs I and J"):
-            started().arc(1, **arc)
-        return
-    with pytest.raises(Refusal, match="must be at least the tool radius"):
-        contour.line(c=2.0 - rounding, line=1, feed=100.0)
-    started().arc(1, **arc)
 
 
 # A tool that stands beside the programmed place until a G1 takes it there.
@@ -281,10 +230,10 @@ def test_rounding_counts_neither_for_ramps_nor_for_ends(rounding, taken):
 
 @pytest.mark.parametrize("beside", [3.0, -3.0])
 def test_an_arc_cannot_be_the_first(beside):
-    contour = Contour(20.0, 0.0, beside=beside)
-    contour.line(z=-1.0, line=6, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0, beside=beside)
+    contour.straight(height=-1.0, at=6, feed=100.0)
     with pytest.raises(Refusal) as refused:
-        contour.arc(1, 0.0, 20.0, radius=20.0, line=7, feed=100.0)
+        contour.arc(1, 0.0, 20.0, radius=20.0, at=7, feed=100.0)
     assert refused.value.message == (
         "G12.1 line 7: G3 needs a G1 with X or C before it: the tool is 3 beside X's line "
         "(POLAR_TOOL_OFFSET)"
@@ -292,9 +241,9 @@ def test_an_arc_cannot_be_the_first(beside):
 
 
 def test_behind_a_g1_an_arc_begins_where_that_was_programmed_to_end():
-    contour = Contour(20.0, 0.0, beside=3.0)
-    contour.line(30.0, line=6, feed=100.0)
-    contour.arc(1, 0.0, 30.0, i=-30.0, line=7, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0, beside=3.0)
+    contour.straight(30.0, at=6, feed=100.0)
+    contour.arc(1, 0.0, 30.0, i=-30.0, at=7, feed=100.0)
     line, arc = contour.elements
     assert (line.start, line.end, arc.start) == (20.0 + 3j, 30.0 + 0j, 30.0 + 0j)
     assert arc.curve.sweep == pytest.approx(math.pi / 2)

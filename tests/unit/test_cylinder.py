@@ -9,21 +9,26 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, PlaneNames, Start
-from g12.cylinder.plan import CylinderSettings, plan, split_on_cylinder
-from g12.cylinder.start import check_cylinder_start, cylinder_setup
-from g12.cylinder.words import CYLINDER_WORDS
+from g12.cylinder.cylinder_section import (
+    CYLINDER_WORDS,
+    Cylinder,
+    CylinderSettings,
+    plan,
+    split_on_cylinder,
+)
 from g12.errors import Refusal
 from g12.machine_ini import Axis
-from g12.moves.steps import BlockMoves
+from g12.moves.setup import SectionMachine
+from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock, check_codes, check_letters
-from g12.section.codes import codes_with_word
 from g12.section.line import BlockLocation, split_line
+from g12.section.start import codes_with_word
 from g12.settings import Settings
 from support import planned_moves
 from support.section_starts import START as POLAR_START
 
 RADIUS = 20.0
-MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 1000.0, 3600.0)
+MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 3600.0, 1000.0)
 AXES = {
     "X": Axis(-10.0, 100.0, 50.0, 900.0),
     "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
@@ -32,8 +37,7 @@ AXES = {
 START = POLAR_START._replace(
     location=BlockLocation("G7.1", 7),
     words={"C": RADIUS},
-    x=22.0,
-    c=30.0,
+    position={"X": 22.0, "C": 30.0, "Z": 5.0},
     tool_radius=3.0,
     yz_plane=True,
 )
@@ -42,43 +46,32 @@ START = POLAR_START._replace(
 def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
     names = PlaneNames(*CYLINDER_WORDS.plane, centre=CYLINDER_WORDS.centre_name)
-    start = Start(x, math.radians(c), z)
-    return Contour(math.radians(c) * RADIUS, x, z, names=names, diameter=None, start=start)
+    start = Start(z, math.radians(c), x)
+    return Contour(math.radians(c) * RADIUS, z, x, names=names, diameter=None, start=start)
 
 
 def runs(contour, **changed):
     steps = plan(contour, MACHINE._replace(**changed)).steps
-    return [step for step in steps if isinstance(step, BlockMoves)]
+    return [step for step in steps if isinstance(step, Segments)]
 
 
 def test_a_little_z_and_depth_are_left_to_the_next_move_and_to_the_end():
     contour = empty()
-    contour.line(10.0, 0.0004, line=1, feed=100.0)
-    contour.line(20.0, 0.0008, 21.9996, line=2, feed=100.0)
+    contour.straight(10.0, 0.0004, at=1, feed=100.0)
+    contour.straight(20.0, 0.0008, 21.9996, at=2, feed=100.0)
     made = [(run.line, run.axes, run.segments[0][::2]) for run in runs(contour)]
-    ends = (1, "ZC", (22.0, 0.0)), (2, "XZC", (22.0, 0.0)), (2, "XZ", (21.9996, 0.0008))
+    ends = (1, "ZC", (0.0, 22.0)), (2, "ZCX", (0.0, 22.0)), (2, "ZX", (0.0008, 21.9996))
     assert made == [*ends]
-
-
-def test_segments_that_keep_z_stay_within_the_tolerance():
-    """Two circles, one after the other: without a stop segments are as far off as they may be."""
-    contour, arm = empty(), 3.186 + 2j
-    for line in (1, 2):
-        contour.arc(1, 0.0, 0.0, i=arm.real, j=arm.imag, line=line, feed=100.0)
-    places = [
-        math.radians(c) * RADIUS + 1j * z for run in runs(contour) for _, c, z, _ in run.segments
-    ]
-    assert abs(abs(np.array(places) - arm) - abs(arm)).max() < 0.005
 
 
 def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
     contour = empty()
-    contour.line(z=18.0, line=1, feed=100.0)
-    contour.line(10.0, line=2, feed=100.0)
-    contour.line(10.0, 9.0, line=3, feed=9000.0)
+    contour.straight(height=18.0, at=1, feed=100.0)
+    contour.straight(10.0, at=2, feed=100.0)
+    contour.straight(10.0, 9.0, at=3, feed=9000.0)
     made = [(run.axes, run.stop) for run in runs(contour)]
     assert made[0] == ("X", False) and made[-1] == ("ZC", True)
-    assert runs(contour)[0].segments == [(18.0, 0.0, 0.0, 100.0)]
+    assert runs(contour)[0].segments == [(0.0, 0.0, 18.0, 100.0)]
     contour.elements[1] = contour.elements[1]._replace(feed=9000.0)
     assert [run.stop for run in runs(contour)] == [True, True, True]
 
@@ -86,17 +79,17 @@ def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
 @pytest.mark.parametrize(
     ("ends", "slow"),
     [
-        ([dict(z=12.0), dict(x=10.0)], "x_acceleration"),
-        ([dict(c=10.0), dict(x=10.0)], "z_acceleration"),
-        ([dict(x=10.0), dict(c=10.0)], "c_acceleration"),
+        ([dict(height=12.0), dict(first=10.0)], "height_acceleration"),
+        ([dict(second=10.0), dict(first=10.0)], "slide_acceleration"),
+        ([dict(first=10.0), dict(second=10.0)], "turn_acceleration"),
     ],
 )
 def test_the_slower_axis_decides_where_the_tool_stops(ends, slow):
     """A right angle at F600, 1000 per second squared, that stops after it is rounded by 0.07."""
     corner = empty()
     for line, end in enumerate(ends, 1):
-        corner.line(**end, line=line, feed=600.0)
-    even = {"tolerance": 0.16, "c_acceleration": math.degrees(1000.0 / RADIUS)}
+        corner.straight(**end, at=line, feed=600.0)
+    even = {"tolerance": 0.16, "turn_acceleration": math.degrees(1000.0 / RADIUS)}
     assert [run.stop for run in runs(corner, **even)] == [False, True]
     slower = {slow: 0.4 * {**MACHINE._asdict(), **even}[slow]}
     assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
@@ -115,7 +108,7 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
     arc = planned_moves.arc(centre, complex(start), turn * sweep)
-    split = split_on_cylinder(arc, surface, deviation)
+    split = split_on_cylinder(arc, MACHINE._replace(radius=surface), deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
     assert places[[0, -1]] == pytest.approx([start, end])
     places -= centre
@@ -133,31 +126,32 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 # ---------------------------------------------------------------- how it begins, its words
 
 
-def setup_of(settings=Settings(), **found):  # noqa: B008 - it is frozen
-    return cylinder_setup(START._replace(**found), settings, AXES)
+def section(settings=Settings(), letters="XZC", **found):  # noqa: B008 - it is frozen
+    return Cylinder(START._replace(**found), SectionMachine(letters, settings, AXES))
 
 
 def test_the_settings_of_a_section_are_in_program_units():
-    made = setup_of(machine_unit=1 / 25.4, millimetre=1 / 25.4)
-    lengths = [made.tolerance, *made.plan[1:5], made.words.radius_tolerance]
-    in_mm = [0.005, 0.005, 0.001, 900, 1100, 0.0127]
+    made = section(machine_unit=1 / 25.4, millimetre=1 / 25.4)
+    planning, rules = made.planning, made.rules
+    lengths = [made.tolerance, *planning[1:4], planning.height_acceleration, rules.radius_tolerance]
+    in_mm = [0.005, 0.005, 0.001, 1100, 900, 0.0127]
     assert lengths == pytest.approx([length / 25.4 for length in in_mm])
-    assert (made.plan.radius, *made.plan[5:]) == (RADIUS, 3600.0)
+    assert (planning.radius, planning.turn_acceleration) == (RADIUS, 3600.0)
 
 
 @pytest.mark.parametrize(
     ("settings", "found", "word", "value"),
     [
-        ({"cylinder_word": "diameter"}, {}, "c_scale", pytest.approx(10 * math.pi / 180)),
+        ({"cylinder_word": "diameter"}, {}, "turn_scale", pytest.approx(10 * math.pi / 180)),
         ({"polar_x": "diameter"}, {}, "x_scale", 1.0),
         ({}, {"diameter": True}, "diameter", True),
         ({"polar_tool_offset": 3.0}, {}, "beside", 0.0),  # a matter of the face
-        ({}, {}, "third_with_others", False),
-        ({"cylinder_x": "allow"}, {}, "third_with_others", True),
+        ({}, {}, "height_with_others", False),
+        ({"cylinder_x": "allow"}, {}, "height_with_others", True),
     ],
 )
 def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
-    assert getattr(setup_of(Settings(**settings), **found).words, word) == value
+    assert getattr(section(Settings(**settings), **found).rules, word) == value
 
 
 @pytest.mark.parametrize(
@@ -171,17 +165,17 @@ def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
 )
 def test_where_no_section_begins(found, rule):
     with pytest.raises(Refusal) as refused:
-        check_cylinder_start(START._replace(**found), "XZC")
+        section(**found)
     assert refused.value.message == f"G7.1 line 7: {rule}"
 
 
 def test_where_one_begins():
-    check_cylinder_start(START, "XZC")  # in G19, too
-    check_cylinder_start(START._replace(x=-1.0), "XYZC")
+    section()  # in G19, too
+    section(letters="XYZC", position=START.position | {"X": -1.0})
     for radius in (1e-3, 1e6):
-        check_cylinder_start(START._replace(words={"C": radius}), "XZC")
+        section(words={"C": radius})
     with pytest.raises(Refusal, match="needs a machine with an X, Z and a C axis"):
-        check_cylinder_start(START, "XC")
+        section(letters="XC")
 
 
 def test_one_code_switches_on_and_off():
@@ -196,15 +190,6 @@ def test_one_code_switches_on_and_off():
     ]  # fmt: skip
     assert codes.ends(block(C=0.0)) and not codes.ends(block(C=1.0)) and not codes.ends(block())
     assert not codes.begins(block(g=72)) and not codes.ends(block(g=72, C=0.0))
-
-
-@pytest.mark.parametrize(
-    ("raw", "text", "relative"),
-    [("G1 W-5 H.3", "g1z-5c.3", "ZC"), ("U1", "x1", "X"), ("Z1 C[round[2]]", "z1c[round[2]]", "")],
-)
-def test_increments_are_rewritten(raw, text, relative):
-    line = split_line(raw, CYLINDER_WORDS)
-    assert (line.text, line.relative, line.rewritten) == (text, relative, bool(relative))
 
 
 WORDS = "the section's words are Z, C, X, W, H and U"
@@ -227,12 +212,3 @@ def test_words_that_are_refused(text, why):
         check_letters(line, CYLINDER_WORDS, START.location)
         check_codes(line.codes, CYLINDER_WORDS, False, START.location)
     assert refused.value.message == f"G7.1 line 7: {why}"
-
-
-@pytest.mark.parametrize(
-    "text", ["Z1 C2 X3 F4 S5 P6 R7", "W1 H2 U3", "J1 K2", "I1 K2", "G17", "G18", "G19", "M3"]
-)
-def test_words_that_are_taken(text):
-    line = split_line(text, CYLINDER_WORDS)
-    check_letters(line, CYLINDER_WORDS, START.location)
-    check_codes(line.codes, CYLINDER_WORDS, False, START.location)

@@ -7,30 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.moves.feed import Split, has_short_slide_move, segments_with_feed
+from g12.moves.steps import Split, segments_with_feed
 from support import planned_moves
 
-START = (10.0, 0.0, 0.0)
 LEAST = 0.001
 
 
-def move(z1=0.0):
+def move(h1=0.0):
     """Return a move at F120; its split is what counts."""
-    return planned_moves.line(10.0, 0.0, 0.0, 0.0, z1=z1, feed=120.0)
-
-
-def segments(*ends, z1=0.0, entry=0.0):
-    """Return the segments of a split whose ends are (radius, degrees, length)."""
-    radii, degrees, lengths = zip((10.0, 0.0, 0.0), *ends)
-    angles = [math.radians(angle) for angle in degrees]
-    return segments_with_feed(
-        Split(list(radii), angles, list(lengths)), START, move(z1), entry, LEAST
-    )
-
-
-def test_f_is_for_x_where_x_moves():
-    """2 of X in a path of 5 at F120."""
-    assert segments((12.0, 25.0, 5.0)) == [(12.0, pytest.approx(25.0), 0.0, pytest.approx(48.0))]
+    return planned_moves.line(10.0, 0.0, 0.0, 0.0, h1=h1, feed=120.0)
 
 
 step = st.sampled_from([0.0, 0.0004, -0.0007, 0.0015, -0.3, 2.0])
@@ -48,7 +33,7 @@ def test_all_segments_together_last_as_long_as_the_path(steps, rise, entry):
         turns.append(turns[-1] + turned)
         lengths.append(lengths[-1] + long)
     split = Split(slides, [math.radians(angle) for angle in turns], lengths)
-    start, along = (10.0, entry, -5.0), move(-5.0 + rise)._replace(z0=-5.0)
+    start, along = (10.0, entry, -5.0), move(-5.0 + rise)._replace(h0=-5.0)
     made, at = segments_with_feed(split, start, along, entry, LEAST), start
     space, minutes = math.hypot(1.0, rise / lengths[-1]) / 120.0, 0.0
     for segment in made:
@@ -63,10 +48,3 @@ def test_all_segments_together_last_as_long_as_the_path(steps, rise, entry):
     if made:
         assert at[0] == pytest.approx(slides[-1], abs=LEAST)
         assert at[1] == pytest.approx(entry + turns[-1], abs=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("angles", "keeps"), [([0.5, 0.5], False), ([0.1, -0.1], True), ([0.5, 0.6], True)]
-)
-def test_a_segment_keeps_its_slide_where_c_turns(angles, keeps):
-    assert has_short_slide_move(Split([10.0, 10.0 + 1e-7], angles, [0.0, 1.0]), 1e-6) is keeps

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from g12.errors import Refusal
-from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, Stretch, TooManySegments, spaced
-from g12.polar.plan import PolarSettings, plan
+from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, Stretch, spaced
+from g12.polar.polar_section import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
 
@@ -17,14 +17,6 @@ FINEST = PolarSettings(1e-5, 0.001, 1000.0, 3600.0, 21600.0)
 
 def stretch(start, end, *apsides):
     return Stretch(start, end, list(apsides), abs)
-
-
-@pytest.mark.parametrize("density", [1e9, -1.0, 2e-5])
-def test_a_density_that_never_arrives_is_refused(density):
-    """The step is too short, goes the wrong way, or is nothing beside a far place."""
-    far = 1e300 if density == 2e-5 else 3.0
-    with pytest.raises(TooManySegments):
-        spaced(stretch(1.0, far), lambda _: (density, 0.0))
 
 
 def test_the_most_segments_are_made():
@@ -39,22 +31,6 @@ def test_an_arc_of_too_many_segments_is_refused_with_its_line():
     assert refused.value.message == (
         "G12.1 line 1: more than 100000 moves would be needed to stay within POLAR_TOLERANCE"
     )
-
-
-def test_a_circle_of_a_metre_is_cut_at_the_finest_tolerance():
-    around = Round(1000 + 0j, 100 + 0j, 2 * math.pi)
-    run = plan(programmed([around]), FINEST, c=0.0).steps[0]
-    assert 5_000 < len(run.segments) < MOST_SEGMENTS_OF_MOVE
-
-
-def test_an_apsis_is_an_end_of_segments_and_off_the_path_by_its_share():
-    """Four segments long and four used on each side: the losses of the outer ends come on top."""
-    places, shares = spaced(stretch(-4.0, 4.0, 0.0), lambda _: (1.0, 0.5))
-    assert 0.0 in places
-    length = 4.0 / (5 - 0.18)
-    assert shares[places.index(0.0)] == pytest.approx(0.5 * length**2)
-    assert shares[0] == shares[-1] == 0.0
-    assert shares[1:-1] == pytest.approx([0.5 * length**2] * (len(shares) - 2))
 
 
 @pytest.mark.parametrize(("start", "end"), [(0.5, 4.0), (-4.0, -0.5), (-3.0, 4.0)])
@@ -88,10 +64,3 @@ def test_segments_are_equal_parts_of_the_density_but_for_what_the_ends_lose(star
         off = [length**2 * 0.1 * (5.0 + place) for place in places[inner]]
         assert shares[inner] == pytest.approx(off, abs=0.008)
     assert shares[0] == shares[-1] == 0.0
-
-
-@pytest.mark.parametrize(("near", "cut"), [(0.49, False), (0.51, True)])
-def test_an_apsis_nearer_to_an_end_than_half_a_segment_is_left_alone(near, cut):
-    for start, end, apsis in ((3.0 - near, 9.0, 3.0), (-9.0, -3.0 + near, -3.0)):
-        places, _ = spaced(stretch(start, end, apsis), lambda _: (1.0, 0.5))
-        assert (apsis in places) is cut

@@ -9,10 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
-from g12.geometry.curve import angle_of
-from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceSwitch, blending_halves, in_face, positions_along
-from g12.polar.plan import PolarSettings, plan
+from g12.moves.steps import FaceSwitch, Segments
+from g12.polar.face import blending_halves, in_face
+from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
@@ -37,13 +36,6 @@ def test_an_arc_whose_acceleration_blending_would_halve(following, halved):
     assert blending_halves(arc((20, 0), 10, 0, pi / 2), following) is halved
 
 
-def test_a_plunge_and_a_line_are_blended_by_an_arc_a_plunge_and_an_arc_are_not():
-    plunge, straight = Plunge(1, 100.0, 0.0, -1.0), line((0, 10), (20, 10))
-    assert not blending_halves(straight, plunge)
-    assert not blending_halves(plunge, straight)
-    assert blending_halves(plunge, arc((20, 0), 10, 0, pi / 2))
-
-
 @settings(max_examples=200)
 @given(st.one_of(lines, arcs), st.floats(-20, 20))
 def test_the_face_is_the_plane_turned(move, angle):
@@ -52,23 +44,9 @@ def test_the_face_is_the_plane_turned(move, angle):
     assert after * np.exp(1j * angle) == pytest.approx(before, abs=1e-9)
 
 
-@settings(max_examples=200)
-@given(st.one_of(lines, arcs), st.floats(-20, 20))
-def test_positions_along_a_move_include_its_end_and_the_farthest(move, off):
-    points = motion(move)[0]
-    if abs(points).min() < 0.5:
-        return
-    begin = angle_of(move.start) + off
-    positions = positions_along(move, begin)
-    angles = np.unwrap(np.angle(points))
-    assert positions[-1][0] == pytest.approx(abs(move.end))
-    assert positions[-1][1] - begin == pytest.approx(angles[-1] - angles[0], abs=1e-6)
-    assert max(radius for radius, *_ in [*positions, (abs(points[0]),)]) >= abs(points).max() - 1e-4
-
-
 def contour(*points, feed=2000.0):
     """Return a contour of lines from X30 on."""
-    drawn = Contour(30.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
+    drawn = Contour(30.0, 0.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
     x, c = 30.0, 0.0
     for number, (to_x, to_c) in enumerate(points, 7):
         drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))
@@ -78,9 +56,9 @@ def contour(*points, feed=2000.0):
 
 def test_arcs_on_the_face_leave_the_machine_at_their_end():
     """Clockwise over three quarters of a circle, C goes from 0 to 90 about a centre far out."""
-    drawn = Contour(60.0, 0.0)
-    drawn.arc(-1, 40.0, 20.0, i=-20.0, line=7, feed=1000.0)
-    drawn.line(40.0, 30.0, -1.0, line=8, feed=1000.0)
+    drawn = Contour(60.0, 0.0, 0.0)
+    drawn.arc(-1, 40.0, 20.0, i=-20.0, at=7, feed=1000.0)
+    drawn.straight(40.0, 30.0, -1.0, at=8, feed=1000.0)
     made = plan(drawn, SETTINGS, c=10.0)
     there, arc_on, line_on, back = made.steps
     for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
@@ -94,7 +72,7 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
 def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew():
     made = plan(contour((30, 20), (0.2, 20), (0.2, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
-    assert {step.line for step in made.steps if isinstance(step, BlockMoves)} == {9}
+    assert {step.line for step in made.steps if isinstance(step, Segments)} == {9}
     *_, at = (k for k, step in enumerate(made.steps) if isinstance(step, FaceSwitch) and step.on)
     switch, again = made.steps[at : at + 2]
     assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
@@ -110,4 +88,4 @@ def test_a_plunge_on_the_face_keeps_x_and_c():
     assert down.move == Plunge(9, 500.0, 0.0, -1.0)
     assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.segments
     assert back == FaceSwitch(9, False, made.position)
-    assert made.position.z == -1.0
+    assert made.position.height == -1.0

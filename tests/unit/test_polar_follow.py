@@ -4,31 +4,16 @@
 from math import inf
 
 import numpy as np
-import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
-from g12.polar.follow import MoveDemands
-from support.face_moves import LIMITS, arcs, line, lines, motion
+from g12.polar.face import MoveDemands
+from support.face_moves import LIMITS, arcs, lines, motion
 
 
 def can_follow(move, limits):
     return MoveDemands(move, limits).can_be_followed()
-
-
-@pytest.mark.parametrize(("slide_speed", "able"), [(52.0, True), (51.99, False)])
-def test_along_a_radius_the_slide_goes_as_fast_as_it_can(slide_speed, able):
-    """F3000, and what is gained in two cycles by a feed that is turned up."""
-    limits = LIMITS._replace(slide_speed=slide_speed)
-    assert can_follow(line((30, 0), (10, 0), feed=3000.0), limits) is able
-    assert can_follow(line((-3, 4), (-6, 8), feed=3000.0), limits) is able
-
-
-def test_a_higher_feed_needs_more_room():
-    slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
-    assert can_follow(slow, LIMITS)
-    assert not can_follow(fast, LIMITS)
 
 
 def share_of_limits(move, limits):

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Polar planning, whole sections: the contour is cut, at its feed, in as few segments as can be."""
 
-import cmath
 import math
 
 import numpy as np
@@ -11,11 +10,11 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.moves.steps import BlockMoves
-from g12.polar.plan import PolarSettings, plan, quickness
-from support.axes_of_places import rates
+from g12.moves.steps import Segments
+from g12.polar.polar_section import PolarSettings, plan
+from g12.section.modes import Action
 from support.contour_geometry import Round, Straight, distance, distance_from_path
-from support.planned_cuts import SAGITTA, add, cuts, path, programmed
+from support.planned_cuts import SAGITTA, cuts, path, programmed
 
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
@@ -48,7 +47,7 @@ def drawings(draw, most=5, beside=ON_LINE):
 
 
 def runs(planned):
-    return [step for step in planned.steps if isinstance(step, BlockMoves)]
+    return [step for step in planned.steps if isinstance(step, Segments)]
 
 
 # What is cut is the contour.
@@ -92,33 +91,6 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
     assert length == pytest.approx(expected, rel=5e-3, abs=0.05)  # no turn too many
 
 
-@settings(max_examples=80)
-@given(drawings())
-def test_moves_x_by_the_least_step_or_not_at_all(shapes):
-    contour = programmed(shapes)
-    made = cuts(contour, plan(contour, LATHE, c=0.0))
-    for cut in made:
-        step = abs(cut.radius[1] - cut.radius[0])
-        assert step == 0.0 or step >= LATHE.least_x or abs(cut.angle[1] - cut.angle[0]) < 1e-12
-    assert distance(path(made), shapes).max() <= TOLERANCE + LATHE.least_x
-    assert made[-1].radius[1] == pytest.approx(abs(shapes[-1].end), abs=0.51 * TOLERANCE)
-
-
-@pytest.mark.parametrize("beside", [0.0026, -0.003, 0.1])
-@pytest.mark.parametrize("radius", [2.5e4, 9e5])
-def test_arcs_beside_the_pole_that_are_nearly_lines(radius, beside):
-    """In as few segments as a line: rounding must not make of 1e-12 of the radius what it likes."""
-    away, reach = radius - beside, math.sqrt(400.0 + 2 * radius * abs(beside))
-    height = math.sqrt(radius * radius - reach * reach) - away
-    arc = Round(reach + 1j * height, -1j * away, 2 * math.asin(reach / radius))
-    arc = arc.turned(abs(arc.start) / arc.start)
-    contour = programmed([arc])
-    planned = plan(contour, EXACT, c=0.0)
-    (run,) = runs(planned)
-    assert len(run.segments) <= 45
-    assert distance(path(cuts(contour, planned)), [arc]).max() <= TOLERANCE
-
-
 @pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
 def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
     """X has 1000 mm/s²: at F250 it takes 8 ms to speed up, and the segments near X0 are short."""
@@ -129,12 +101,12 @@ def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
 def test_what_is_left_out_of_a_contour_is_taken_from_the_tolerance():
     """A step of 0.0013 in a side is left out under compensation."""
     step = 0.0013
-    contour = Contour(30.0, -15.0)
-    contour.compensation(41, 5.0, line=1)
+    contour = Contour(30.0, 0.0, -15.0)
+    contour.compensate(41, 5.0, at=1)
     for line, (x, c) in enumerate(
         [(20, -15), (20, -14), (20, 0), (20 + step, 0), (20 + step, 15), (20 + step, 16)], 1
     ):
-        contour.line(x, c, line=line, feed=250.0)
+        contour.straight(x, c, at=line, feed=250.0)
     made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line in (3, 5)]
     side = [Straight(15 - 14j, 15 + 0j), Straight(15 + step + 0j, 15 + step + 15j)]
     assert 0.6 * TOLERANCE < distance(path(made), side).max() <= TOLERANCE
@@ -149,19 +121,6 @@ def is_small(shape):
 
 
 @settings(max_examples=100)
-@given(drawings(beside=offsets), st.floats(20.0, 2000.0))
-def test_every_segment_lasts_as_long_as_its_path_at_the_feed(shapes, feed):
-    contour, beside = programmed(shapes, feed=feed), shapes[0].start.imag
-    try:
-        planned = plan(contour, EXACT._replace(beside=beside), c=0.0)
-    except Refusal:  # it cannot come so near to the pole
-        assume(False)
-    for cut in cuts(contour, planned, 0.0, beside):
-        if min(cut.radius) > 0.5 and not is_small(shapes[cut.line - 1]):
-            assert 60.0 * cut.length / cut.seconds == pytest.approx(feed, rel=0.01)
-
-
-@settings(max_examples=100)
 @given(drawings())
 def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes):
     contour = programmed(shapes, feed=100.0)
@@ -173,58 +132,16 @@ def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes)
 # In as few segments as can be.
 
 
-def fewest(shape, bulge):
-    """Count the longest segments with both ends on the shape that bulge by no more than that."""
-    points, start, count = shape.points(4001), 0, 0
-    radius, angle = abs(points), np.unwrap(np.angle(points))
-    while start < 4000:
-        low, high = start + 1, 4000
-        while low < high:
-            middle = (low + high + 1) // 2
-            part = np.linspace(0.0, 1.0, 41)
-            spiral = (radius[start] + (radius[middle] - radius[start]) * part) * np.exp(
-                1j * (angle[start] + (angle[middle] - angle[start]) * part)
-            )
-            if shape.distance(spiral).max() <= bulge:
-                low = middle
-            else:
-                high = middle - 1
-        start, count = low, count + 1
-    return count
-
-
-@settings(max_examples=40)
-@given(drawings(most=1))
-def test_no_splitting_needs_many_segments_less(shapes):
-    """No path within the tolerance on both sides has segments that bulge by more than twice of it.
-
-    Three quarters of that are left by the blending, the share of the tolerance takes the rest.
-    """
-    assume(distance(np.array([0j]), shapes)[0] > 0.5)
-    end, before = shapes[0].end, shapes[0].points(10001)[-2]
-    tangent = Straight(end, end + (end - before) / abs(end - before))
-    planned = plan(programmed([*shapes, tangent]), DRIVEN, c=0.0)
-    segments = sum(len(run.segments) for run in runs(planned) if run.line == 1)
-    assert segments <= 1.21 * fewest(shapes[0], 2 * TOLERANCE) + 5
-
-
 # The pole.
 
 
 def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
     contour = programmed([Straight(10 + 0j, -8 + 0j)], feed=300.0)
     assert runs(plan(contour, LATHE, c=0.0)) == [
-        BlockMoves(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
-        BlockMoves(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
-        BlockMoves(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
+        Segments(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
+        Segments(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
+        Segments(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
     ]
-
-
-def test_turns_the_shorter_way_at_the_pole_and_reverses_without_a_turn():
-    bent = plan(programmed([Straight(10 + 0j, 0j), Straight(0j, 0 - 5j)]), LATHE, c=0.0)
-    assert runs(bent)[1].segments == [(0.0, -90.0, 0.0, 21600.0)]
-    back = plan(programmed([Straight(10 + 0j, 0j), Straight(0j, 5 + 0j)]), LATHE, c=0.0)
-    assert [run.segments[-1][:2] for run in runs(back)] == [(0.0, 0.0), (5.0, 0.0)]
 
 
 @pytest.mark.parametrize("shape", [Straight(9 + 0j, -9 + 0.003j), Round(9 + 0j, 4.501 + 0j, 5.0)])
@@ -241,9 +158,9 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
 
 
 def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
-    contour = Contour(20.0, 0.0, beside=-3.0)
-    contour.line(10.0, 0.0, line=7, feed=100.0)
-    contour.line(2.9, 0.0, line=8, feed=100.0)
+    contour = Contour(20.0, 0.0, 0.0, beside=-3.0)
+    contour.straight(10.0, 0.0, at=7, feed=100.0)
+    contour.straight(2.9, 0.0, at=8, feed=100.0)
     with pytest.raises(Refusal) as refused:
         plan(contour, EXACT._replace(beside=-3.0), c=0.0)
     assert refused.value.message == (
@@ -252,115 +169,41 @@ def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
     )
 
 
-@pytest.mark.parametrize(("feed", "quick"), [(60.0, 1.0), (250.0, 1e-6)])
-@pytest.mark.parametrize(
-    "shape",
-    [
-        Straight(30 + 0j, -20 + 15j),
-        Straight(20 + 0j, 20 - 40j),
-        Round(30 + 0j, 18 + 0j, -4.0),
-        Round(30 + 0j, 12 + 0j, 2 * math.pi),
-        Round(30 + 0j, 0j, -2 * math.pi),
-    ],
-)
-def test_a_tool_hardly_beside_its_line_needs_the_same_segments_as_one_on_it(shape, feed, quick):
-    """For an even feed at F60, or, if the axes are too slow for that, for the tolerance alone."""
-    machine = EXACT._replace(x_acceleration=1000.0 * quick, c_acceleration=3600.0 * quick)
-    on_line = plan(programmed([shape], feed=feed), machine, c=0.0).steps[0].segments
-    contour = Contour(shape.start.real, 0.0, beside=1e-4)
-    contour.line(c=0.0, line=1, feed=feed)
-    add(contour, shape, line=2, feed=feed)
-    beside = plan(contour, machine._replace(beside=1e-4), c=0.0).steps[-1].segments
-    assert len(beside) == len(on_line)
-    for one, other in zip(on_line, beside):
-        assert other[:2] == pytest.approx(one[:2], rel=0.01, abs=0.05)
-
-
 # Corners, marks, sections cut in two.
 
 
-def stopping_lines(shapes, feed):
-    return [run.line for run in runs(plan(programmed(shapes, feed=feed), LATHE, c=0.0)) if run.stop]
-
-
-CORNER = [Straight(20 + 0j, 20 + 5j), Straight(20 + 5j, 30 + 5j)]
-SMOOTH = [Round(20 + 0j, 15 + 0j, math.pi / 2), Straight(15 + 5j, 0 + 5j)]
-
-
-@pytest.mark.parametrize(
-    ("shapes", "feed", "lines"),
-    [(CORNER, 1000.0, [1, 2]), (CORNER, 60.0, [2]), (SMOOTH, 1000.0, [2])],
-)
-def test_stops_where_blending_would_cut_the_corner(shapes, feed, lines):
-    assert stopping_lines(shapes, feed) == lines
-
-
 def test_marks_keep_their_place_and_segments_their_lines():
-    contour = Contour(10.0, 2.0)
-    contour.mark("M8", line=1)
-    contour.line(12.0, 0.0, line=2, feed=100.0)
-    contour.line(z=-1.0, line=3, feed=50.0)
-    contour.mark("S500", line=4)
-    contour.line(12.0, 3.0, line=5, feed=100.0)
-    contour.mark("M9", line=6)
+    contour = Contour(10.0, 0.0, 2.0)
+    contour.mark(Action(1, "M8", None))
+    contour.straight(12.0, 0.0, at=2, feed=100.0)
+    contour.straight(height=-1.0, at=3, feed=50.0)
+    contour.mark(Action(4, "S500", None))
+    contour.straight(12.0, 3.0, at=5, feed=100.0)
+    contour.mark(Action(6, "M9", None))
     steps = plan(contour, LATHE, c=0.0).steps
-    order = [step.line if isinstance(step, BlockMoves) else step for step in steps]
+    order = [step.line if isinstance(step, Segments) else step.text for step in steps]
     assert order == ["M8", 2, 3, "S500", 5, "M9"]
-    assert steps[2] == BlockMoves(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
-
-
-def test_goes_on_after_a_block_that_waits_for_the_machine():
-    whole = [Straight(20 + 0j, 5 + 10j), Round(5 + 10j, 0j, 3.0)]
-    first = programmed(whole[:1])
-    planned = plan(first, LATHE, c=30.0)
-    second = first.continued(planned.end)
-    assert (second.x, second.c) == (5.0, 10.0)
-    end = whole[1].end
-    second.arc(1, end.real, end.imag, i=-5.0, j=-10.0, line=2, feed=250.0)
-    after = plan(second, LATHE, c=30.0)
-    assert distance(path(cuts(second, after, 30.0)), whole[1:]).max() <= TOLERANCE
-    assert after.position.c == pytest.approx(plan(programmed(whole), LATHE, c=30.0).position.c)
+    assert steps[2] == Segments(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
 
 
 def test_what_the_segments_leave_over_of_both_slides_comes_last():
-    contour = Contour(10.0, 0.0)
+    contour = Contour(10.0, 0.0, 0.0)
     end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
-    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, line=2, feed=250.0)
+    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, at=2, feed=250.0)
     *_, rest = runs(plan(contour, LATHE, c=0.0))
     assert (rest.axes, rest.stop) == ("XZ", True)
     assert (rest.segments[0][0], rest.segments[0][2]) == (abs(end), 0.0003)
-    contour = Contour(10.0, 0.0)
-    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, line=2, feed=250.0)
+    contour = Contour(10.0, 0.0, 0.0)
+    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, at=2, feed=250.0)
     assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
 
 
 def test_segments_that_keep_x_stay_within_the_tolerance():
     """Two circles, one after the other: without a stop segments are as far off as they may be."""
     centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
-    contour = Contour(25.4718, 0.0)
+    contour = Contour(25.4718, 0.0, 0.0)
     for line in (1, 2):
-        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, line=line, feed=300.0)
+        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, at=line, feed=300.0)
     made = cuts(contour, plan(contour, LATHE, c=0.0))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
-
-
-@settings(max_examples=80)
-@given(
-    st.builds(complex, st.floats(9.0, 40.0), st.floats(-40.0, 40.0)),
-    st.floats(-3.1, 3.1),
-    st.floats(-1.5, 1.5),
-    st.sampled_from([0.0, 2.0, -8.0]),
-)
-def test_no_axis_exceeds_its_acceleration_along_any_direction(place, heading, slope, beside):
-    unit = cmath.rect(math.cos(slope), heading)
-    _, sliding, turning = rates(lambda at: place + unit * np.asarray(at), 0.0, beside)
-    needs = (abs(sliding) / 500.0, abs(math.sin(slope)) / 500.0, abs(turning) / math.radians(900.0))
-    quick = quickness(
-        (unit.real, unit.imag, math.sin(slope)),
-        place,
-        x_acceleration=500.0,
-        c_acceleration=900.0,
-        beside=beside,
-    )
-    assert quick == pytest.approx(1.0 / max(needs), rel=1e-3)

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Mark, Plunge
-from g12.polar.follow import FaceLimits, MoveDemands
-from g12.polar.quickest import ACCELERATION_SHARES, quickest
+from g12.compensation.contour import Plunge
+from g12.polar.face import FaceLimits, MoveDemands
+from g12.polar.quickest import quickest
+from g12.section.modes import Action
 from support import planned_moves
 from support.growth import growth
 
@@ -38,24 +39,6 @@ def shares_of(made):
     return [stretch.share if stretch else 0.0 for stretch in made.stretches]
 
 
-@pytest.mark.parametrize("feed", [1000.0, 2000.0])
-def test_a_circle_nearer_to_the_pole_is_whole_on_a_softer_face(feed):
-    whole = circle(10, 20, feed)
-    made = made_of([whole], QUICK)
-    assert made.path == [whole]
-    (share,) = shares_of(made)
-    can_follow = MoveDemands(whole, QUICK).can_be_followed
-    assert can_follow(share)
-    assert not any(can_follow(one) for one in ACCELERATION_SHARES if one > share)
-
-
-def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
-    made = made_of([circle(10, 20, 2000.0)], SLOW)
-    feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
-    assert 2000.0 == max(feeds) > min(feeds)
-    assert abs(made.path[-1].end) == pytest.approx(30.0)
-
-
 def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
     made = quickest([line((-90, 0.5), (90, 0.5), feed=3000.0)], [True], QUICK)
     there, *beside, back = shares_of(made)
@@ -69,13 +52,7 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
 
 
 FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
-MARK, PLUNGE = Mark(2, "M8"), Plunge(3, 500.0, 0.0, -1.0)
-
-
-def test_marks_and_plunges_go_with_what_is_in_front():
-    path = [MARK, FAR, MARK, PLUNGE, SHORT, PLUNGE, FAR, MARK]
-    on = [bool(share) for share in shares_of(made_of(path, QUICK))]
-    assert on == [False, True, True, True, False, False, True, True]
+MARK, PLUNGE = Action(2, "M8", None), Plunge(3, 500.0, 0.0, -1.0)
 
 
 @pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
@@ -83,14 +60,6 @@ def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
     shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
     assert [*map(bool, shares)] == [False, worth, worth, False]
-
-
-@pytest.mark.parametrize(("feed", "override"), [(2000.0, 1.5), (2900.0, 1.2), (3470.0, 1.0)])
-def test_the_feed_may_be_turned_up_as_far_as_c_follows(feed, override):
-    """At 60 mm from the pole and 1 radian a second C is at its speed with F3600, 0.002 s early."""
-    slow = QUICK._replace(c_speed=1.0, override=1.5)
-    (stretch,) = made_of([line((60, -5), (60, 5), feed=feed)], slow).stretches
-    assert stretch.override == pytest.approx(override, abs=0.01)
 
 
 def test_moves_near_the_pole_are_not_compared_each_with_each():

@@ -81,17 +81,6 @@ def test_ends_of_segments_are_beside_the_path_where_their_lengths_tell(shape, la
         assert abs(near - at).min() < 1e-3 or len(near) < 2 or min(ends) < 2.5  # segments
 
 
-@settings(max_examples=100)
-@given(shapes, laws, st.just(0.0) | offsets)
-def test_the_way_back_is_cut_into_the_same_segments(shape, law, beside):
-    """They are spaced from the end nearer to the pole, where they are shortest."""
-    assume(clear_of(shape, beside))
-    there, again = (split_move(one, law, beside) for one in (shape, shape.reversed()))
-    assert len(there.lengths) == len(again.lengths)
-    assert there.slides == pytest.approx(again.slides[::-1], abs=law.deviation)
-    assert there.lengths == pytest.approx([shape.length - at for at in again.lengths[::-1]])
-
-
 def is_whole(line, law):
     """Return whether a segment of 0.64 of the full length would do, as both its ends are exact.
 
@@ -129,24 +118,3 @@ def test_an_arc_is_one_segment_if_its_radii_differ_by_less_than_the_deviation(aw
     circle = Round(complex(10 + away), complex(away), 2 * math.pi)
     split = split_move(circle, Law(0.005, 1e9, INF, INF))
     assert (len(split.lengths) == 2) is whole
-
-
-HALF_WAY = Round(20.006 + 0j, 10.006 + 0j, math.pi)  # to 0.006 beside the pole
-
-
-@pytest.mark.parametrize(
-    ("shape", "deviation"),
-    [
-        (Straight(0.006 - 5j, 0.006 + 5j), 0.003),
-        (Round(20.006 + 0j, 10.006 + 0j, -2 * math.pi), 0.003),
-        (HALF_WAY, 0.003),
-        (HALF_WAY.portion(0.0, 0.9997), 0.5 * abs(HALF_WAY.portion(0.0, 0.9997).end)),
-        (HALF_WAY.portion(1.0, 0.0), 0.003),
-        (HALF_WAY.portion(0.9, 0.1), 0.005),
-        (HALF_WAY.portion(0.1, 0.9), 0.005),
-    ],
-)
-def test_no_end_is_farther_off_than_half_the_way_to_the_pole(shape, deviation):
-    split = split_move(shape, Law(0.005, 1e9, INF, INF))
-    off = abs(places_of(*map(np.array, split[:2])) - along(shape)(np.array(split.lengths)))
-    assert 0.8 * deviation < off.max() <= deviation * 1.0001

@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.polar.words import POLAR_WORDS
+from g12.polar.polar_section import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, check_block, check_codes, check_letters
 from g12.section.line import BlockLocation, split_line
 
@@ -97,12 +97,6 @@ def test_no_tool_changes(code):
     assert refusal(check_block, block(m=(code,)), False) == why
 
 
-def test_codes_of_the_machine_are_let_through():
-    codes = (0, 1, 3, 4, 5, 7, 8, 9, 48, 60, 62, 66, 100, 199)
-    assert refusal(check_codes, [("M", 10 * code) for code in codes], False) is None
-    assert refusal(check_block, block(m=(3, 8, 48)), False) is None
-
-
 OUTPUT, ANALOG = "P, the number of the output", "E, the number of the output"
 ANALOG_WAIT = "L0 with E: only a digital input can be waited for"
 INPUT, WAIT = "either P or E, the number of the input", "Q above zero, the longest wait in seconds"
@@ -169,10 +163,3 @@ AXES = "the section's words are X, C (or Y), Z, U and H"
 )
 def test_words_that_are_refused(text, why):
     assert refusal(check_letters, split_line(text, POLAR_WORDS)) == why
-
-
-@pytest.mark.parametrize(
-    "text", ["X1 C1 Z1", "U1 H1", "X1 Y1", "G2 X1 R2", "I1 J2", "M66 P1 L3 Q2"]
-)
-def test_words_that_are_taken(text):
-    assert refusal(check_letters, split_line(text, POLAR_WORDS)) is None

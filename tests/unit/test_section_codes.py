@@ -2,11 +2,10 @@
 """Which codes begin and end a section: the user's choice."""
 
 from g12.machine_ini import remap_from_value
-from g12.section.codes import code_of_handler, codes_of_section
+from g12.section.start import codes_of_section
 
 PAIR = ("G12.1 modalgroup=1 python=polar_on", "G13.1 modalgroup=1 python=polar_off")
 OTHER = ("G12.3 modalgroup=1 py=polar_on", "G13.3 modalgroup=1 py=polar_off")
-FREE = ("G7.1 modalgroup=1 python=polar_on", "G7.9 modalgroup=1 python=polar_off")
 
 
 def codes(code, *lines):
@@ -20,11 +19,6 @@ def test_every_code_of_the_handler_ends_a_section_and_the_partner_is_named():
     assert (found.on, found.off, found.off_code) == ({121, 123}, {131, 133}, "G13.3")
 
 
-def test_a_code_that_is_not_one_more():
-    found = codes("G7.1", *FREE)
-    assert (found.off, found.off_code) == ({79}, "G7.9")
-
-
 def test_without_any_off_code_it_is_one_more():
     found = codes("G12.1", PAIR[0])
     assert (found.off, found.off_code) == ({131}, "G13.1")
@@ -33,10 +27,3 @@ def test_without_any_off_code_it_is_one_more():
 def test_m_codes_to_subs_and_to_python():
     found = codes("G12.1", *PAIR, "M33 modalgroup=10 n=m33", "M400 modalgroup=10 python=mine")
     assert found.remapped == {33: True, 400: False}
-
-
-def test_the_code_by_which_a_shape_switches_on():
-    remaps = [remap_from_value(line) for line in FREE]
-    assert code_of_handler(remaps, "polar_on") == 7.1
-    assert code_of_handler(remaps, "polar_off") == 7.9
-    assert code_of_handler(remaps, "cylinder_mode") is None

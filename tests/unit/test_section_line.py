@@ -4,17 +4,15 @@
 import pytest
 
 from g12.errors import LONGEST_BLOCK, Refusal
-from g12.polar.words import POLAR_WORDS
-from g12.section.block_rules import SectionBlock, alone, m_code_alone
+from g12.polar.polar_section import POLAR_WORDS
+from g12.section.block_rules import SectionBlock
 from g12.section.line import BlockLocation, line_named, split_line, split_words
 from g12.section.modes import (
     SectionModes,
     action_text,
     comment_text,
     decimal,
-    may_fail,
     modes_after,
-    stop_text,
 )
 
 HERE = BlockLocation("G12.1", 7)
@@ -68,12 +66,6 @@ def test_what_the_parser_does_not_know_is_rewritten(raw, text):
     assert line.rewritten
 
 
-def test_a_line_that_the_parser_refuses_for_its_length_is_not_split():
-    raw = f"{'#' * 5000}1=1"
-    assert split_line(raw, POLAR_WORDS).letters == ()
-    assert split_line(f"G1 X1 ({'a' * 5000})", POLAR_WORDS).letters == ("G", "X")
-
-
 def test_parts_of_a_line():
     line = split_line(
         "/#1=2 G9 M3 S[#1] $1 #<ab>=sin[30] (one) X1 (two; three) ; (four)", POLAR_WORDS
@@ -116,11 +108,6 @@ def test_words_are_split_at_their_values():
         ("k", "atan[1]/[2]"), ("$", "0"), ("@", "5"), ("#", "1=[2]"),
     ]  # fmt: skip
     assert list(split_words("gx1")) == [("g", ""), ("x", "1")]  # no value hides nothing
-
-
-@pytest.mark.parametrize("raw", ["X[1", "X#<a", "]", "x#", "[[[", "G1 X5 (abc"])
-def test_broken_lines_are_left_to_the_parser(raw):
-    assert split_line(raw, POLAR_WORDS).text == raw.replace(" ", "").lower()
 
 
 def test_modes_act_as_they_are_read():
@@ -169,26 +156,6 @@ def test_the_spindle_word_goes_along_with_a_code():
         assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"
 
 
-def test_comments_that_may_stop_the_program():
-    assert all(map(may_fail, ("ABORT,#1", " abort,", "PY,1/0")))
-    assert not any(map(may_fail, ("MSG,a", "about")))
-
-
-def test_stops():
-    assert stop_text(block(m={4: 1}, g={1: 10}, X=1.0)) == "M1"
-    assert stop_text(block(m={7: 3})) == ""
-
-
-def test_alone():
-    assert alone(block(g={1: 131}))
-    assert not alone(block(g={1: 131, 3: 900}))
-    assert not alone(block(g={1: 131}, m={8: 8}))
-    assert not alone(block(g={1: 131}, X=1.0))
-    assert m_code_alone(block(m={10: 410}, P=3.0), 410)
-    assert not m_code_alone(block(m={10: 410}, X=3.0), 410)
-    assert not m_code_alone(block(m={10: 410, 8: 8}), 410)
-
-
 VALUES = {"1": 2.0, "5420": 12.5, "_x": -3.25, "ab": 7.0}
 
 
@@ -233,9 +200,3 @@ def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
     line = split_line(text, POLAR_WORDS)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
-
-
-@pytest.mark.parametrize("text", ["g1x9", "x9c9.0", "g1c09", "m9", "g1x9z9f9"])
-def test_only_a_g_is_an_exact_stop(text):
-    line = split_line(text, POLAR_WORDS)
-    assert (line.text, line.exact_stop, line.rewritten) == (text, False, False)

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a planned section hands to the interpreter, block by block."""
 
-from types import SimpleNamespace
-
 import pytest
 
 from g12.errors import Refusal
 from g12.host import borrowed
 from g12.host.interp import PackageState
-from g12.host.section.output import STOP_HERE, Action, PathControl, SectionOutput
-from g12.moves.steps import BlockMoves
-from g12.section.modes import SectionModes
+from g12.host.section_output import STOP_HERE, PathControl, SectionOutput
+from g12.machine_ini import Axis
+from g12.moves.setup import SectionMachine
+from g12.moves.steps import Segments
+from g12.polar.polar_section import Polar
+from g12.section.modes import Action, SectionModes
+from g12.settings import Settings
 from support.section_starts import START
 
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
@@ -92,8 +94,9 @@ class Canon:
 
 
 def emission_of(interp):
-    setup = SimpleNamespace(tolerance=0.005, words=SimpleNamespace(beside=0.0))
-    return SectionOutput(interp, START, setup, canon=Canon(interp))
+    axes = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
+    section = Polar(START, SectionMachine(frozenset(axes), Settings(), axes))
+    return SectionOutput(interp, section, canon=Canon(interp))
 
 
 def handed_over(steps, interp=None, exact=()):
@@ -103,24 +106,11 @@ def handed_over(steps, interp=None, exact=()):
 
 
 def run(stop=False, line=7, axes="XC", segments=LINE):
-    return BlockMoves(line, axes, segments, stop)
+    return Segments(line, axes, segments, stop)
 
 
 SMOOTH, OLD = "G64P0.0025Q0", "G64P0Q0"
 RELEASED = ["F100"]
-
-
-def test_the_section_begins_with_a_stop_and_its_second_part_does_not():
-    interp = Interpreter()
-    emission = emission_of(interp)
-    for _ in range(2):
-        assert list(emission.run([run()], MODES, ())) == []
-    assert interp.begins == 7 and STOP_HERE not in interp.done
-
-
-def test_a_programmed_tolerance_is_kept():
-    interp = Interpreter(tolerance=0.1, merging=0.2)
-    assert handed_over([run()], interp).done == [FIRST, *NEXT, *RELEASED]
 
 
 @pytest.mark.parametrize(("tolerance", "blended"), [(0.1, [SMOOTH, "G64P0.1Q0"]), (0.001, [])])
@@ -176,10 +166,6 @@ def test_feed_per_revolution_is_left_and_comes_back_with_each_part(feed_mode, fi
     assert interp.motion_mode == 30
 
 
-def test_comments_need_no_modes():
-    assert handed_over([Action(8, "(MSG,x)", None), run()]).done[:2] == ["(MSG,x)", SMOOTH]
-
-
 def test_path_control_commanded_inside_stays():
     g64, g61 = Action(8, "G64P0.1", MODES), Action(10, "G61", MODES)
     done = handed_over([run(), g64, run(line=9), g61, run(line=11)]).done
@@ -187,12 +173,6 @@ def test_path_control_commanded_inside_stays():
     assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
     back = ["G64P0.1Q0.1", "G61", *RELEASED]
     assert done[third:] == ["G61", SMOOTH, FIRST, *NEXT, STOP_HERE, *back]
-
-
-def test_saved_state_is_that_of_its_call_level():
-    interp = handed_over([Action(8, "M70", MODES, level=3)])
-    assert interp.levels[interp.done.index("M70")] == 3
-    assert interp.call_level == 1
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from g12.errors import Refusal, number
 from g12.request.common import LEFT_OUT
 from g12.request.context import Tool
-from g12.shapes import holes, polygon, round_pocket, slot
-from g12.shapes.entries import ShapeEntries, ShapeMachine, check_nearest
+from g12.shapes import holes, pockets, polygon
+from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
 from support.planner_context import MM, reported
 
@@ -23,8 +23,8 @@ LATHE = ShapeMachine(False, 3.0, 1.0, 0.0025, False)
 LIVE = HoleMachine(c=0.0, spindle=0, spindle_code=3, speed=500.0, beside=0.0, diameters=True)
 PLANS = {
     "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
-    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
-    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
+    "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
+    "polar_pocket": (pockets.ROUND_POCKET_ENTRIES, pockets.plan_round_pocket),
     "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
     "side_holes": (holes.SIDE_HOLES, holes.plan_side_holes),
     "face_hole_at": (holes.FACE_HOLE_AT, holes.plan_face_hole_at),
@@ -213,18 +213,6 @@ def test_what_just_fits_is_planned(shape, entries):
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_a_feed_is_that_of_the_call_or_the_active_one(shape):
-    slower = LATHE._replace(plunge_share=0.25)
-    for machine, entries, feeds in (
-        (LATHE, {}, (400, 400)),
-        (LATHE, dict(feed=LEFT_OUT), (300, 300)),
-        (slower, {}, (400, 100)),
-        (slower, dict(plunge_feed=90), (400, 90)),
-    ):
-        assert taken(numbers_of(shape, machine, **entries), "feed", "plunge_feed") == feeds
-
-
-@pytest.mark.parametrize("shape", SHAPES)
 def test_it_goes_on_at_a_feed_from_a_millimetre_above_the_face(shape):
     inches = FOUND._replace(inch=True)
     for found, heights in (
@@ -232,16 +220,6 @@ def test_it_goes_on_at_a_feed_from_a_millimetre_above_the_face(shape):
     ):  # fmt: skip
         made = taken(numbers_of(shape, found=found), "start_z", "near_z")
         assert made == pytest.approx(heights)
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_it_comes_no_nearer_to_the_centre_than_a_tool_beside_x_can(shape):
-    names, _ = PLANS[shape]
-    entries = ShapeEntries(shape, names, dict.fromkeys(names, LEFT_OUT), FOUND)
-    extent = planned(shape).extent
-    check_nearest(entries, extent, LATHE._replace(nearest=extent.x[0]))
-    with pytest.raises(Refusal, match="POLAR_TOOL_OFFSET lets it no nearer than"):
-        check_nearest(entries, extent, LATHE._replace(nearest=extent.x[0] + 1e-6))
 
 
 @pytest.mark.parametrize(
@@ -339,24 +317,6 @@ def test_a_way_down_that_never_ends_is_refused():
 THIN = FOUND._replace(spindle_tool=Tool(3, 0.03))
 
 
-@pytest.mark.parametrize(("shape", "per_half_turn"), [("polar_pocket", 1), ("polar_slot", 2)])
-def test_half_turns_without_number_are_refused(shape, per_half_turn):
-    """A tool typed a thousand times too small must not hang the preview."""
-
-    def moves(levels):
-        numbers = numbers_of(shape, LATHE, THIN, depth=0.5 * levels, depth_per_pass=0.5)
-        return per_half_turn * half_turns_of(numbers)
-
-    per_level = moves(3) - moves(2)
-    most = 2 + (100_000 - moves(2)) // per_level
-    assert moves(most) <= 100_000
-    count = moves(most) + per_level
-    deeper = dict(depth=0.5 * (most + 1), depth_per_pass=0.5)
-    assert refusal(shape, LATHE, THIN, **deeper) == (
-        f"{shape}: depth_per_pass makes {count} moves, the most is 100000"
-    )
-
-
 REFUSING = LATHE._replace(pole_refused=True)
 
 
@@ -400,14 +360,6 @@ def test_a_polygon_turns_c_once_with_every_round():
     low, high = made.extent.c
     assert turns == 3 * 2 + 1
     assert 30 <= high < 90 and -360 * turns - 60 < low <= 30 - 360 * turns
-
-
-def test_a_polygon_keeps_its_allowance_for_one_more_round():
-    for allowance, finish in ((LEFT_OUT, 0), (0.0, 0), (0.5, 1)):
-        numbers = numbers_of("polar_polygon", allowance=allowance)
-        rough = numbers["apothem"] - (numbers["rounds"] - 1) * numbers["step"]
-        assert rough == pytest.approx(13.5 + 3 + max(allowance, 0))
-        assert taken(numbers, "finish", "finish_apothem") == (finish, 13.5 + 3)
 
 
 @pytest.mark.parametrize("sides", [2, 100])
@@ -472,22 +424,6 @@ def test_first_and_further_turns(c, first, step, first_turn, turn):
 def test_where_the_first_hole_is(name, machine, entries, x, turn):
     numbers = numbers_of(name, machine, **entries)
     assert taken(numbers, "at_x", "first_turn") == pytest.approx((x, turn))
-
-
-@pytest.mark.parametrize(
-    ("peck", "expected"),
-    [
-        (LEFT_OUT, (1, 8, 0, 0)),
-        (3, (3, 3, 1, 0.254)),
-        (-3, (3, 3, 0, 0.254)),
-        (8, (1, 8, 1, 0.254)),
-        (4, (2, 4, 1, 0.254)),
-        (0.2, (40, 0.2, 1, 0.1)),
-    ],
-)
-def test_pecks(peck, expected):
-    numbers = numbers_of("face_holes", peck=peck)
-    assert taken(numbers, "pecks", "step", "full", "clear") == pytest.approx(expected)
 
 
 def test_how_far_the_axes_go_to_holes():

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The programmed contour: lines and arcs in a flat plane, each with the block it comes from.
 
-The plane has the axes x and c, and z at right angles to it, all in program units; its points are
-complex numbers x + jc. On a part's face they are X (a radius value, whatever the X words are), C
-as a length, and Z, with their origin in the spindle's centre; on a cylinder C as a length, Z, and
-X. An angle grows from +x to +c; a positive sweep is counterclockwise (G3), in radians.
+The plane has a first and a second axis, and a height at right angles to it, all in program units;
+its points are complex numbers, first + j second. On a part's face they are X (a radius value,
+whatever the X words are), C as a length, and Z, with their origin in the spindle's centre; on a
+cylinder C as a length, Z, and X. An angle grows from the first axis to the second; a positive sweep
+is counterclockwise (G3), in radians.
 """
 
 from __future__ import annotations
@@ -17,13 +18,14 @@ from typing import NamedTuple, NoReturn
 from g12.errors import Refusal, number
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, recentred, sweep_between
 from g12.lengths import LARGEST
+from g12.section.modes import Action, BlockEnd
 
 SAME_POINT = 1e-6  # program units: points within it coincide, a shorter move is rounding
 RADIUS_TOLERANCE_RATIO = 0.001  # of the radius: the mismatch that LinuxCNC allows any arc
 
 
 class PlaneMove(NamedTuple):
-    """A line or an arc in the plane, with Z from ``z0`` to ``z1``.
+    """A line or an arc in the plane, with the height from ``h0`` to ``h1``.
 
     ``offset`` is the compensation in force: the tool's radius, above zero with the tool on the
     left of the path (G41), below zero on its right (G42), 0 without. ``feed`` is the tool centre's
@@ -34,8 +36,8 @@ class PlaneMove(NamedTuple):
     feed: float
     offset: float
     curve: Curve
-    z0: float
-    z1: float
+    h0: float
+    h1: float
     side: int = 0
 
     @property
@@ -52,40 +54,33 @@ class PlaneMove(NamedTuple):
 
     @property
     def lowest(self) -> float:
-        return min(self.z0, self.z1)
+        return min(self.h0, self.h1)
 
     def level(self, share: float) -> float:
-        return self.z0 + share * (self.z1 - self.z0)
+        return self.h0 + share * (self.h1 - self.h0)
 
     def reversed(self) -> PlaneMove:
         """Return the move from its end to its start, with the same compensation."""
-        return self._replace(curve=self.curve.reversed(), z0=self.z1, z1=self.z0)
+        return self._replace(curve=self.curve.reversed(), h0=self.h1, h1=self.h0)
 
     def portion(self, first: float, last: float) -> PlaneMove:
         curve = self.curve.portion(first, last)
-        return self._replace(curve=curve, z0=self.level(first), z1=self.level(last))
+        return self._replace(curve=curve, h0=self.level(first), h1=self.level(last))
 
 
 class Plunge(NamedTuple):
     line: int
     feed: float
-    z0: float
-    z1: float
-
-
-class Mark(NamedTuple):
-    """A block without motion; its ``action`` is a step of the plan at this point of the order."""
-
-    line: int
-    action: object
+    h0: float
+    h1: float
 
 
 class PlaneNames(NamedTuple):
     """What a program calls the axes of the plane, and an arc's centre, for messages."""
 
-    x: str
-    c: str
-    z: str
+    first: str
+    second: str
+    height: str
     centre: str
 
 
@@ -93,24 +88,29 @@ FACE_NAMES = PlaneNames("X", "C", "Z", "I and J")
 
 
 class Start(NamedTuple):
-    """The machine's position: X radius value, angle of C in radians, Z."""
+    """The machine's position: the slide of the plane, the rotary axis in radians, the height.
 
-    x: float
+    Its slide moves one axis of the plane, on a face the first one; there it is a radius value.
+    """
+
+    slide: float
     angle: float
-    z: float
+    height: float
 
 
-PathElement = PlaneMove | Plunge | Mark  # of a contour, or of the tool centre's path
+Motion = PlaneMove | Plunge
+PathElement = Motion | Action | BlockEnd  # of a contour, or of the tool centre's path
 
 
 class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
-    ``x``, ``c`` and ``z`` are the programmed position in the plane, readable at any time.
-    ``code`` and ``names`` are for messages. ``diameter``: the program's words for x are diameters,
-    None where they cannot be. The values passed in are radii; messages use it to name the reading.
-    ``radius_tolerance`` is how far an arc's radii at start and end may differ. ``beside`` is the
-    tool's distance from the programmed start along the second axis; the first G1 removes it.
+    ``first``, ``second`` and ``height`` are the programmed position, readable at any time. ``code``
+    and ``names`` are for messages. ``diameter``: the program's words for the first axis are
+    diameters, None where they cannot be. The values passed in are radii; messages use it to name
+    the reading. ``radius_tolerance`` is how far an arc's radii at start and end may differ.
+    ``beside`` is the tool's distance from the programmed start along the second axis; the first G1
+    removes it.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``mirrored``: the tool of a G41 is on the
     right, as its radius is below 0, and that of a G42 on the left. ``start`` is the machine's
@@ -120,9 +120,9 @@ class Contour:
 
     def __init__(
         self,
-        x: float,
-        z: float,
-        c: float = 0.0,
+        first: float,
+        second: float,
+        height: float,
         *,
         code: str = "G12.1",
         names: PlaneNames = FACE_NAMES,
@@ -131,13 +131,14 @@ class Contour:
         start: Start | None = None,
         beside: float = 0.0,
     ) -> None:
-        self.x, self.c, self.z = x, c, z
+        self.first, self.second, self.height = first, second, height
         self.code, self.names = code, names
         self.diameter, self.radius_tolerance = diameter, radius_tolerance
         self.elements: list[PathElement] = []
-        self._end, self._level = complex(x, c + beside), z  # of the elements, within SAME_POINT
+        # of the elements, within SAME_POINT
+        self._end, self._level = complex(first, second + beside), height
         self.side, self.mirrored = 40, False
-        self.start = start or Start(x, 0.0, z)
+        self.start = start or Start(first, 0.0, height)
         self._offset = self._radius = 0.0
         self._hand = 0
         self._switch: int | None = None  # line of the G40, G41 or G42 that waits for its G1
@@ -147,81 +148,80 @@ class Contour:
     def refuse(self, line: int, reason: str) -> NoReturn:
         raise Refusal(f"{self.code} line {line}: {reason}")
 
-    def line(
+    def straight(
         self,
-        x: float | None = None,
-        c: float | None = None,
-        z: float | None = None,
+        first: float | None = None,
+        second: float | None = None,
+        height: float | None = None,
         *,
-        line: int,
+        at: int,
         feed: float,
     ) -> None:
-        """Add a G1 to an absolute point; a coordinate that is None stays."""
-        end, z1 = self._absolute(line, x, c, z)
-        z0, in_plane = self._level, x is not None or c is not None
+        """Add the G1 of line ``at`` to an absolute point; a coordinate that is None stays."""
+        end, h1 = self._absolute(at, first, second, height)
+        h0, in_plane = self._level, first is not None or second is not None
         length = abs(end - self._end) if in_plane else 0.0
-        self._check_feed(feed, line)
-        self._check_switch(line, length)
+        self._check_feed(feed, at)
+        self._check_switch(at, length)
         if length > SAME_POINT:
             curve = Line(self._end, end)
-            move = PlaneMove(line, feed, self._offset, curve, z0, z1, self._hand)
+            move = PlaneMove(at, feed, self._offset, curve, h0, h1, self._hand)
             self.elements.append(move)
-            self._end, self._level = end, z1
-        elif abs(z1 - z0) > SAME_POINT:
-            self.elements.append(Plunge(line, feed, z0, z1))
-            self._level = z1
-        self.x, self.c, self.z = end.real, end.imag, z1
+            self._end, self._level = end, h1
+        elif abs(h1 - h0) > SAME_POINT:
+            self.elements.append(Plunge(at, feed, h0, h1))
+            self._level = h1
+        self._reach(end, h1)
 
     def arc(
         self,
         turn: int,
-        x: float | None = None,
-        c: float | None = None,
-        z: float | None = None,
+        first: float | None = None,
+        second: float | None = None,
+        height: float | None = None,
         *,
         i: float | None = None,
         j: float | None = None,
         radius: float | None = None,
-        line: int,
+        at: int,
         feed: float,
     ) -> None:
-        """Add a G2 (``turn`` -1) or G3 (``turn`` +1) to the absolute point given.
+        """Add the G2 (``turn`` -1) or G3 (``turn`` +1) of line ``at`` to an absolute point.
 
-        Either ``i`` and/or ``j``: the centre from the arc's start, or ``radius``: negative for the
-        arc over a half turn. The start as end point, or no end point, is a full circle with
-        ``i``/``j``.
+        Either ``i`` and/or ``j``: the centre from the arc's start along the first and the second
+        axis, or ``radius``: negative for the arc over a half turn. The start as end point, or no
+        end point, is a full circle with ``i``/``j``.
         """
-        self._check_arc(turn, i, j, radius, line, feed)
-        end, z1 = self._absolute(line, x, c, z)
-        self._check_lengths(line, (*self.names.centre.split(" and "), "R"), (i, j, radius))
+        self._check_arc(turn, i, j, radius, at, feed)
+        end, h1 = self._absolute(at, first, second, height)
+        self._check_lengths(at, (*self.names.centre.split(" and "), "R"), (i, j, radius))
         if radius is None:
-            curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), line)
+            curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), at)
         else:
-            curve = self._with_radius(turn, end, radius, line)
-        move = PlaneMove(line, feed, self._offset, curve, self._level, z1, self._hand)
+            curve = self._with_radius(turn, end, radius, at)
+        move = PlaneMove(at, feed, self._offset, curve, self._level, h1, self._hand)
         self.elements.append(move)
-        self._end, self._level = end, z1
-        self.x, self.c, self.z = end.real, end.imag, z1
+        self._end, self._level = end, h1
+        self._reach(end, h1)
 
-    def compensation(self, side: int, radius: float, *, line: int) -> None:
-        """Switch to G40, G41 or G42 (``side`` 40, 41, 42) with the next block, which must be a G1.
+    def compensate(self, side: int, radius: float, *, at: int) -> None:
+        """Switch to G40, G41 or G42 (``side`` 40, 41, 42) on line ``at``, which must be a G1.
 
-        Call it before the :meth:`line` of the same block. ``radius`` is the tool's, and may be 0.
-        Below 0 it is a size correction: the path is offset by it to the other side.
+        Call it before the :meth:`straight` of the same block. ``radius`` is the tool's, and may be
+        0. Below 0 it is a size correction: the path is offset by it to the other side.
         """
         self._check_waiting()
         if side == self.side:
             return
         if 40 not in (side, self.side):
             self.refuse(
-                line, f"G{side}: cancel G{self.side} of line {self._switched_on} with G40 first"
+                at, f"G{side}: cancel G{self.side} of line {self._switched_on} with G40 first"
             )
         self._radius = abs(radius) if side != 40 else abs(self._offset)
         self.mirrored = radius < 0.0 if side != 40 else self.mirrored
         self._hand = {40: 0, 41: 1, 42: -1}[side]
         self._offset = self._hand * radius
-        self._switched_on = line
-        self._switch = line
+        self._switched_on = self._switch = at
         self.side = side
 
     def continued(self, start: Start) -> Contour:
@@ -233,19 +233,18 @@ class Contour:
         following.elements, following.notes, following.start = [], [], start
         return following
 
-    def mark(self, action: object, *, line: int) -> None:
+    def mark(self, action: Action | BlockEnd) -> None:
+        """Add a step without motion at this point of the order."""
         self._check_waiting()
-        self.elements.append(Mark(line, action))
+        self.elements.append(action)
 
-    def close(self, *, line: int) -> None:
+    def close(self, *, at: int) -> None:
         """Check that the section may end here: compensation is off."""
         self._check_waiting()
         if self.side != 40:
-            self.refuse(
-                line, f"G{self.side} of line {self._switched_on} is still on: G40 is missing"
-            )
+            self.refuse(at, f"G{self.side} of line {self._switched_on} is still on: G40 is missing")
 
-    def wait(self, *, line: int) -> None:
+    def wait(self, *, at: int) -> None:
         """Check that M66 may wait for the machine here: compensation is off.
 
         Under compensation the next block decides where the tool stops, and that block is not read
@@ -253,20 +252,23 @@ class Contour:
         """
         if self.side != 40:
             self.refuse(
-                line,
+                at,
                 "M66 waits for the machine, which needs G40: "
                 f"G{self.side} of line {self._switched_on} is on",
             )
 
+    def _reach(self, end: complex, height: float) -> None:
+        self.first, self.second, self.height = end.real, end.imag, height
+
     def _absolute(
-        self, line: int, x: float | None, c: float | None, z: float | None
+        self, line: int, first: float | None, second: float | None, height: float | None
     ) -> tuple[complex, float]:
         """Return the end of a block, with the programmed position for what it leaves out."""
-        x = self.x if x is None else x
-        c = self.c if c is None else c
-        z = self.z if z is None else z
-        self._check_lengths(line, self.names, (x, c, z))
-        return complex(x, c), z
+        first = self.first if first is None else first
+        second = self.second if second is None else second
+        height = self.height if height is None else height
+        self._check_lengths(line, self.names, (first, second, height))
+        return complex(first, second), height
 
     def _check_lengths(
         self, line: int, words: Sequence[str], values: Sequence[float | None]
@@ -282,7 +284,7 @@ class Contour:
 
     def _check_waiting(self) -> None:
         if self._switch is not None:
-            either = f"{self.names.x} or {self.names.c}"
+            either = f"{self.names.first} or {self.names.second}"
             self.refuse(self._switch, f"G{self.side} needs a G1 with {either} in its own block")
 
     def _check_switch(self, line: int, length: float) -> None:
@@ -307,7 +309,7 @@ class Contour:
         line: int,
         feed: float,
     ) -> None:
-        name, beside = _name(turn), abs(self._end.imag - self.c)
+        name, beside = _name(turn), abs(self._end.imag - self.second)
         self._check_feed(feed, line)
         if beside > SAME_POINT:
             self.refuse(
@@ -324,7 +326,7 @@ class Contour:
 
     def _about_centre(self, turn: int, end: complex, arm: complex, line: int) -> Arc:
         """Return an arc about a centre, which is moved to be equally far from both ends."""
-        start, centre = self._end, complex(self.x, self.c) + arm
+        start, centre = self._end, complex(self.first, self.second) + arm
         if abs(end - start) <= SAME_POINT:
             return Arc(start, centre, turn * FULL_TURN)
         from_start, from_end = abs(arm), abs(end - centre)
@@ -368,8 +370,8 @@ class Contour:
         if self.diameter is None:
             return ""
         other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
-        for x0 in (self.x * ratio, self.x):
-            start = complex(x0, self.c)
+        for first in (self.first * ratio, self.first):
+            start = complex(first, self.second)
             if closes(start, complex(end.real * ratio, end.imag)):
                 return f"; it would close with X read as a {other} (POLAR_X = {other})"
         return ""

@@ -189,7 +189,7 @@ def _code(contour: Contour, move: PlaneMove) -> str:
 def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:
     turn = -1 if move.offset > 0.0 else 1
     sweep = sweep_between(joint.end_before, joint.start_after, corner, turn)
-    return move._replace(curve=Arc(joint.end_before, corner, sweep), z1=move.z0)
+    return move._replace(curve=Arc(joint.end_before, corner, sweep), h1=move.h0)
 
 
 def _parallel(contour: Contour, move: PlaneMove) -> Curve:
@@ -246,4 +246,4 @@ def _uncompensated(move: PlaneMove, start: complex, end: complex) -> tuple[PathE
 
 def _move_of_z(move: PlaneMove) -> tuple[PathElement, ...]:
     """Return the move of Z that remains of a move without length in the plane, if any."""
-    return () if move.z0 == move.z1 else (Plunge(move.line, move.feed, move.z0, move.z1),)
+    return () if move.h0 == move.h1 else (Plunge(move.line, move.feed, move.h0, move.h1),)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, TypeAlias
 
 from g12.lengths import MM_PER_INCH
@@ -29,6 +30,29 @@ def words_in(block: ParsedBlock, letters: str) -> dict[str, float]:
     """Return those of the words that a block has."""
     fields = ((letter, *WORD_FIELDS[letter]) for letter in letters)
     return {letter: getattr(block, value) for letter, flag, value in fields if getattr(block, flag)}
+
+
+POSITION_FIELDS = {  # of the interpreter: the program's position
+    "X": "current_x",
+    "Y": "current_y",
+    "Z": "current_z",
+    "A": "AA_current",
+    "B": "BB_current",
+    "C": "CC_current",
+    "U": "u_current",
+    "V": "v_current",
+    "W": "w_current",
+}
+
+
+def position_of(interp: Interp, letters: Iterable[str]) -> dict[str, float]:
+    """Return the program's position by letter, X as a radius."""
+    return {letter: getattr(interp, POSITION_FIELDS[letter]) for letter in letters}
+
+
+def set_position(interp: Interp, letters: Iterable[str], values: Iterable[float]) -> None:
+    for letter, value in zip(letters, values):
+        setattr(interp, POSITION_FIELDS[letter], value)
 
 
 def millimetres_per_unit(interp: Interp) -> float:

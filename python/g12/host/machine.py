@@ -84,7 +84,7 @@ class RunningMachine:
     @property
     def switches_kinematics(self) -> bool:
         """Whether sections on the face run by the machine's kinematics."""
-        return self.settings.polar_kinematics == "1"
+        return self.settings.polar_kinematics
 
     @functools.cached_property
     def _ini(self) -> Values:

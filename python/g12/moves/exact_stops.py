@@ -20,10 +20,9 @@ A stop costs v / a in time, about as much as the blending.
 from collections.abc import Callable, Sequence
 from math import hypot, inf, sqrt
 
-from g12.compensation.contour import Mark, PathElement, PlaneMove, Plunge
+from g12.compensation.contour import Motion, PathElement, PlaneMove, Plunge
 
-Direction = tuple[float, float, float]  # unit vector: along x and c of the plane, and z
-MotionElement = PlaneMove | Plunge
+Direction = tuple[float, float, float]  # unit vector: first and second axis of the plane, height
 TANGENT = 1e-4  # half the angle below which two directions are the same
 MOST_UNEQUAL = 2.2  # rounding where the second move is much quicker, relative to equal ones
 
@@ -40,11 +39,11 @@ def stops(
     are, in program units per second squared; where that is 0 they have to stop.
     """
     marked = [False] * len(path)
-    following: MotionElement | None = None
+    following: Motion | None = None
     stopping = True
     for k in range(len(path) - 1, -1, -1):
         element = path[k]
-        if isinstance(element, Mark):
+        if not isinstance(element, Motion):
             continue
         if following is not None:
             corner = _blending_distance(element, following, acceleration, stopping)
@@ -55,8 +54,8 @@ def stops(
 
 
 def _blending_distance(
-    a: MotionElement,
-    b: MotionElement,
+    a: Motion,
+    b: Motion,
     acceleration: Callable[[Direction, complex], float],
     stopping: bool,
 ) -> float:
@@ -80,25 +79,25 @@ def _blending_distance(
     return half_sine * square / (2.0 * from_a) * max(1.0, min(unequal, MOST_UNEQUAL))
 
 
-def _corner_point(a: MotionElement, b: MotionElement) -> complex:
+def _corner_point(a: Motion, b: Motion) -> complex:
     """Return where two elements meet in the plane; anywhere between two plunges."""
     if isinstance(a, PlaneMove):
         return a.end
     return b.start if isinstance(b, PlaneMove) else 1 + 0j
 
 
-def _direction(element: MotionElement, share: float) -> Direction:
-    """Return the unit vector (X, C, Z) of an element at a share of it."""
+def _direction(element: Motion, share: float) -> Direction:
+    """Return the unit vector of an element at a share of it."""
     if isinstance(element, Plunge):
-        return 0.0, 0.0, 1.0 if element.z1 > element.z0 else -1.0
+        return 0.0, 0.0, 1.0 if element.h1 > element.h0 else -1.0
     along = element.curve.direction(share)
-    if element.z0 == element.z1:
+    if element.h0 == element.h1:
         return along.real, along.imag, 0.0
-    length, z = element.length, element.z1 - element.z0
-    whole = hypot(length, z)
-    return along.real * length / whole, along.imag * length / whole, z / whole
+    length, rise = element.length, element.h1 - element.h0
+    whole = hypot(length, rise)
+    return along.real * length / whole, along.imag * length / whole, rise / whole
 
 
-def _length(element: MotionElement) -> float:
+def _length(element: Motion) -> float:
     along = element.length if isinstance(element, PlaneMove) else 0.0
-    return hypot(along, element.z1 - element.z0)
+    return hypot(along, element.h1 - element.h0)

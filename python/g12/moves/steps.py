@@ -1,12 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The moves of a planned section, in the order of the program. Lengths in program units."""
+"""The moves of a planned section, in the order of the program, and their F words.
+
+LinuxCNC in G94 takes F for the linear axes of a move, or for degrees per minute where only a rotary
+axis moves. Every segment gets the F that makes it last as long as its portion of the path at the
+programmed feed.
+
+Debian's 2.9.0~pre1 runs a segment too fast that moves a slide by next to nothing together with a
+rotary axis. So a segment that would move it by less than ``least`` leaves the slide where it is, to
+the last digit; the next segment adds the remainder.
+
+Lengths are in program units.
+"""
 
 from collections.abc import Callable, Sequence
+from math import degrees, hypot
 from typing import NamedTuple
 
-from g12.compensation.contour import Contour, Mark, PathElement, PlaneMove, Start
-from g12.moves.feed import Segment, Split, has_short_slide_move
+from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge, Start
 from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, TooManySegments
+from g12.section.line import AxisLetters
+from g12.section.modes import Action, BlockEnd
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
 # STOP_SHARE is for a stop by G61, into which LinuxCNC cuts the corner before it deeper. Blended
@@ -14,25 +27,30 @@ CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too
 STOP_SHARE = 0.7  # of the tolerance, before a stop
 ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
 REMAINDER_SHARE = 1e-3  # of the least step of a slide: a smaller remainder is rounding
+LEAST_TURN = 1e-9  # degrees: less is no turn
+
+# The end of a segment: the plane's slide, the rotary axis in degrees, the height; and its F.
+Segment = tuple[float, float, float, float]
 
 
 class MachinePosition(NamedTuple):
-    """The machine's position: X radius value, C in degrees, Z."""
+    """The machine's position: the plane's slide (X as a radius), the rotary axis, the height.
 
-    x: float
-    c: float
-    z: float
+    The angle is in degrees, continuous over the section: it may leave 0..360.
+    """
+
+    slide: float
+    turn: float
+    height: float
 
 
-class BlockMoves(NamedTuple):
+class Segments(NamedTuple):
     """G1 moves of one block, one after the other, all in G90 and G94.
 
-    ``axes`` are the words to write, as "XC", "XZC" or "Z". Each segment is ``(x, c, z, feed)``: X
-    radius value, C in degrees, continuous over the section (it may leave 0..360), and F as G94
-    takes it: for the X and Z portion of the move, or in degrees per minute where neither changes. F
-    may be small: write it with six significant digits. A segment that does not move a slide repeats
-    the same number. With ``stop`` the last segment must end in an exact stop, because
-    LinuxCNC would round the corner by more than the tolerance.
+    ``axes`` are the words to write, as "XC", "ZCX" or "Z". F is as G94 takes it. It may be small:
+    write it with six significant digits. A segment that does not move a slide repeats the same
+    number. With ``stop`` the last segment must end in an exact stop, because LinuxCNC would round
+    the corner by more than the tolerance.
     """
 
     line: int
@@ -41,62 +59,152 @@ class BlockMoves(NamedTuple):
     stop: bool
 
 
+class FaceSwitch(NamedTuple):
+    """The switch to the part's face (``on``), or back, at the machine's ``position``."""
+
+    line: int
+    on: bool
+    position: MachinePosition
+    share: float = 1.0  # of the INI's accelerations of X and Y, until the switch back
+    override: float = 1.0  # the highest feed override that is followed there
+
+
+class FaceMove(NamedTuple):
+    """A move on the face, in its X and Y: C's zero line is the angle of C at the switch.
+
+    ``segments`` are positions on the move. The last is the end, and they include the extremes of
+    every axis.
+    """
+
+    line: int
+    move: Motion
+    segments: list[MachinePosition]
+
+
+Step = Segments | FaceMove | FaceSwitch | Action | BlockEnd
+
+
 class SectionPlan(NamedTuple):
     """The moves of a section.
 
-    ``steps`` holds each :class:`BlockMoves` (on the face the moves and switches of
-    `g12.polar.face`), and each mark's action, in order. ``position`` is the machine's after them,
-    ``angle`` that of C in the contour's plane, in radians. ``notes`` are messages for the operator.
+    ``position`` is the machine's after them, ``angle`` that of the rotary axis in the contour's
+    plane, in radians. ``notes`` are messages for the operator.
     """
 
-    steps: list[object]
+    steps: list[Step]
     position: MachinePosition
     angle: float
     notes: list[str]
 
     @property
     def end(self) -> Start:
-        return Start(self.position.x, self.angle, self.position.z)
+        return Start(self.position.slide, self.angle, self.position.height)
+
+
+class Split(NamedTuple):
+    """The ends of an element's segments, its start first.
+
+    Per end: the position of the plane's slide, the angle of the rotary axis in radians, continuous
+    over the element, and the length of the path up to it.
+    """
+
+    slides: list[float]
+    angles: list[float]
+    lengths: list[float]
+
+
+def has_short_slide_move(split: Split, least: float) -> bool:
+    """Return whether a segment turns and moves the slide, but by less than ``least``."""
+    slides, angles = split.slides, split.angles
+    return any(
+        abs(x1 - x0) < least and x1 != x0 and abs(a1 - a0) > LEAST_TURN
+        for x0, x1, a0, a1 in zip(slides, slides[1:], angles, angles[1:])
+    )
+
+
+def segments_with_feed(
+    split: Split, start: MachinePosition, move: PlaneMove, zero: float, least: float
+) -> list[Segment]:
+    """Return the segments of a move that the machine makes from ``start``.
+
+    ``zero`` is the angle in degrees of the rotary axis where that of the split is 0.
+    """
+    slide, turn, height = start
+    rise = (move.h1 - move.h0) / split.lengths[-1]
+    feed = move.feed / hypot(1.0, rise)
+    segments, done = [], 0.0
+    for to_slide, angle, length in zip(split.slides[1:], split.angles[1:], split.lengths[1:]):
+        to_turn = zero + degrees(angle)
+        turned = abs(to_turn - turn)
+        if turned < LEAST_TURN:
+            to_turn, turned = turn, 0.0
+        to_height = move.h0 + rise * length if rise else height
+        if abs(to_slide - slide) < least and turned:
+            to_slide = slide
+        if hypot(to_slide - slide, to_height - height) < least and turned:
+            to_height = height
+        distance = hypot(to_slide - slide, to_height - height) or turned
+        if distance:
+            segments.append((to_slide, to_turn, to_height, feed * distance / (length - done)))
+            slide, turn, height, done = to_slide, to_turn, to_height, length
+    return segments
 
 
 class StepMaker:
-    """Makes the steps of a plan, one element of the tool centre's path after the other."""
+    """Makes the steps of a plan, one element of the tool centre's path after the other.
 
-    def __init__(self, contour: Contour, position: MachinePosition) -> None:
-        self.steps: list[object] = []
-        self.position = position
-        self._contour = contour
+    ``least`` is the least move of a slide together with the rotary axis.
+    """
+
+    def __init__(
+        self, contour: Contour, position: MachinePosition, letters: AxisLetters, least: float
+    ) -> None:
+        self.steps: list[Step] = []
+        self.position, self.letters = position, letters
+        self._contour, self._least = contour, least
+
+    def plunge(self, move: Plunge, stop: bool) -> None:
+        there = self.position._replace(height=move.h1)
+        self._run(move.line, self.letters.height, [(*there, move.feed)], stop)
+
+    def _segments(self, move: PlaneMove, split: Split, zero: float, stop: bool) -> None:
+        """Make the segments of a move in the plane."""
+        segments = segments_with_feed(split, self.position, move, zero, self._least)
+        slide, turn, height = self.letters
+        level = move.h0 == move.h1
+        self._run(move.line, slide + turn if level else slide + turn + height, segments, stop)
 
     def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
         if segments:
-            self.steps.append(BlockMoves(line, axes, segments, stop))
+            self.steps.append(Segments(line, axes, segments, stop))
             self.position = MachinePosition(*segments[-1][:3])
 
-    def _add_remainder(self, path: Sequence[PathElement], x: float, z: float, least: float) -> None:
-        """Move the slides to x and z, by the remainder of the last segments of a path."""
-        rest = {"X": x - self.position.x, "Z": z - self.position.z}
-        axes = "".join(axis for axis, off in rest.items() if abs(off) > REMAINDER_SHARE * least)
+    def _add_remainder(self, path: Sequence[PathElement], slide: float) -> None:
+        """Move the slides to the path's end, by the remainder of its last segments."""
+        moves = [element for element in path if isinstance(element, Motion)]
+        if not moves:
+            return
+        last, there = moves[-1], self.position
+        ends = (slide, self.letters.slide), (last.h1, self.letters.height)
+        offs = zip(ends, (there.slide, there.height))
+        axes = "".join(
+            letter for (end, letter), at in offs if abs(end - at) > REMAINDER_SHARE * self._least
+        )
         if axes:
-            last = [element for element in path if not isinstance(element, Mark)][-1]
-            self._run(last.line, axes, [(x, self.position.c, z, last.feed)], True)
+            self._run(last.line, axes, [(slide, there.turn, last.h1, last.feed)], True)
 
     def _split(
-        self,
-        move: PlaneMove,
-        split: Callable[[float], Split],
-        tolerance: float,
-        stop: bool,
-        least: float,
+        self, move: PlaneMove, split: Callable[[float], Split], tolerance: float, stop: bool
     ) -> Split:
         """Return the segments that ``split`` makes of a move; refuse too many of them.
 
         ``split`` is called with a deviation, and again where a segment would move its slide by less
-        than ``least``: that segment does not move the slide, and deviates by that much more.
+        than the least: that segment does not move the slide, and deviates by that much more.
         """
         try:
             ends = split(chord_deviation(tolerance, stop))
-            if has_short_slide_move(ends, least):
-                ends = split(chord_deviation(tolerance, stop, least))
+            if has_short_slide_move(ends, self._least):
+                ends = split(chord_deviation(tolerance, stop, self._least))
             return ends
         except TooManySegments:
             self._contour.refuse(

@@ -142,9 +142,9 @@ def _radius(
     """Return the radius between a point of a move and the pole: none for a point at the pole."""
     point, level, pole_level = move.curve.point(share), move.level(share), move.level(at_pole)
     if abs(point) > pole_radius:
-        inwards = move._replace(curve=Line(point, POLE), z0=level, z1=pole_level)
+        inwards = move._replace(curve=Line(point, POLE), h0=level, h1=pole_level)
         return [inwards.reversed() if outwards else inwards]
     if level == pole_level:
         return []
-    z0, z1 = (pole_level, level) if outwards else (level, pole_level)
-    return [Plunge(move.line, move.feed, z0, z1)]
+    h0, h1 = (pole_level, level) if outwards else (level, pole_level)
+    return [Plunge(move.line, move.feed, h0, h1)]

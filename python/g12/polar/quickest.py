@@ -20,7 +20,7 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from g12.compensation.contour import PathElement, PlaneMove
-from g12.polar.follow import Demand, FaceLimits, MoveDemands
+from g12.polar.face import Demand, FaceLimits, MoveDemands
 
 # of the INI's acceleration
 ACCELERATION_SHARES = (*(0.96**k for k in range(14)), 0.5, 0.4, 0.28, 0.18, 0.1, 0.05)

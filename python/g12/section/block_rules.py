@@ -9,8 +9,7 @@ from collections.abc import Collection, Iterable
 from enum import IntEnum
 from typing import NamedTuple
 
-from g12.section.line import BlockLocation, TextLine
-from g12.section.words import SectionWords
+from g12.section.line import BlockLocation, SectionWords, TextLine
 
 NO_CODE = -1
 

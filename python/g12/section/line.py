@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 from g12.errors import LONGEST_BLOCK, Refusal
-from g12.section.words import SectionWords
 
 _NUMBER = r"[-+]?[\d.]+"
 _COMMENT = re.compile(r"\(([^()]*)\)|;.*")
@@ -36,6 +35,46 @@ def plain_line_of(letters: str) -> Callable[[str], object]:
     return re.compile(
         rf"(?:[Nn]\d+)?[ \t]*(?:(?:[{either}]{_NUMBER}|[Gg]0?[123](?![\d.]))[ \t]*)+\r?", re.ASCII
     ).fullmatch
+
+
+class AxisLetters(NamedTuple):
+    """The letters of a section's axes: a slide and a rotary axis make the plane."""
+
+    slide: str
+    turn: str
+    height: str
+
+
+class SectionWords(NamedTuple):
+    """The words of a kind of section.
+
+    ``plane`` are the letters of its contour: first axis, second, height. ``axes`` are the machine's
+    for it. ``turn_is_length``: the rotary axis's word is a length in a plane through that axis, at
+    its present angle; else it is the angle in degrees. ``letters`` are groups that move one axis; a
+    block has one of each. ``centre`` are the letters of an arc's centre along the first and the
+    second axis. ``foreign`` maps letters that the parser does not know to those it is given
+    instead; ``relative`` are the letters for increments of an axis. ``plain`` matches a line that
+    has nothing but numbers after a move's letters.
+
+    ``planes`` are the G codes of planes that a section accepts. ``plane_name`` and ``centre_name``
+    are for messages; ``refused`` are reasons by letter, ``own_block`` is that of a height which may
+    not move together with the others, ``origin`` that of another work offset.
+    """
+
+    plane: str
+    axes: AxisLetters
+    turn_is_length: bool
+    letters: tuple[tuple[str, str], ...]
+    foreign: dict[str, str]
+    relative: dict[str, str]
+    plain: Callable[[str], object]
+    planes: frozenset[int]
+    plane_name: str
+    centre: tuple[str, str]
+    centre_name: str
+    refused: dict[str, str]
+    own_block: str
+    origin: str
 
 
 class BlockLocation(NamedTuple):

@@ -42,6 +42,25 @@ class SectionModes(NamedTuple):
     motion: int
 
 
+class Action(NamedTuple):
+    """A block without motion, in order between the moves.
+
+    ``modes`` are those in force at that point of the path, None for a comment that needs none.
+    ``level`` is the call level whose saved state an M70 to M72 refers to, None for other blocks.
+    """
+
+    line: int
+    text: str
+    modes: SectionModes | None
+    level: int | None = None
+
+
+class BlockEnd(NamedTuple):
+    """The end of a block before another one on the same line, as in a loop."""
+
+    line: int
+
+
 def modes_after(modes: SectionModes, block: SectionBlock, speed: float) -> SectionModes:
     """Return the modes after the codes and F of ``block``, with ``speed`` by its S."""
     words = block.words

@@ -5,16 +5,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from g12.cylinder.plan import CylinderSettings, plan
-from g12.cylinder.start import RADIUS, check_cylinder_start, cylinder_setup
+from g12.cylinder.cylinder_section import RADIUS, Cylinder
 from g12.errors import BlockRefusal
 from g12.host import messages
 from g12.host.interp import MOVE_WORDS, words_in
 from g12.host.machine import MACHINE
-from g12.host.section.kind import SectionKind, check_ini, refuse_typed, run_section
-from g12.moves.setup import SectionSetup
-from g12.section.codes import SectionCodes, codes_with_word
-from g12.section.start import SectionStart
+from g12.host.section_handler import check_ini, refuse_typed, run_section, section_machine
+from g12.section.start import SectionCodes, codes_with_word
 
 check_at_start = check_ini
 
@@ -25,24 +22,13 @@ def cylinder_mode(self, **words) -> Iterator[int]:
     block, code = self.blocks[self.remap_level], messages.code_of_block(self)
     if not (block.c_flag and block.c_number == 0.0):
         refuse_typed(self)
-        yield from run_section(self, CYLINDER_SECTION)
+        messages.settle(self)
+        yield from run_section(
+            self, Cylinder, _codes, lambda start: Cylinder(start, section_machine())
+        )
     elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
         raise BlockRefusal(code, f"{RADIUS}0 must be alone in its block")
 
 
-def _setup(start: SectionStart) -> SectionSetup[CylinderSettings]:
-    check_cylinder_start(start, MACHINE.coordinates)
-    return cylinder_setup(start, MACHINE.settings, MACHINE.axes)
-
-
 def _codes(code: str) -> SectionCodes:
     return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
-
-
-CYLINDER_SECTION = SectionKind(
-    letters=RADIUS,
-    setup=_setup,
-    codes=_codes,
-    plan=lambda contour, setup, start: plan(contour, setup.plan),
-    surface=lambda settings: settings.radius,
-)

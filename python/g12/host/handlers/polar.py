@@ -13,14 +13,16 @@ from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, words_in
 from g12.host.machine import MACHINE
 from g12.host.program_lines import ProgramLines, read_source
-from g12.host.section.kind import SectionKind, check_ini, is_typed, refuse_typed, run_section
+from g12.host.section_handler import (
+    check_ini,
+    is_typed,
+    refuse_typed,
+    run_section,
+    section_machine,
+)
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
-from g12.moves.setup import SectionSetup
-from g12.polar import plan as polar
-from g12.polar.plan import PolarSettings
-from g12.polar.start import check_section_start, polar_setup
-from g12.section.codes import SectionCodes, codes_of_section
-from g12.section.start import SectionStart
+from g12.polar.polar_section import Polar
+from g12.section.start import SectionCodes, codes_of_section
 from g12.shapes import SHAPE_SUBS
 
 MDI_LINE = 0  # the number of a line in MDI
@@ -39,7 +41,11 @@ def polar_on(self, **words) -> Iterator[int]:
     """Read, plan and execute a section: the handler of G12.1, which yields to wait."""
     refuse_typed(self)
     in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
-    yield from run_section(self, SHAPE_SECTION if in_shape else POLAR_SECTION)
+    if not in_shape:
+        messages.settle(self)
+    yield from run_section(
+        self, Polar, _codes, lambda start: Polar(start, section_machine(), in_shape=in_shape)
+    )
 
 
 @messages.waiting_handler
@@ -77,28 +83,5 @@ def _leave_face(interp: Interp) -> Iterator[int]:
         raise BlockRefusal(code, kinematics_switch.not_switched())
 
 
-def polar_section_setup(start: SectionStart) -> SectionSetup[PolarSettings]:
-    """Return the setup of a section on the face; refuse to begin it where none can."""
-    check_section_start(start, MACHINE.coordinates)
-    return polar_setup(start, MACHINE.settings, MACHINE.axes, MACHINE.face)
-
-
 def _codes(code: str) -> SectionCodes:
     return codes_of_section(code, MACHINE.remaps.values(), polar_on.__name__, polar_off.__name__)
-
-
-POLAR_SECTION = SectionKind(
-    letters="",
-    setup=polar_section_setup,
-    codes=_codes,
-    plan=lambda contour, setup, start: polar.plan(contour, setup.plan, c=start.c),
-)
-
-
-def _setup_of_shape(start: SectionStart) -> SectionSetup[PolarSettings]:
-    """Return the setup of a shape's section, whose tool goes down along a ramp."""
-    setup = polar_section_setup(start)
-    return setup._replace(words=setup.words._replace(third_with_others=True))
-
-
-SHAPE_SECTION = POLAR_SECTION._replace(setup=_setup_of_shape, in_shape=True)

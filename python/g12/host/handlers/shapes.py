@@ -13,28 +13,31 @@ from g12.errors import BlockRefusal
 from g12.host import borrowed, messages, modes, reported
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
-from g12.host.handlers.polar import polar_section_setup
 from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.section.kind import FACE_ON, check_clamp, check_ini
-from g12.host.section.output import STOP_HERE
-from g12.host.section.start import is_alone, start_of_section
-from g12.moves.setup import SectionSetup
-from g12.moves.steps import BlockMoves
-from g12.polar.plan import POLE_SHARE, PolarSettings
-from g12.section.codes import code_of_handler
+from g12.host.section_handler import (
+    FACE_ON,
+    check_clamp,
+    check_ini,
+    is_alone,
+    section_machine,
+    start_of_section,
+)
+from g12.host.section_output import STOP_HERE
+from g12.moves.steps import Segments
+from g12.polar.polar_section import POLE_SHARE, Polar
 from g12.section.line import BlockLocation
-from g12.section.start import SectionStart
-from g12.shapes import holes, polygon, round_pocket, slot
+from g12.section.start import SectionStart, code_of_handler
+from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine
 
 check_at_start = check_ini
 SHAPE_CALLS = {  # names of the entries, planner
     "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
-    "polar_slot": (slot.SLOT_ENTRIES, slot.plan_slot),
-    "polar_pocket": (round_pocket.ROUND_POCKET_ENTRIES, round_pocket.plan_round_pocket),
+    "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
+    "polar_pocket": (pockets.ROUND_POCKET_ENTRIES, pockets.plan_round_pocket),
 }
 HOLE_CALLS = {
     "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
@@ -56,11 +59,11 @@ def polar_shape(self, **words):
     if face_in_force(self):
         raise BlockRefusal(name, FACE_ON)
     start = start_of_shape(self, name)
-    setup = polar_section_setup(start)
+    section = Polar(start, section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
     entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
-    plan = prepare(self, entries, start, setup)
+    plan = prepare(self, entries, start, section)
     set_locals_at(self, level, plan.locals)
     reported.begin_cut(self, entries, plan.cut)
     borrowed.begin(self)
@@ -69,13 +72,13 @@ def polar_shape(self, **words):
 
 
 def plan_of_shape(
-    interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
+    interp: Interp, entries: ShapeEntries, start: SectionStart, section: Polar
 ) -> ShapePlan:
-    machine, (_, planner) = shape_machine(setup), SHAPE_CALLS[entries.code]
+    machine, (_, planner) = shape_machine(section), SHAPE_CALLS[entries.code]
     plan = planner(entries, machine)
     check_nearest(entries, plan.extent, machine)
-    stay_in_travel(entries, plan.extent, setup)
-    own: dict[str, float] = {"x_word": 1 + setup.words.diameter, "x_rapid": 1 + start.diameter}
+    stay_in_travel(entries, plan.extent, section)
+    own: dict[str, float] = {"x_word": 1 + section.rules.diameter, "x_rapid": 1 + start.diameter}
     # on a wrapped axis a sign is the direction of the turn, and 360 is refused
     if interp.c_axis_wrapped:
         own["start_angle"] = plan.locals["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
@@ -83,30 +86,28 @@ def plan_of_shape(
 
 
 def plan_of_holes(
-    interp: Interp, entries: ShapeEntries, start: SectionStart, setup: SectionSetup[PolarSettings]
+    interp: Interp, entries: ShapeEntries, start: SectionStart, section: Polar
 ) -> ShapePlan:
     check_clamp(entries.refuse)
     close, opens = MACHINE.settings.c_clamp or (0, 0)
-    machine, (_, planner) = hole_machine(interp, start, setup), HOLE_CALLS[entries.code]
+    machine, (_, planner) = hole_machine(interp, start, section), HOLE_CALLS[entries.code]
     plan = planner(entries, machine)
-    stay_in_travel(entries, plan.extent, setup)
+    stay_in_travel(entries, plan.extent, section)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
     x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
     return plan._replace(locals={**plan.locals, **x_words, **own})
 
 
-def hole_machine(
-    interp: Interp, start: SectionStart, setup: SectionSetup[PolarSettings]
-) -> HoleMachine:
+def hole_machine(interp: Interp, start: SectionStart, section: Polar) -> HoleMachine:
     spindle = tool_spindle(interp)
     turning = type(interp).spindle_turning.fget(interp, spindle)  # a property with an argument
     return HoleMachine(
-        c=start.c,
+        c=start.position["C"],
         spindle=spindle,
         spindle_code=DIRECTION_M_CODES.get(turning, 5),
         speed=interp.speed[spindle],
-        beside=setup.words.beside,
-        diameters=setup.words.diameter,
+        beside=section.beside,
+        diameters=section.rules.diameter,
     )
 
 
@@ -144,19 +145,20 @@ def shape_at_work(interp: Interp) -> str:
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
     line = messages.line_of_refusal(interp, BlockRefusal(name, "")) or 0
-    # x: the sub itself moves the tool to its start
-    return start_of_section(interp, 0)._replace(location=BlockLocation(name, line), x=1.0)
+    start = start_of_section(interp, 0)
+    there = start.position | {"X": 1.0}  # the sub itself moves the tool to its start
+    return start._replace(location=BlockLocation(name, line), position=there)
 
 
-def shape_machine(setup: SectionSetup[PolarSettings]) -> ShapeMachine:
-    beside = setup.words.beside
+def shape_machine(section: Polar) -> ShapeMachine:
+    beside = section.beside
     return ShapeMachine(
-        diameters=setup.words.diameter,
+        diameters=section.rules.diameter,
         entry_angle=MACHINE.settings.entry_angle,
         plunge_share=MACHINE.settings.plunge_feed / 100,
-        pole=POLE_SHARE * setup.tolerance,
-        pole_refused=setup.plan.pole_refused,
-        nearest=abs(beside) + setup.tolerance if beside else 0.0,
+        pole=POLE_SHARE * section.tolerance,
+        pole_refused=section.planning.pole_refused,
+        nearest=abs(beside) + section.tolerance if beside else 0.0,
     )
 
 
@@ -171,11 +173,9 @@ def section_codes(entries: ShapeEntries) -> dict[str, float]:
     return numbers
 
 
-def stay_in_travel(
-    entries: ShapeEntries, extent: Extent, setup: SectionSetup[PolarSettings]
-) -> None:
+def stay_in_travel(entries: ShapeEntries, extent: Extent, section: Polar) -> None:
     """Refuse a shape that leaves the travel of an axis."""
     corners = [(x, c, z, 0.0) for x, c, z in zip(extent.x[::-1], extent.c, extent.z)]
-    beyond = setup.limits.beyond([BlockMoves(0, "XCZ", corners, False)])
+    beyond = section.limits.beyond([Segments(0, "XCZ", corners, False)])
     if beyond:
-        raise entries.refuse(beyond.text(setup.words.diameter))
+        raise entries.refuse(beyond.text(section.rules.diameter))

@@ -69,7 +69,7 @@ def selects_kinematics(config: Config) -> bool:
 
 def uses_face_kinematics(config: Config) -> bool:
     """Return whether G12.1 moves X and Y; another rule reports a wrong setting."""
-    return bool(config.settings) and config.settings.polar_kinematics == "1"
+    return bool(config.settings and config.settings.polar_kinematics)
 
 
 def not_used(config: Config) -> Iterator[ConfigFinding]:

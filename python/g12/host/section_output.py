@@ -19,22 +19,26 @@ switch there and back the machine has to stop, and the interpreter to wait for i
 from __future__ import annotations
 
 from collections.abc import Container, Iterator, Sequence
-from typing import Any, NamedTuple
 
 from g12.compensation.contour import PlaneMove
 from g12.geometry.curve import Arc
 from g12.host import borrowed, kinematics_switch
 from g12.host.borrowed import Saved
-from g12.host.interp import PER_MINUTE, PER_REVOLUTION, CanonModule, Interp
+from g12.host.interp import (
+    PER_MINUTE,
+    PER_REVOLUTION,
+    CanonModule,
+    Interp,
+    position_of,
+    set_position,
+)
 from g12.host.program_lines import error_text
-from g12.moves.feed import Segment
-from g12.moves.setup import SectionSetup
-from g12.moves.steps import BlockMoves
-from g12.polar.face import FaceMove, FaceSwitch, blending_halves
+from g12.moves.setup import SectionKind
+from g12.moves.steps import FaceMove, FaceSwitch, MachinePosition, Segment, Segments, Step
+from g12.polar.face import blending_halves
 from g12.section.block_rules import G1
 from g12.section.line import BlockLocation
-from g12.section.modes import SectionModes, decimal
-from g12.section.start import SectionStart
+from g12.section.modes import Action, SectionModes, decimal
 
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
@@ -46,24 +50,7 @@ ELSEWHERE = (
     "with kinematics, Run from line cannot pass over a section"
 )
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # for preview/worker
-BLOCK_END = ""
-
-
-class Action(NamedTuple):
-    """A block without motion, in order between the moves.
-
-    ``modes`` are those in force at that point of the path, None for a comment that needs none. The
-    text may be `BLOCK_END`, which only marks the end of a block. ``level`` is the call level whose
-    saved state an M70 to M72 refers to, None for other blocks.
-    """
-
-    line: int
-    text: str
-    modes: SectionModes | None
-    level: int | None = None
-
-
-PlanStep = BlockMoves | FaceMove | FaceSwitch | Action  # of a plan
+CANON_AXES = "XYZABCUVW"  # in the order of canonical calls
 
 
 class PathControl:
@@ -128,23 +115,24 @@ class SectionOutput:
     def __init__(
         self,
         interp: Interp,
-        start: SectionStart,
-        setup: SectionSetup[Any],
+        kind: SectionKind,
         *,
         canon: CanonModule,
     ) -> None:
-        self.interp, self.code = interp, start.location.code
-        self.x_factor, self.canon = 1.0 + start.diameter, canon
-        self.machine_unit, self.beside = start.machine_unit, setup.words.beside
+        start = kind.start
+        self.interp, self.code, self.canon = interp, start.location.code, canon
+        self.axes = kind.words.axes
+        self.factors = {"X": 1.0 + start.diameter}  # of words
+        self.machine_unit, self.beside = start.machine_unit, kind.rules.beside
         self.millimetre = start.millimetre
         initial = INITIAL_TOLERANCE * start.millimetre
         saved = borrowed.saved_modes(interp)
-        self.path = PathControl(interp, saved, setup.tolerance / 2, initial)
+        self.path = PathControl(interp, saved, kind.tolerance / 2, initial)
         self._begun = self.on_face = False
         self._flows = False  # the last segment is blended into the next
 
     def run(
-        self, steps: Sequence[PlanStep], modes: SectionModes, exact_lines: Container[int]
+        self, steps: Sequence[Step], modes: SectionModes, exact_lines: Container[int]
     ) -> Iterator[str]:
         """Execute all steps, and release the interpreter in ``modes``.
 
@@ -159,7 +147,7 @@ class SectionOutput:
                 yield from self._switch(step)
             elif isinstance(step, FaceMove):
                 self._move_on_face(step, following, step.line in exact_lines)
-            else:
+            elif isinstance(step, Segments):
                 self._segments(step, following, step.line in exact_lines)
         self.release(modes)
 
@@ -179,7 +167,7 @@ class SectionOutput:
         self.path.find(borrowed.renew(interp, saved))
         self._set_own_modes()
 
-    def _stop_before_section(self, steps: Sequence[PlanStep]) -> None:
+    def _stop_before_section(self, steps: Sequence[Step]) -> None:
         if steps and not self._begun:
             self.interp.sequence_number = steps[0].line
             self.interp.execute(STOP_HERE)
@@ -195,9 +183,9 @@ class SectionOutput:
         interp.feed_mode = PER_MINUTE  # reading ahead may have set the modes of the section's end
         interp.motion_mode = G1
 
-    def _segments(self, run: BlockMoves, following: object, exact_stop: bool) -> None:
+    def _segments(self, run: Segments, following: Step | None, exact_stop: bool) -> None:
         """Execute the moves of a block, and the stop at their end."""
-        block_ends = not isinstance(following, BlockMoves) or following.line != run.line
+        block_ends = not isinstance(following, Segments) or following.line != run.line
         ending = self.path.ending(run.stop, exact_stop, block_ends)
         blended = self._flows or len(run.segments) > 1
         self._flows = not ending
@@ -216,22 +204,27 @@ class SectionOutput:
         The first goes through the interpreter, which sets the line and the modes. The others are
         canonical calls, the same as for blocks, in a third of the time.
         """
-        interp = self.interp
+        interp, axis = self.interp, self.axes
         interp.sequence_number = line
-        self.path.inside(any(segment[1] != interp.CC_current for segment in segments))
+        turn = position_of(interp, axis.turn)[axis.turn]
+        self.path.inside(any(segment[1] != turn for segment in segments))
         self._block(axes, *segments[0])
-        y, a, b = interp.current_y, interp.AA_current, interp.BB_current
-        u, v, w = interp.u_current, interp.v_current, interp.w_current
+        there = [*position_of(interp, CANON_AXES).values()]
+        slide, turn, height = map(CANON_AXES.index, axis)
         set_feed, move = self.canon.SET_FEED_RATE, self.canon.STRAIGHT_FEED
-        for x, c, z, feed in segments[1:]:
+        for there[slide], there[turn], there[height], feed in segments[1:]:
             set_feed(feed)
-            move(line, x, y, z, a, b, c, u, v, w)
-        interp.current_x, interp.CC_current, interp.current_z, _ = segments[-1]
+            move(line, *there)
+        set_position(interp, axis, segments[-1])
 
-    def _block(self, axes: str, x: float, c: float, z: float, feed: float) -> None:
+    def _block(self, axes: str, *segment: float) -> None:
         # every digit: X must parse to exactly the number in the following moves
-        values = {"X": x * self.x_factor, "C": c, "Z": z, "F": feed}
-        self.interp.execute("".join(f"{word}{values[word]:.17f}" for word in (*axes, "F")))
+        values = dict(zip((*self.axes, "F"), segment))
+        self.interp.execute(
+            "".join(
+                f"{word}{values[word] * self.factors.get(word, 1.0):.17f}" for word in (*axes, "F")
+            )
+        )
 
     def _switch(self, step: FaceSwitch) -> Iterator[str]:
         """Switch to the face or back; the result of the program's last M66 is restored."""
@@ -262,12 +255,12 @@ class SectionOutput:
             raise refuse(wrong)
         self.on_face = step.on
         interp.params[kinematics_switch.INPUT_RESULT] = found
-        interp.current_x, interp.CC_current, interp.current_z = step.position
+        set_position(interp, self.axes, step.position)
         interp.current_y = step.on * self.beside - kinematics_switch.y_offset(interp)
         if not interp.task:
             self.canon.COMMENT(f"{MEANINGS_CHANGED}{step.share}")
 
-    def _wrong_position(self, position: tuple[float, float, float]) -> str:
+    def _wrong_position(self, position: MachinePosition) -> str:
         """Return why the machine's actual position is not the planned one, "" if it is."""
         length = SWITCH_MM * self.millimetre
         compared = zip(self._machine_position(), position, (length, SWITCH_DEGREES, length))
@@ -275,7 +268,7 @@ class SectionOutput:
             return ELSEWHERE
         return kinematics_switch.other_offset(self.interp, self.beside, self.millimetre)
 
-    def _move_on_face(self, step: FaceMove, following: object, exact_stop: bool) -> None:
+    def _move_on_face(self, step: FaceMove, following: Step | None, exact_stop: bool) -> None:
         """Execute a line, an arc or a move of Z on the face."""
         interp, move = self.interp, step.move
         block_ends = not isinstance(following, FaceMove) or following.line != step.line
@@ -291,19 +284,17 @@ class SectionOutput:
         words = "G1" if not isinstance(curve, Arc) else "G3" if curve.sweep > 0.0 else "G2"
         values = {"F": move.feed}
         if curve:
-            values["X"] = curve.end.real * self.x_factor
+            values["X"] = curve.end.real * self.factors["X"]
             values["Y"] = curve.end.imag - kinematics_switch.y_offset(interp)
         if isinstance(curve, Arc):
             values["I"] = curve.centre.real - interp.current_x
             values["J"] = curve.centre.imag - kinematics_switch.y_offset(interp) - interp.current_y
-        if move.z0 != move.z1:
-            values["Z"] = move.z1
+        if move.h0 != move.h1:
+            values["Z"] = move.h1
         interp.execute(words + "".join(f"{word}{value:.17f}" for word, value in values.items()))
         interp.motion_mode = G1
 
     def _act(self, action: Action) -> None:
-        if action.text == BLOCK_END:
-            return
         self.interp.sequence_number = action.line
         if action.modes is None:
             self._execute(action)
@@ -329,5 +320,5 @@ class SectionOutput:
         if self._machine_position() != position:
             raise location.refuse(f"{action.text} moves the machine: not inside a section")
 
-    def _machine_position(self) -> tuple[float, float, float]:
-        return self.interp.current_x, self.interp.CC_current, self.interp.current_z
+    def _machine_position(self) -> list[float]:
+        return [*position_of(self.interp, self.axes).values()]

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from itertools import chain
 from math import radians
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 
 import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
@@ -25,16 +25,17 @@ from g12.host.interp import (
     WORD_FIELDS,
     Interp,
     ParsedBlock,
+    position_of,
+    set_position,
     words_in,
 )
 from g12.host.program_lines import ProgramLines, error_text
-from g12.host.section.output import BLOCK_END, Action
+from g12.moves.setup import SectionKind
 from g12.section import block_rules
 from g12.section import modes as section_modes
 from g12.section.block_rules import NO_CODE, GGroup, SectionBlock
 from g12.section.line import BlockLocation, TextLine
-from g12.section.modes import SectionModes
-from g12.section.start import SectionStart, WordRules
+from g12.section.modes import Action, BlockEnd, SectionModes
 from g12.settings import MOST_FEED
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
@@ -44,6 +45,7 @@ WITHOUT_COMPENSATION = 40
 SECTION_WORDS, PLAIN_LETTERS = "XCZIJRKFSPQLE", "XCZIJR"
 PLAIN_FIELDS = chain.from_iterable(WORD_FIELDS[letter] for letter in PLAIN_LETTERS)
 plain_words = attrgetter(*WORD_FIELDS["F"], "motion_to_be", *PLAIN_FIELDS)
+PlaneWords = tuple[float | None, float | None, float | None]  # first, second, height
 
 
 def block_of(parsed: ParsedBlock) -> SectionBlock:
@@ -54,29 +56,29 @@ def block_of(parsed: ParsedBlock) -> SectionBlock:
 class SectionReader:
     """Collects the blocks of one section, as the interpreter parsed them, in ``contour``."""
 
-    def __init__(
-        self, interp: Interp, start: SectionStart, rules: WordRules, program: ProgramLines
-    ) -> None:
-        self.interp, self.start, self.rules, self.program = interp, start, rules, program
+    def __init__(self, interp: Interp, kind: SectionKind, program: ProgramLines) -> None:
+        self.interp, self.program = interp, program
+        self.known, self.rules, self.start = kind.words, kind.rules, kind.start
         self.parsed = interp.blocks[0]
-        self.modes = start.modes
-        self._spindle, self._speeds = start.spindle, list(start.speeds)
-        known = rules.words
-        self._to_plane = itemgetter(*("XCZ".index(axis) for axis in known.plane))
-        self._to_axes = itemgetter(*(known.plane.index(axis) for axis in "XCZ"))
-        self._own_c = not known.c_is_length
-        angle = start.c if self._own_c else 0.0
-        x, c, z = self._to_plane((start.x, angle * rules.c_scale, start.z))
-        first, second, third = tuple(known.plane)
+        self.modes = kind.start.modes
+        self._spindle, self._speeds = kind.start.spindle, list(kind.start.speeds)
+        known, rules, there = self.known, self.rules, dict(kind.start.position)
+        slide, turn, height = known.axes
+        if known.turn_is_length:  # at the present angle, which is 0 in the plane
+            there[turn] = 0.0
+        scales = {"X": rules.x_scale, turn: rules.turn_scale}
+        self._scales = [(letter, scales.get(letter, 1.0)) for letter in known.plane]
+        self._position_scales = [(a, rules.turn_scale if a == turn else 1.0) for a in known.plane]
+        first, second, level = (there[letter] * scale for letter, scale in self._position_scales)
         self.contour = Contour(
-            x,
-            z,
-            c,
-            code=start.location.code,
-            names=PlaneNames(first, second, third, known.centre_name),
+            first,
+            second,
+            level,
+            code=kind.start.location.code,
+            names=PlaneNames._make((*known.plane, known.centre_name)),
             diameter=rules.diameter if known.plane[0] == "X" else None,
             radius_tolerance=rules.radius_tolerance,
-            start=Start(start.x, radians(angle), start.z),
+            start=Start(there[slide], radians(there[turn]), there[height]),
             beside=rules.beside,
         )
         self.exact_lines: set[int] = set()  # of G9
@@ -86,11 +88,11 @@ class SectionReader:
         self.remember_machine()
 
     @property
-    def programmed(self) -> tuple[float, float, float]:
-        """The programmed position in words: X (radius value), C, Z."""
+    def programmed(self) -> list[float]:
+        """The programmed position in words of the plane's axes, X as a radius."""
         contour = self.contour
-        x, c, z = self._to_axes((contour.x, contour.c, contour.z))
-        return x, c / self.rules.c_scale, z
+        there = contour.first, contour.second, contour.height
+        return [value / scale for value, (_, scale) in zip(there, self._position_scales)]
 
     @property
     def location(self) -> BlockLocation:
@@ -101,13 +103,11 @@ class SectionReader:
         return self.location.refuse(error_text(self.interp))
 
     def remember_machine(self) -> None:
-        interp = self.interp
-        self._machine = interp.current_x, interp.current_z, interp.CC_current
+        self._machine = position_of(self.interp, self.known.plane)
         self._modes_of_machine = self.modes
 
     def show_machine(self) -> None:
-        interp = self.interp
-        interp.current_x, interp.current_z, interp.CC_current = self._machine
+        set_position(self.interp, self._machine, self._machine.values())
 
     def restore(self) -> None:
         """Restore the interpreter's state as of the machine's last motion."""
@@ -127,13 +127,11 @@ class SectionReader:
 
     def show_plane(self) -> None:
         """Set the interpreter's position to the programmed one."""
-        interp = self.interp
-        interp.current_x, interp.CC_current, interp.current_z = self.programmed
+        set_position(self.interp, self.known.plane, self.programmed)
 
     def has_moved(self) -> bool:
         """Return whether the interpreter's position has changed since it was set."""
-        interp = self.interp
-        return (interp.current_x, interp.CC_current, interp.current_z) != self.programmed
+        return [*position_of(self.interp, self.known.plane).values()] != self.programmed
 
     def plain_line(self, raw: str) -> None:
         """Take a line of nothing but numbers after G1 to G3, F and the words of a move."""
@@ -219,7 +217,7 @@ class SectionReader:
                 self.interp.read("")  # updates #5420
             text = section_modes.comment_text(comment, self._parameter)
             modes = self.modes if section_modes.may_fail(comment) else None
-            self._queue(Action(self.program.shown_line, text, modes))
+            self.contour.mark(Action(self.program.shown_line, text, modes))
 
     def returned(self) -> None:
         """Restore the modes that an M73 saved in subs that have ended."""
@@ -228,12 +226,9 @@ class SectionReader:
                 self._restore(level)
                 self._restored_on_return.discard(level)
 
-    def _queue(self, action: Action) -> None:
-        self.contour.mark(action, line=action.line)
-
     def _mark(self, text: str, level: int | None = None) -> None:
         if text:
-            self._queue(Action(self.program.shown_line, text, self.modes, level))
+            self.contour.mark(Action(self.program.shown_line, text, self.modes, level))
 
     def _parameter(self, name: str) -> float | None:
         """Return a parameter by number or name, None if there is none."""
@@ -250,43 +245,51 @@ class SectionReader:
 
         ``relative`` are the axes whose value is an increment in any mode: of U, W, H.
         """
-        contour, modes = self.contour, self.modes
-        x, c, z, i, j, r, k = map(words.get, "XCZIJRK")
+        known, incremental = self.known, self.known.plane if self.modes.incremental else relative
         if motion not in SECTION_MOTIONS:
             code = f"G{motion / 10:g}"
             raise self.location.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
-        if x is not None:
-            x *= self.rules.x_scale
-        if c is not None:
-            c *= self.rules.c_scale
-        x, c, z = self._to_plane((x, c, z))
-        if self._own_c:
-            i, j = (i if j is None else j), k
-        alone = self.rules.third_with_others or all(word is None for word in (x, c, i, j))
-        if z is not None and not alone:
-            raise self.location.refuse(self.rules.words.own_block)
-        if modes.incremental or relative:
-            x, c, z = self._absolute(x, c, z, "XCZ" if modes.incremental else relative)
-        line = self.program.shown_line
-        if block_rules.G1 < motion <= block_rules.G3:
-            turn = 1 if motion == block_rules.G3 else -1
-            contour.arc(turn, x, c, z, i=i, j=j, radius=r, line=line, feed=self._feed())
-        else:
-            contour.line(x, c, z, line=line, feed=self._feed() if motion else self._rapid_feed())
-
-    def _absolute(self, x: float | None, c: float | None, z: float | None, relative: str) -> tuple:
-        """Return absolute coordinates of the plane; values of ``relative`` axes are increments."""
-        contour, plane = self.contour, self.rules.words.plane
-        return tuple(
-            value + here if value is not None and axis in relative else value
-            for axis, value, here in zip(plane, (x, c, z), (contour.x, contour.c, contour.z))
+        first, second, height = self._scaled(words)
+        i, j = (
+            next((words[letter] for letter in letters if letter in words), None)
+            for letters in known.centre
         )
+        in_plane = any(word is not None for word in (first, second, i, j))
+        if height is not None and in_plane and not self.rules.height_with_others:
+            raise self.location.refuse(known.own_block)
+        if incremental:
+            first, second, height = self._absolute((first, second, height), incremental)
+        contour, line = self.contour, self.program.shown_line
+        if block_rules.G1 < motion <= block_rules.G3:
+            turn, r = 1 if motion == block_rules.G3 else -1, words.get("R")
+            contour.arc(turn, first, second, height, i=i, j=j, radius=r, at=line, feed=self._feed())
+        else:
+            feed = self._feed() if motion else self._rapid_feed()
+            contour.straight(first, second, height, at=line, feed=feed)
+
+    def _scaled(self, words: Mapping[str, float]) -> PlaneWords:
+        """Return the words of the plane's axes as lengths, None for those that are not there."""
+        first, second, height = (
+            None if (word := words.get(letter)) is None else word * scale
+            for letter, scale in self._scales
+        )
+        return first, second, height
+
+    def _absolute(self, values: PlaneWords, relative: str) -> PlaneWords:
+        """Return absolute coordinates of the plane; values of ``relative`` axes are increments."""
+        contour, plane = self.contour, self.known.plane
+        here = contour.first, contour.second, contour.height
+        first, second, height = (
+            value + at if value is not None and axis in relative else value
+            for axis, value, at in zip(plane, values, here)
+        )
+        return first, second, height
 
     def _separate(self) -> None:
         """Mark the end of a block before another on the same line, as in a loop."""
         line = self.program.shown_line
         if line == self._moved:
-            self._queue(Action(line, BLOCK_END, None))
+            self.contour.mark(BlockEnd(line))
         self._moved = line
 
     def _feed(self) -> float:
@@ -312,7 +315,7 @@ class SectionReader:
 
     def _compensate(self, side: int) -> None:
         radius = 0.0 if side == WITHOUT_COMPENSATION else self._tool_radius(side)
-        self.contour.compensation(side, radius, line=self.program.shown_line)
+        self.contour.compensate(side, radius, at=self.program.shown_line)
 
     def _tool_radius(self, side: int) -> float:
         """Return the loaded tool's radius; below 0 it is a correction to the other side."""

@@ -3,8 +3,8 @@
 
 The handler of G12.1 or G7.1 reads the following lines itself (`ProgramLines`). The interpreter
 parses every line and executes O-words at once; the other blocks are collected (`SectionReader`).
-After the code that switches off, the contour is planned (`g12.polar.plan`, `g12.cylinder.plan`) and
-executed (`SectionOutput`).
+After the code that switches off, the contour is planned (`SectionKind.plan`) and executed
+(`SectionOutput`).
 """
 
 from __future__ import annotations
@@ -12,21 +12,20 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
-from typing import Any, cast
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages, reported
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import JUMPING
-from g12.host.section.output import PlanStep, SectionOutput
-from g12.host.section.reader import SectionReader, block_of
-from g12.moves.setup import SectionSetup
+from g12.host.section_output import SectionOutput
+from g12.host.section_reader import SectionReader, block_of
+from g12.moves.setup import SectionKind
 from g12.moves.steps import SectionPlan
 from g12.section import block_rules
 from g12.section.block_rules import SectionBlock
-from g12.section.codes import SectionCodes
 from g12.section.line import TextLine, split_line
+from g12.section.start import SectionCodes
 
 MOST_SECTION_LINES = 1_000_000
 LONGEST_READING = 0.5  # s in which LinuxCNC obeys no abort, nor anything else
@@ -51,9 +50,8 @@ class Section:
 
     def __init__(
         self,
+        kind: SectionKind,
         codes: SectionCodes,
-        setup: SectionSetup[Any],
-        plan: Callable[[Contour], SectionPlan],
         frame: CallFrame,
         reader: SectionReader,
         output: SectionOutput,
@@ -65,7 +63,7 @@ class Section:
 
         ``report`` takes each contour before it is cut.
         """
-        self.codes, self.setup, self.plan = codes, setup, plan
+        self.kind, self.codes = kind, codes
         self.frame, self.program = frame, reader.program
         self.reader, self.output = reader, output
         self._first, self._report = first, report
@@ -103,7 +101,7 @@ class Section:
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.reader.plain_line
-        known = self.setup.words.words
+        known = self.kind.words
         is_plain = known.plain
         if self._first:
             self.program.parse_rewritten(self._first)
@@ -153,7 +151,7 @@ class Section:
     def _words(self, line: TextLine) -> Iterator[int]:
         if line.text == "%":
             self._end_of_file()
-        location, known = self.reader.location, self.setup.words.words
+        location, known = self.reader.location, self.kind.words
         off = [code for letter, code in line.codes if letter == "G" and code in self.codes.off]
         if off and len(line.codes) > 1:
             raise self._refuse(f"G{off[0] / 10:g} must be alone in its block")
@@ -194,7 +192,7 @@ class Section:
         stop = block.m[block_rules.MGroup.STOP]
         if stop in (block_rules.M2, block_rules.M30):
             raise self._missing_off(f"M{stop} comes before it")
-        block_rules.check_block(block, self.setup.words.words, self._rapid_allowed, location)
+        block_rules.check_block(block, self.kind.words, self._rapid_allowed, location)
         for code in block.m:
             if code in codes.remapped and not block_rules.m_code_alone(block, code):
                 raise location.refuse(
@@ -203,7 +201,7 @@ class Section:
 
     @property
     def _rapid_allowed(self) -> bool:
-        return self.setup.words.rapid_feed is not None
+        return self.kind.rules.rapid_feed is not None
 
     # O-words.
 
@@ -253,7 +251,7 @@ class Section:
 
     def _wait_for_input(self, text: str) -> Iterator[int]:
         """Execute M66: everything before it has to be done before the lines after it are read."""
-        self.reader.contour.wait(line=self.program.shown_line)
+        self.reader.contour.wait(at=self.program.shown_line)
         planned = yield from self._emit()
         yield from self.frame.execute_and_wait(text)
         self.reader.remember_machine()
@@ -265,7 +263,7 @@ class Section:
             raise self._refuse(f"{self.codes.off_code} must be alone in its block")
         if not self.frame.is_current:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
-        self.reader.contour.close(line=self.program.line)
+        self.reader.contour.close(at=self.program.line)
         yield from self._emit()
         borrowed.forget(self.reader.interp)
         self.program.catch_up()
@@ -275,26 +273,25 @@ class Section:
 
     def _emit(self) -> Generator[int, None, SectionPlan]:
         reader = self.reader
-        plan = self.plan(reader.contour)
+        plan = self.kind.plan(reader.contour)
         self._check_limits(plan)
         for note in plan.notes:
             messages.message(note)
         reader.show_machine()
         self._phase = Phase.MOVING
         self._report(reader.contour)
-        steps = cast(list[PlanStep], plan.steps)  # the reader set the marks' actions
-        for waiting in self.output.run(steps, reader.modes, reader.exact_lines):
+        for waiting in self.output.run(plan.steps, reader.modes, reader.exact_lines):
             yield from self.frame.execute_and_wait(waiting)
         self._phase = Phase.READING
         reader.remember_machine()
         return plan
 
     def _check_limits(self, plan: SectionPlan) -> None:
-        beyond = self.setup.limits.beyond(plan.steps)
+        beyond = self.kind.limits.beyond(plan.steps)
         if beyond:
-            lengths = self.setup.words.words.c_is_length
+            lengths = self.kind.words.turn_is_length
             by_c = beyond.axis == "X" and lengths and self.program.has_letter(beyond.line, "CHY")
             raise self.reader.location._replace(line=beyond.line).refuse(
-                f"{beyond.text(self.setup.words.diameter)}"
+                f"{beyond.text(self.kind.rules.diameter)}"
                 f"{': C and H are lengths here, not degrees' * by_c}"
             )

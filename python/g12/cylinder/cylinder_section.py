@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A section on a cylinder: a slide along it and a rotary axis, with their feeds.
+
+On a surface of radius r an angle of the rotary axis is r times the angle in radians long. The slide
+and that length are proportional to the axes' positions: a line is exactly one segment. The segments
+of an arc bulge equally everywhere; spacing shares the deviation between them.
+
+On a lathe, Z is a length, C an angle, and X at right angles to the surface. The unrolled surface is
+viewed from outside: C to the right and Z upwards, so G2 is clockwise there and G41 has the tool on
+the left, whatever plane is active. An arc's centre is J (or I) along C and K along Z, both lengths
+on the surface from the arc's start.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Sequence
+from functools import partial
+from math import copysign, degrees, radians, sqrt
+from typing import NamedTuple
+
+from g12.compensation.centre_path import centre_path
+from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
+from g12.errors import number
+from g12.geometry.curve import Arc
+from g12.lengths import LARGEST
+from g12.moves.exact_stops import Direction, stops
+from g12.moves.setup import LEAST_MM, RADIUS_TOLERANCE_MM, SectionKind, check_entry
+from g12.moves.spacing import BULGE, Stretch, spaced
+from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, Split, StepMaker
+from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
+from g12.section.line import AxisLetters, SectionWords, plain_line_of
+from g12.section.start import SectionStart, WordRules
+
+RADIUS = "C"  # the word of G7.1
+LEAST_DENSITY = 2.0  # segments per radian of an arc: fewer do not resemble it
+
+CYLINDER_WORDS = SectionWords(
+    plane="CZX",
+    axes=AxisLetters("Z", "C", "X"),
+    turn_is_length=False,
+    letters=(("X", "XU"), ("Z", "ZW"), ("C", "CH"), ("the centre along C", "IJ")),
+    foreign={"u": "x", "w": "z", "h": "c"},
+    relative={"U": "X", "W": "Z", "H": "C"},
+    plain=plain_line_of("XCZRF"),
+    planes=frozenset({170, 180, 190}),
+    plane_name="Z-C",
+    centre=("JI", "K"),
+    centre_name="J and K",
+    refused={
+        **dict.fromkeys("ABVY@^", "the section's words are Z, C, X, W, H and U"),
+        "T": NO_TOOL_CHANGE,
+        "D": OWN_RADIUS,
+    },
+    own_block="X needs a block of its own, or [G12] CYLINDER_X = allow",
+    origin="the origin must stay where it is inside the section",
+)
+
+
+class CylinderSettings(NamedTuple):
+    """The machine's limits and the owner's settings for a section; lengths in program units."""
+
+    radius: float  # of the surface
+    tolerance: float
+    # 0.001 mm: a segment that turns moves the slide by this at least, or not at all
+    least_slide: float
+    slide_acceleration: float  # per second squared
+    turn_acceleration: float  # degrees per second squared
+    height_acceleration: float
+    axes: AxisLetters = CYLINDER_WORDS.axes
+    turn_is_first: bool = True  # of the plane's axes
+
+
+class Cylinder(SectionKind):
+    """A section on a turned surface, of a Z slide and the C axis."""
+
+    words = CYLINDER_WORDS
+    on_words = RADIUS
+
+    def check(self, start: SectionStart) -> None:
+        check_entry(start, self.machine.letters, "XZC", ())
+        word = start.words.get(RADIUS)
+        if word is None:
+            rule = f"needs {RADIUS}, the cylinder's radius; {RADIUS}0 ends a section"
+            raise start.location.refuse(rule)
+        if not 0.0 < word <= LARGEST:
+            rule = f"must be above 0 and at most {number(LARGEST)}"
+            raise start.location.refuse(f"{RADIUS}{number(word)}, the cylinder's radius, {rule}")
+        self.surface = word * (0.5 if self.machine.settings.cylinder_word == "diameter" else 1.0)
+
+    def word_rules(self) -> WordRules:
+        return WordRules(
+            diameter=self.start.diameter,
+            x_scale=1.0,
+            turn_scale=radians(self.surface),
+            height_with_others=self.machine.settings.cylinder_x == "allow",
+            rapid_feed=self.rapid_feed,
+            radius_tolerance=RADIUS_TOLERANCE_MM * self.start.millimetre,
+        )
+
+    @property
+    def planning(self) -> CylinderSettings:
+        slide, turn, height = (self.machine.axes[letter] for letter in self.words.axes)
+        return CylinderSettings(
+            radius=self.surface,
+            tolerance=self.tolerance,
+            least_slide=LEAST_MM * self.start.millimetre,
+            slide_acceleration=self.in_program(slide),
+            turn_acceleration=turn.acceleration,
+            height_acceleration=self.in_program(height),
+            axes=self.words.axes,
+            turn_is_first=self.words.plane[0] == self.words.axes.turn,
+        )
+
+    def plan(self, contour: Contour) -> SectionPlan:
+        return plan(contour, self.planning)
+
+
+def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
+    """Return the moves of a whole section.
+
+    Raises Refusal, naming the blocks by their lines, when the contour cannot be cut as programmed.
+    """
+    path, moved = centre_path(contour, settings.tolerance)
+    settings = settings._replace(tolerance=settings.tolerance - moved)
+    acceleration = partial(_acceleration, settings=settings)
+    stopping = stops(path, ROUNDING_SHARE * settings.tolerance, acceleration)
+    machine = _Surface(contour, settings)
+    for element, stop in zip(path, stopping):
+        if isinstance(element, PlaneMove):
+            machine.cut(element, stop)
+        elif isinstance(element, Plunge):
+            machine.plunge(element, stop)
+        else:
+            machine.steps.append(element)
+    machine.finish(path)
+    return SectionPlan(
+        machine.steps, machine.position, radians(machine.position.turn), contour.notes
+    )
+
+
+def _acceleration(direction: Direction, _point: complex, *, settings: CylinderSettings) -> float:
+    """Return the acceleration along a direction that no axis exceeds; it is the same everywhere."""
+    *in_plane, deep = map(abs, direction)
+    along, around = _slide_and_around(complex(*in_plane), settings.turn_is_first)
+    surface = settings.radius * radians(settings.turn_acceleration)
+    return 1.0 / max(
+        around / surface, along / settings.slide_acceleration, deep / settings.height_acceleration
+    )
+
+
+def _slide_and_around(point: complex, turn_is_first: bool) -> tuple[float, float]:
+    """Return a point of the plane as the slide's position and the length around."""
+    return (point.imag, point.real) if turn_is_first else (point.real, point.imag)
+
+
+class _Surface(StepMaker):
+    def __init__(self, contour: Contour, settings: CylinderSettings) -> None:
+        slide, angle, height = contour.start
+        position = MachinePosition(slide, degrees(angle), height)
+        super().__init__(contour, position, settings.axes, settings.least_slide)
+        self._settings = settings
+
+    def cut(self, move: PlaneMove, stop: bool) -> None:
+        split_by = partial(split_on_cylinder, move, self._settings)
+        split = self._split(move, split_by, self._settings.tolerance, stop)
+        self._segments(move, split, 0.0, stop)
+
+    def finish(self, path: Sequence[PathElement]) -> None:
+        ends = [element.end for element in path if isinstance(element, PlaneMove)]
+        slide = self.position.slide
+        if ends:
+            slide, _ = _slide_and_around(ends[-1], self._settings.turn_is_first)
+        self._add_remainder(path, slide)
+
+
+def split_on_cylinder(move: PlaneMove, settings: CylinderSettings, deviation: float) -> Split:
+    """Return where the segments of a move on the cylinder end: slide, angle and length."""
+    if isinstance(move.curve, Arc):
+        points, lengths = _along_arc(move.curve, deviation)
+    else:
+        points, lengths = [move.start, move.end], [0.0, move.length]
+    slides, around = zip(*(_slide_and_around(at, settings.turn_is_first) for at in points))
+    return Split(list(slides), [length / settings.radius for length in around], lengths)
+
+
+def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
+    """Return the ends of an arc's segments, and the length of the arc up to them."""
+    radius, turn = arc.radius, copysign(1.0, arc.sweep)
+    bulging = sqrt(radius / (8.0 * BULGE * deviation))
+    segments = max(bulging, LEAST_DENSITY)
+    density = (segments, (bulging / segments) ** 2)
+    stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
+    angles, shares = spaced(stretch, lambda _: density)
+    outward = (arc.start - arc.centre) / radius
+    points = [
+        arc.centre + (radius + deviation * share) * outward * cmath.rect(1.0, turn * angle)
+        for angle, share in zip(angles, shares)
+    ]
+    points[0], points[-1] = arc.start, arc.end
+    return points, [radius * angle for angle in angles]
