@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The phases in which a block is translated, in their order.
 
-A phase takes the block's `Draft` as the one before it has left it: words, modes, and the codes whose
-meaning a later phase deals with (``draft.meanings``). Its rules rewrite words or lines, carry the
-modes on, or refuse; a rule that deals with a code takes it out. After the last phase none remains.
+A phase takes the block's `Draft` as the one before it has left it: words, modes, and the codes
+whose meaning a later phase deals with (``draft.meanings``). Its rules rewrite words or lines, carry
+the modes on, or refuse; a rule that deals with a code takes it out. After the last phase none
+remains.
 """
 
 from collections.abc import Callable
