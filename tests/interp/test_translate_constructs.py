@@ -48,6 +48,10 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
+    ("fanuc-mill", "G91 G81 X1. Z-.4 R-.1\nG90 X3. Y2.\nY[3.]\nX1.\nG80",
+     "G81 X2 Z.5 R.9\nX3 Y2\nY3\nX1\nG80\nG0"),
+    ("fanuc-mill", "G91 G99 G81 X1. Z-.4 R-.1\nG90 X3.\nG91 Y1.\nG80 G90",
+     "G99 G81 X2 Z.5 R.9\nX3\nY2\nG80\nG0"),
     ("fanuc-mill", "G83 X2. Z.5 R.9 Q2000\nG80", "G83 X2 Z.5 R.9 Q.2\nG80\nG0"),
     *((control, f"G81 Z.5 R.9 {none}0\nX2.\nG91 X.5 {none}2\nG80 G90",
        "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0")

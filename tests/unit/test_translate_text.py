@@ -292,7 +292,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=BIN[#2]", "BIN[#2] is no number, variable or function"),
     (HAAS, "#1=[[[[[[[[[1]]]]]]]]]", "more than 8 brackets"),
     (HAAS, "#1=[1", "] is missing before the end"),
-    (LATHE, "T30303", "T30303 has 5 digits"),
+    (LATHE, "T01", "T01 is too short for tool and offset, TTOO: write both, as T0101"),
     (LATHE, "G0 X1. U1.", "U1. and X in one block"),
     (LATHE, "G96 S90 M3\nG97", "G97 without S, and the speed is not known: write S"),
     (LATHE, "G97 S90\nG96", "G96 without S, and the speed is not known: write S"),

@@ -88,11 +88,15 @@ def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     if not patterns:
         raise NotTranslated(f"{word.text}: [tools] patterns does not say what its digits are")
     pattern = next((p for p in patterns if len(p) >= len(word.value)), None)
-    if not pattern or len(word.value) < len(patterns[0]) - 1:
+    if not pattern:
         raise NotTranslated(
             f"{word.text} has {len(word.value)} digits: tool and offset are "
             f"{' or '.join(patterns)}; say another pattern under [tools], as patterns = "
             '["TTOO", "TTTOOO"]'
+        )
+    if len(word.value) < len(patterns[0]) - 1:
+        raise NotTranslated(
+            f"{word.text} is too short for tool and offset, {patterns[0]}: write both, as T0101"
         )
     digits = word.value.zfill(len(pattern))
     tool, offset = (
