@@ -2,7 +2,8 @@
 PYTHON := /usr/bin/python3
 RUFF_VERSION := 0.17.5
 MYPY_VERSION := 2.4.1
-LINTERS := build/venv/ruff-$(RUFF_VERSION)-mypy-$(MYPY_VERSION)
+IMPORTLINTER_VERSION := 2.17
+LINTERS := build/venv/ruff-$(RUFF_VERSION)-mypy-$(MYPY_VERSION)-import-linter-$(IMPORTLINTER_VERSION)
 MINUTES := 10
 SEED := $(shell date +%s)
 # What make soak tries: its own, and the properties of the normal tests.
@@ -46,10 +47,12 @@ test-on:
 	@sh .ci/test-on $(SUITE)
 
 lint: $(LINTERS)
-	@echo "lint: ruff $(RUFF_VERSION), mypy $(MYPY_VERSION)"
+	@echo "lint: ruff $(RUFF_VERSION), mypy $(MYPY_VERSION), import-linter $(IMPORTLINTER_VERSION)"
 	@build/venv/bin/ruff check --quiet
 	@build/venv/bin/ruff format --check --quiet
 	@build/venv/bin/mypy --cache-dir build/mypy --no-error-summary
+	@PYTHONPATH=python build/venv/bin/lint-imports --no-logo --cache-dir build/import-linter \
+		>build/imports.txt || (cat build/imports.txt; exit 1)
 
 bench: setup kinematics
 	@echo "bench: figures as ratios, each measured side by side in one run"
@@ -74,8 +77,9 @@ clean:
 
 $(LINTERS):
 	@sh .ci/setup python3-venv
-	@echo "lint: fetching ruff $(RUFF_VERSION), mypy $(MYPY_VERSION)"
+	@echo "lint: fetching ruff $(RUFF_VERSION), mypy $(MYPY_VERSION)," \
+		"import-linter $(IMPORTLINTER_VERSION)"
 	@$(PYTHON) -m venv --clear build/venv
 	@build/venv/bin/pip install --quiet --disable-pip-version-check ruff==$(RUFF_VERSION) \
-		mypy==$(MYPY_VERSION)
+		mypy==$(MYPY_VERSION) import-linter==$(IMPORTLINTER_VERSION)
 	@touch $@
