@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Plunge
 from g12.polar.face import FaceLimits, MoveDemands
 from g12.polar.quickest import quickest
-from g12.section.modes import Action
+from g12.section.effects import Action
 from support import planned_moves
 from support.growth import growth
 

@@ -6,14 +6,14 @@ import pytest
 from g12.errors import LONGEST_BLOCK, Refusal
 from g12.polar.polar_section import POLAR_WORDS
 from g12.section.block_rules import SectionBlock, alone, m_code_alone
-from g12.section.line import BlockLocation, line_named, split_line, split_words
-from g12.section.modes import (
+from g12.section.effects import (
     SectionModes,
     action_text,
     comment_text,
     decimal,
     modes_after,
 )
+from g12.section.line import BlockLocation, line_named, split_line, split_words
 
 HERE = BlockLocation("G12.1", 7)
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
