@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from interpreter import INTERP_OK
 
-from g12.errors import BlockRefusal
+from g12.errors import Refusal
 from g12.host import borrowed, messages, modes, reported
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
@@ -57,7 +57,7 @@ def polar_shape(self, **words):
     level = self.call_level - 1  # the sub's
     name = shape_at_work(self)
     if face_in_force(self):
-        raise BlockRefusal(name, FACE_ON)
+        raise Refusal(FACE_ON, name)
     start = start_of_shape(self, name)
     section = Polar(start, section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
@@ -137,14 +137,14 @@ def shape_at_work(interp: Interp) -> str:
     if name not in SHAPE_CALLS and name not in HOLE_CALLS:
         *names, last = *SHAPE_CALLS, *HOLE_CALLS
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
-        raise BlockRefusal(code, where)
+        raise Refusal(where, code)
     if not is_alone(interp.blocks[interp.remap_level]):
-        raise BlockRefusal(code, "must be alone in its block")
+        raise Refusal("must be alone in its block", code)
     return name
 
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
-    line = messages.line_of_refusal(interp, BlockRefusal(name, "")) or 0
+    line = messages.line_of(interp, name) or 0
     start = start_of_section(interp, 0)
     there = start.position | {"X": 1.0}  # the sub itself moves the tool to its start
     return start._replace(location=BlockLocation(name, line), position=there)
