@@ -29,7 +29,7 @@ def figures():
         how = "pockets of 1,000 sizes, without a stock"
         yield Figure("verify: CPU time of 1,000 pockets", thousand.seconds, 6.0, how, " s")
         few, many = (verified(folder, MILL, valid(n)) for n in (100, 1000))
-        yield against("verify: CPU time of 1,000 random pockets, against 100", many, few, 15.0)
+        yield against("verify: CPU time of 1,000 random pockets, against 100", many, few, 12.0)
         most = max(thousand.memory, many.memory)
         for name, contour in CONTOURS.items():
             few, many = (verified(folder, LATHE, contour(n)) for n in (1000, 10_000))
