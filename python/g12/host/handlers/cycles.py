@@ -16,7 +16,7 @@ from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.machine import MACHINE
-from g12.host.modes import program_units_per_machine_unit
+from g12.host.units import program_units_per_machine_unit
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE
 from g12.request.words import Words
 
