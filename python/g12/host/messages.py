@@ -55,15 +55,24 @@ def line_of(interp: Interp, code: str) -> int | None:
     If ``code`` is not the block's but the name of its sub, that of the call.
     """
     own, mdi = code == code_of_block(interp), in_mdi(interp)
-    if mdi and interp.call_level == (1 if own else 2):
+    level = interp.call_level - 1 if own else level_of_call(interp, code)
+    if mdi and not level:
         return None
     if own:
         filename, offset = file_of_block(interp), interp.blocks[interp.remap_level].offset
     else:
-        frame = interp.sub_context[interp.call_level - 2]
+        frame = interp.sub_context[level]
         filename, offset = frame.filename, frame.position - 1
     main = filename if interp.call_level < 2 else interp.sub_context[0].filename
     return line_at(filename, offset, own=not mdi and filename == main)
+
+
+def level_of_call(interp: Interp, sub: str) -> int:
+    """Return the call level from which a running sub was called."""
+    level = interp.call_level - 1
+    while level and interp.sub_context[level].subname != sub:
+        level -= 1
+    return level - 1
 
 
 def file_of_block(interp: Interp) -> str:
