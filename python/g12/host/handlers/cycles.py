@@ -8,9 +8,12 @@ from collections.abc import Callable
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
+from g12.cycles.bore import plan_bore
 from g12.cycles.entry import PocketEntry
+from g12.cycles.frame import plan_frame
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import CyclePlan
+from g12.cycles.thread import plan_thread
 from g12.host import borrowed, messages, reported
 from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
@@ -50,10 +53,14 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     return INTERP_OK
 
 
+def entry_of_machine() -> PocketEntry:
+    settings = MACHINE.settings
+    return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
+
+
 def prepare_haas(interp: Interp, arc: int) -> int:
-    words, settings = cycle_state.words_of_block(interp), MACHINE.settings
-    entry = PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
-    plan = plan_pocket(words, settings.clearing, entry)
+    words = cycle_state.words_of_block(interp)
+    plan = plan_pocket(words, MACHINE.settings.clearing, entry_of_machine())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     return hand_over(interp, words, plan, arc=arc, hand=hand)
 
@@ -91,6 +98,21 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     return status
 
 
+def prepare_bore(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_bore(words, arc, MACHINE.settings.entry_angle))
+
+
+def prepare_thread(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_thread(words, arc))
+
+
+def prepare_frame(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_frame(words, arc, entry_of_machine()))
+
+
 def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
     """Return the prolog of a code: ``prepare`` for its arc code, or its kind of event."""
 
@@ -105,6 +127,9 @@ def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
 g12_haas, g13_haas = (prolog(prepare_haas, arc) for arc in ARCS)
 g12_yasnac, g13_yasnac = (prolog(prepare_yasnac, arc) for arc in ARCS)
 g12_mitsubishi, g13_mitsubishi = (prolog(prepare_mitsubishi, arc) for arc in ARCS)
+g12_bore, g13_bore = (prolog(prepare_bore, arc) for arc in ARCS)
+g12_thread, g13_thread = (prolog(prepare_thread, arc) for arc in ARCS)
+g12_frame, g13_frame = (prolog(prepare_frame, arc) for arc in ARCS)
 circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, G13.2
     prolog(prepare_circle_mill, pocket) for pocket in (False, True)
 )
