@@ -88,7 +88,10 @@ class EventCut(NamedTuple):
 
 
 class ThreadCut(NamedTuple):
-    """A milled thread: its radii at ``top``, the signed pitch, the growth of the radius with Z."""
+    """A milled thread: its radii at ``top``, the signed pitch, the growth of the radius with Z.
+
+    ``levels`` is its lower end, ``teeth`` are the cutter's along its axis.
+    """
 
     centre: tuple[float, float]
     large: float
@@ -96,8 +99,9 @@ class ThreadCut(NamedTuple):
     pitch: float
     outside: bool
     taper: float
+    teeth: int
     top: float
-    bottom: float
+    levels: tuple[float]
     cutter: UsedCutter
 
 

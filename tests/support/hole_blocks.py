@@ -66,7 +66,7 @@ def written(chance, code, words, start, diameter):
 
 
 def place(chance):
-    words = {"Z": -chance.uniform(2, 25)}
+    words = {"Z": -chance.uniform(3, 25)}
     start = (chance.uniform(-40, 40), chance.uniform(-40, 40), chance.uniform(0.5, 9))
     if chance.random() < 0.7:
         words |= {"X": chance.uniform(-40, 40), "Y": chance.uniform(-40, 40)}

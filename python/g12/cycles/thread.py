@@ -103,8 +103,9 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
             thread.pitch,
             thread.outside,
             thread.taper,
+            thread.teeth,
             hole.top,
-            hole.bottom,
+            (hole.bottom,),
             cutter.used,
         )
 
