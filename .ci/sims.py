@@ -252,6 +252,11 @@ def sections(machine: Machine, screen: str) -> Iterator[Section]:
     yield from axes(machine)
 
 
+CYCLES = "../../python/g12/tools/cycles_page/gtk_view.py ../include/cycles.ui"
+CYCLES_COMMAND = f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} -u {CYCLES}"
+FACE_VIEW = "USER_COMMAND_FILE = ../include/axis_face.py"
+
+
 def display(machine: Machine, screen: str) -> list[str]:
     lines = [*SCREENS[screen], "PROGRAM_PREFIX = ../../tests/programs"]
     lines.append(f"OPEN_FILE = samples/{machine.sample or machine.name}.ngc")
@@ -261,7 +266,11 @@ def display(machine: Machine, screen: str) -> list[str]:
         lines.append("# The preview turns the toolpath by C, as it lies on the part.")
         lines.append(f"GEOMETRY = {'CXZ!' if machine.face is None else 'CXYZ!'}")
         lines.append("MAX_ANGULAR_VELOCITY = 90")
+    if screen == "axis" and machine.slides[-1].letter == "C" and machine.face is None:
+        lines += ["LATHE = 1", "# The key V shows the face too.", FACE_VIEW]
     if screen != "headless":
+        place = ["EMBED_TAB_LOCATION = ntb_user_tabs"] if screen == "gmoccapy" else []
+        lines += ["EMBED_TAB_NAME = Cycles", *place, CYCLES_COMMAND]
         lines += [f"NGCGUI_SUBFILE = form_{form}_{machine.unit}.ngc" for form in machine.forms]
     return lines
 

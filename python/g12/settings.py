@@ -122,10 +122,12 @@ class Settings:
         return ""
 
 
-LIVE_SPINDLE = "LIVE_SPINDLE"  # a key that only `translate` and `check` read
+# Keys that only the tools read.
+LIVE_SPINDLE, LIVE_TOOL = "LIVE_SPINDLE", "LIVE_TOOL"
+OF_TOOLS = {LIVE_SPINDLE: words(*"01234567"), LIVE_TOOL: m_codes("M33 M35")}
 TABLE: dict[str, ValueRule] = {
     each.name.upper(): each.metadata["rule"] for each in fields(Settings)
-} | {LIVE_SPINDLE: words(*"01234567")}
+} | OF_TOOLS
 
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
@@ -144,8 +146,8 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
         except ValueError:
             rule = f"must be {TABLE[key].legal}"
             raise Refusal(f"[{INI_SECTION}] {key} = {text:.40}: {rule}") from None
-    values.pop(LIVE_SPINDLE.lower(), None)
-    settings = Settings(**values)
+    read = {key: value for key, value in values.items() if key.upper() not in OF_TOOLS}
+    settings = Settings(**read)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")
     if settings.c_clamp_shapes and not settings.c_clamp:

@@ -192,7 +192,7 @@ REFUSED = [
     ("haas", {"retract": -1}, "form: the retract height -1.000000 must be above 0.000000"),
     ("haas", {"z": 0}, "form: Z 0.000000 must be below 0.000000, where the cut begins"),
     ("haas", {"code": 2}, "form: G must be 12 or 13, not 2"),
-    ("haas", {"i": 4}, "G13 line 29 of form_haas_mm.ngc: I4 must be greater than the tool radius"),
+    ("haas", {"i": 4}, "G13 line 30 of form_haas_mm.ngc: I4 must be greater than the tool radius"),
     ("haas", {"levels": 0}, "form: L must be a whole number from 1, not 0"),
     ("yasnac", {"code": 12.5}, "form: G must be 12 or 13, not 12.5"),
     ("yasnac", {"circles": 0}, "form: L must be a whole number from 1, not 0"),

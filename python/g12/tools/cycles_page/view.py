@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What both views show alike: colours, labels, pictures."""
+
+from pathlib import Path
+
+from g12.tools.cycles_page.page import Page
+from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
+from g12.tools.forms.table import ANGLE, FEED, LENGTH, SECONDS, SPEED, Entry, Form
+
+NGC = Path(__file__).resolve().parents[4] / "ngc"
+COLOURS = {
+    READY: "#2b7a3d",
+    MESSAGE: "#a86500",
+    REFUSED: "#a8262a",
+    "ground": "#15191e",
+    "swept": "#3d5066",
+    "path": "#ffffff",
+    "rapid": "#d9534f",
+}
+UNITS = {
+    LENGTH: {"mm": "mm", "inch": "in"},
+    FEED: {"mm": "mm/min", "inch": "in/min"},
+    ANGLE: {"mm": "°", "inch": "°"},
+    SPEED: {"mm": "1/min", "inch": "1/min"},
+    SECONDS: {"mm": "s", "inch": "s"},
+}
+
+
+def label_of(entry: Entry, unit: str) -> str:
+    """Return what stands beside an entry: words and unit."""
+    measured = UNITS.get(entry.kind, {}).get(unit)
+    return f"{entry.label}, {measured}" if measured else entry.label
+
+
+def hint_of(entry: Entry) -> str:
+    """Return what an entry's 0 leaves out."""
+    return f"0: {entry.zero}" if entry.zero else ""
+
+
+def picture_of(form: Form, unit: str) -> Path:
+    return NGC / f"form_{form.name}_{unit}.png"
+
+
+def tool_text(page: Page) -> str:
+    """Return the tool that is typed: its diameter and its name in the table."""
+    if not page.forms:
+        return ""
+    tool = page.tool()
+    if tool is None:
+        return f"T{page.texts['tool']}: not in the tool table"
+    named = f", {tool.remark}" if tool.remark else ""
+    return f"T{page.texts['tool']}: ⌀ {tool.diameter:g} {UNITS[LENGTH][page.unit]}{named}"

@@ -1,0 +1,392 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The table of forms: what an operator fills in for each cycle, shape and kind of holes.
+
+ngcgui's files (`ngcgui`, one for each unit) and the Cycles page (`tools/cycles_page`) are made from
+it. A form is a sub whose parameters are the entries in their order; its body is NGC text.
+"""
+
+from typing import NamedTuple
+
+LENGTH, FEED, ANGLE, COUNT, CHOICE, TOOL, SPEED, SECONDS = (
+    *("length", "feed", "angle", "count", "choice", "tool", "speed", "seconds"),
+)
+MILL, FACE = "mill", "face"  # where a form cuts: decides its start, its end and its machine
+
+
+class Entry(NamedTuple):
+    """One entry of a form."""
+
+    name: str  # of the sub's local
+    words: str  # beside the entry in ngcgui, at most 18 letters
+    label: str  # beside the entry on the page
+    kind: str  # LENGTH to SECONDS
+    mm: float  # the default, lengths in mm
+    inch: float | None = None  # the default of an inch form, where it is another
+    choices: tuple[tuple[float, str], ...] = ()  # of CHOICE: value and words
+    zero: str = ""  # what 0 leaves out; empty where 0 is a value like another
+    omitted: bool = False  # 0 becomes -9999 in the call
+
+    def default(self, unit: str) -> float:
+        """Return the default of a form of ``unit``, mm or inch."""
+        return self.mm if unit == "mm" or self.inch is None else self.inch
+
+
+class Form(NamedTuple):
+    """One form."""
+
+    name: str  # of its files: form_NAME_mm.ngc
+    feature: str  # of `install`, which has its codes
+    title: str  # on the page
+    info: str  # above ngcgui's entries; {lengths} is the unit
+    source: str  # of the entries' meaning, a page or a sub
+    place: str  # MILL or FACE
+    entries: tuple[Entry, ...]
+    start: str  # arguments of the start after its common ones, names of entries
+    body: str  # from the start's call to the end's
+    end: str  # the height that a mill's form ends at
+    call: str = ""  # the entries of the body's call, ENTRIES
+
+    @property
+    def omitted(self) -> tuple[str, ...]:
+        return tuple(entry.name for entry in self.entries if entry.omitted)
+
+
+COOLANT = Entry(
+    "coolant", "M 7, 8 on, 9 off", "coolant", CHOICE, 9,
+    choices=((9, "off"), (7, "mist, M7"), (8, "flood, M8")),
+)  # fmt: skip
+CODE = Entry(
+    "code", "G 12 or 13", "direction", CHOICE, 13,
+    choices=((13, "G13, counterclockwise"), (12, "G12, clockwise")),
+)  # fmt: skip
+
+
+def tool(number: float, inch: float | None = None, words: str = "T tool") -> Entry:
+    return Entry("tool", words, "tool", TOOL, number, inch)
+
+
+def length(name: str, words: str, label: str, mm: float, inch: float, zero: str = "") -> Entry:
+    return Entry(name, words, label, LENGTH, mm, inch, zero=zero)
+
+
+def left_out(name: str, words: str, label: str, kind: str, zero: str, mm: float = 0,
+             inch: float | None = None) -> Entry:  # fmt: skip
+    """Return an entry whose 0 leaves it out of the call."""
+    return Entry(name, words, label, kind, mm, inch, zero=zero, omitted=True)
+
+
+def speed(words: str, label: str, value: float) -> Entry:
+    return Entry("speed", words, label, SPEED, value)
+
+
+def feed(mm: float, inch: float, name: str = "feed", words: str = "F feed, {unit}/min",
+         label: str = "feed") -> Entry:  # fmt: skip
+    return Entry(name, words, label, FEED, mm, inch)
+
+
+CENTRE = (
+    length("x", "X centre", "centre X", 0, 0),
+    length("y", "Y centre", "centre Y", 0, 0),
+)
+SPINDLE = speed("S spindle, 1/min", "spindle speed", 3000)
+
+
+def mill(number: float, inch: float, turns: float = 3000) -> tuple[Entry, ...]:
+    """Return the entries that a mill's cycle begins with."""
+    return (
+        tool(number, inch, "T, D tool"),
+        speed(SPINDLE.words, SPINDLE.label, turns),
+        COOLANT,
+        feed(400, 20),
+        *CENTRE,
+        length("retract", "Z retract height", "retract height", 10, 0.5),
+    )
+
+
+def levels(name: str, words: str, label: str, value: float) -> Entry:
+    return Entry(name, words, label, COUNT, value)
+
+
+NO_CODE = """\
+o<no_code> if [#<code> NE 12 AND #<code> NE 13]
+  (ABORT,form: G must be 12 or 13, not #<code>)
+o<no_code> endif
+"""
+
+
+def whole(name: str, letter: str) -> str:
+    """Return the check of a whole number from 1."""
+    return f"""\
+o<no_{name}> if [#<{name}> LT 1 OR #<{name}> NE FIX[#<{name}>]]
+  (ABORT,form: {letter} must be a whole number from 1, not #<{name}>)
+o<no_{name}> endif
+"""
+
+
+CIRCLE_FORMS = (
+    Form(
+        "haas", "haas", "Circular pocket, Haas",
+        "Circular pocket, G12/G13 as on Haas. Lengths are {lengths}, radii are those of the pocket",
+        "one pocket; the words of ngc/haas.md", MILL,
+        (
+            *mill(5, 2),
+            length("top", "Z top", "top of the part", 0, 0),
+            length("z", "Z depth", "depth, Z", -4, -0.25),
+            levels("levels", "L levels", "levels", 2),
+            CODE,
+            length("i", "I first radius", "first radius I", 10, 0.4),
+            length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle"),
+            length("q", "Q ring to ring", "stepover Q", 8, 0.35),
+        ),
+        "x y retract top z",
+        NO_CODE + whole("levels", "L") + """\
+START
+G1 Z#<top> F#<feed>
+#<_g12_strict> = 1
+o<clearing> if [#<k>]
+  G91 G#<code> I#<i> K#<k> Q#<q> Z[[#<z> - #<top>] / #<levels>] L#<levels> D#<tool>
+o<clearing> else
+  G91 G#<code> I#<i> Z[[#<z> - #<top>] / #<levels>] L#<levels> D#<tool>
+o<clearing> endif
+""", "retract",
+    ),
+    Form(
+        "yasnac", "yasnac", "Circle, Yasnac",
+        "Circle cutting, G12/G13 as on Yasnac. Lengths are {lengths}, radii are those of the"
+        " circle",
+        "one circle; the words of ngc/yasnac.md", MILL,
+        (
+            *mill(10, 5, 2000),
+            length("top", "Z rapid to", "rapid down to", 2, 0.1),
+            length("z", "Z depth", "depth, Z", -10, -0.4),
+            CODE,
+            length("i", "I radius, signed", "radius I, its sign the side", 50, 2),
+            length("r", "R rapid, 0: none", "bored radius R", 0, 0, "no rapid: into the full"),
+            length("k", "K first, 0: none", "first radius K", 12, 0.6, "no spiral"),
+            length("q", "Q growth per turn", "growth a turn Q", 8, 0.4),
+            levels("circles", "L circles", "finished circles", 1),
+        ),
+        "x y retract top z",
+        NO_CODE + whole("circles", "L") + """\
+START
+G0 Z#<top>
+G1 Z#<z> F#<feed>
+#<_g12_strict> = 1
+o<words> if [#<r> AND #<k>]
+  G#<code> I#<i> R#<r> K#<k> Q#<q> L#<circles> D#<tool>
+o<words> elseif [#<k>]
+  G#<code> I#<i> K#<k> Q#<q> L#<circles> D#<tool>
+o<words> elseif [#<r>]
+  G#<code> I#<i> R#<r> L#<circles> D#<tool>
+o<words> else
+  G#<code> I#<i> L#<circles> D#<tool>
+o<words> endif
+""", "retract",
+    ),
+    Form(
+        "mitsubishi", "mitsubishi", "Circle, Mitsubishi",
+        "Circular cutting, G12/G13 as on Mitsubishi. Lengths are {lengths}, the radius is that of"
+        " the circle",
+        "one circle; the words of ngc/mitsubishi.md", MILL,
+        (
+            *mill(6, 3, 2000),
+            length("top", "Z rapid to", "rapid down to", 2, 0.1),
+            length("z", "Z depth", "depth, Z", -5, -0.2),
+            CODE,
+            length("i", "I radius", "radius I", 50, 2),
+        ),
+        "x y retract top z",
+        NO_CODE + """\
+START
+G0 Z#<top>
+G1 Z#<z> F#<feed>
+#<_g12_strict> = 1
+G#<code> I#<i> D#<tool>
+""", "retract",
+    ),
+    Form(
+        "circle_mill", "circle-mill", "Circle mill event",
+        "Circle mill event, pocket or perimeter. Lengths are {lengths}, 0 leaves an entry in [ ]"
+        " out",
+        "one event; its entries as in ngc/circle_mill.ngc", MILL,
+        (
+            tool(5, 2), SPINDLE, COOLANT,
+            Entry("event", "G 7 pocket, 0 wall", "cut", CHOICE, 7,
+                  choices=((7, "pocket"), (0, "along the circle"))),
+            *CENTRE,
+            length("z", "Z depth", "depth, Z", -6, -0.25),
+            length("w", "W start height", "start height W", 2, 0.1),
+            length("o", "O retract height", "retract height O", 10, 0.5),
+            length("r", "R radius", "radius R", 40, 1.5),
+            Entry("d", "D sense, 0 to 3", "direction, rough / finish", CHOICE, 0,
+                  choices=((0, "CW / CW"), (1, "CCW / CCW"), (2, "CW / CCW"), (3, "CCW / CW"))),
+            Entry("c", "C side, 0 to 2", "tool", CHOICE, 2,
+                  choices=((2, "right of it"), (1, "left of it"), (0, "on the circle"))),
+            left_out("k", "[K] plunge depth", "depth per plunge K", LENGTH, "at once", 3, 0.12),
+            left_out("j", "[J] pass width", "roughing width J", LENGTH, "the tool less 0.25 mm"),
+            left_out("l", "[L] finish", "finish L", LENGTH, "no finish", 0.3, 0.01),
+            left_out("p", "[P] plunge feed", "plunge feed P", FEED, "the feed", 150, 6),
+            feed(600, 25, "f", "F rough feed"),
+            left_out("v", "[V] finish feed", "finish feed V", FEED, "the feed"),
+        ),
+        "x y o w z",
+        """\
+o<no_event> if [#<event> NE 0 AND #<event> NE 7]
+  (ABORT,form: G must be 0 or 7, not #<event>)
+o<no_event> endif
+START
+OMITTED
+#<_g12_strict> = 1
+o<circle_mill> call ENTRIES
+""", "o",
+        "event x y z w o r d c k j l p f v",
+    ),
+)  # fmt: skip
+
+ON_AND_OFF = (
+    Entry("on", "M tool on", "M code, tool on", COUNT, 3),
+    Entry("off", "M tool off", "M code, tool off", COUNT, 5),
+)
+LIVE = Entry("spindle", "spindle $, 1 live", "spindle of the tool", COUNT, 0)
+PER_PASS = left_out("per_pass", "[depth] per pass", "depth per pass", LENGTH, "at once")
+ALLOWANCE = length("allowance", "finish allowance", "finish allowance", 0, 0, "no finish round")
+PLUNGE = left_out("plunge_feed", "[plunge feed]", "plunge feed", FEED, "the feed")
+SHAPE_INFO = "Lengths are {lengths}, 0 leaves an entry in [ ] out"
+
+
+def on_a_face(number: float, turns: float = 3000, retract: str = "Z retract height",
+              label: str = "retract height") -> tuple[Entry, ...]:  # fmt: skip
+    """Return the entries that a form on a lathe begins with."""
+    return (
+        tool(number),
+        speed("S tool, 1/min", "tool speed", turns),
+        *ON_AND_OFF,
+        COOLANT,
+        length("retract", retract, label, 5, 0.2),
+    )
+
+
+def angle(words: str, label: str, name: str = "angle") -> Entry:
+    return Entry(name, words, label, ANGLE, 0)
+
+
+HOLE_ENTRIES = (
+    length("depth", "depth", "depth", 8, 0.3),
+    length("height", "retract height", "clear height", 2, 0.1),
+    feed(120, 5, words="F, tap: the pitch", label="feed; tap: pitch"),
+    length("peck", "peck, < 0: chips", "peck; below 0 breaks chips", 0, 0, "no peck"),
+    Entry("dwell", "dwell, s", "dwell", SECONDS, 0),
+    Entry("kind", "kind, 0 drills", "kind", CHOICE, 0,
+          choices=((0, "drill"), (1, "tap, right"), (2, "tap, left"), (3, "bore"))),
+    LIVE,
+)  # fmt: skip
+FIRST = angle("first angle", "first angle", "first_angle")
+STEP = left_out("step", "[angle to next]", "angle to the next", ANGLE, "all round")
+
+FACE_FORMS = (
+    Form(
+        "polygon", "polar-shapes", "Polygon on a bar's end",
+        f"Polygon or two flats on a bar's end. {SHAPE_INFO}",
+        "a polygon; its entries as in ngc/polar_shapes.md", FACE,
+        (
+            *on_a_face(1),
+            levels("sides", "sides, 2: flats", "sides (2: flats)", 6),
+            length("across_flats", "across flats", "across flats", 27, 1),
+            length("depth", "depth", "depth", 5, 0.2),
+            length("stock_diameter", "stock diameter", "stock diameter", 40, 1.5),
+            length("corner_radius", "corner radius", "corner radius", 0, 0, "sharp"),
+            PER_PASS, ALLOWANCE, feed(400, 15), PLUNGE,
+            angle("angle of a flat", "angle of a flat"), LIVE,
+        ),
+        "",
+        """\
+START
+OMITTED
+o<polar_polygon> call ENTRIES
+""", "",
+        "sides across_flats depth stock_diameter corner_radius per_pass allowance feed "
+        "plunge_feed angle",
+    ),
+    Form(
+        "slot", "polar-shapes", "Slot on a bar's end",
+        f"Slot about the centre of a bar's end. {SHAPE_INFO}",
+        "a slot; its entries as in ngc/polar_shapes.md", FACE,
+        (
+            *on_a_face(3),
+            length("width", "width", "width", 8, 0.3125),
+            length("length", "length over all", "length over all", 30, 1.2),
+            length("depth", "depth", "depth", 4, 0.15),
+            PER_PASS, ALLOWANCE, feed(400, 15), PLUNGE,
+            angle("angle of the slot", "angle of the slot"), LIVE,
+        ),
+        "",
+        """\
+START
+OMITTED
+o<polar_slot> call ENTRIES
+""", "",
+        "width length depth per_pass allowance feed plunge_feed angle",
+    ),
+    Form(
+        "face_pocket", "polar-shapes", "Round pocket on a bar's end",
+        f"Round pocket on a bar's end. {SHAPE_INFO}",
+        "a pocket; its entries as in ngc/polar_shapes.md", FACE,
+        (
+            *on_a_face(3),
+            length("x", "X centre, diam.", "centre X, a diameter", 0, 0),
+            length("c", "C centre, length", "centre C, a length", 0, 0),
+            length("diameter", "pocket diameter", "diameter", 20, 0.75),
+            length("depth", "depth", "depth", 4, 0.15),
+            PER_PASS, ALLOWANCE, feed(400, 15), PLUNGE, LIVE,
+        ),
+        "",
+        """\
+START
+OMITTED
+o<polar_pocket> call ENTRIES
+""", "",
+        "x c diameter depth per_pass allowance feed plunge_feed",
+    ),
+    Form(
+        "face_holes", "polar-shapes", "Holes on a bar's end",
+        f"Holes on a circle on a bar's end. {SHAPE_INFO}",
+        "holes; its entries as in ngc/holes.md", FACE,
+        (
+            *on_a_face(3, 2000),
+            levels("count", "number of holes", "number of holes", 6),
+            length("circle_diameter", "circle diameter", "circle diameter", 30, 1.2),
+            FIRST, STEP, *HOLE_ENTRIES,
+        ),
+        "",
+        """\
+START
+OMITTED
+o<face_holes> call ENTRIES
+""", "",
+        "count circle_diameter first_angle step depth height feed peck dwell kind",
+    ),
+    Form(
+        "side_holes", "polar-shapes", "Holes round a bar",
+        f"Holes round a bar. {SHAPE_INFO}",
+        "holes; its entries as in ngc/holes.md", FACE,
+        (
+            *on_a_face(3, 2000, "Z in front of bar", "Z in front of the bar"),
+            length("clear", "X clear, diameter", "X clear, a diameter", 60, 2.4),
+            levels("count", "number of holes", "number of holes", 4),
+            length("z", "Z of the holes", "Z of the holes", -10, -0.4),
+            FIRST, STEP,
+            length("surface_diameter", "surface diameter", "surface diameter", 40, 1.6),
+            *HOLE_ENTRIES,
+        ),
+        "",
+        """\
+START
+G0 X#<clear>
+OMITTED
+o<side_holes> call ENTRIES
+""", "",
+        "count z first_angle step surface_diameter depth height feed peck dwell kind",
+    ),
+)  # fmt: skip
+
+FORMS = (*CIRCLE_FORMS, *FACE_FORMS)

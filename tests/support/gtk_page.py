@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Open the Cycles page in GTK, add a step, write its picture: gtk_page.py INI PICTURE."""
+
+import sys
+
+import gi
+
+gi.require_version("Gtk", "3.0")
+from gi.repository import Gdk, GLib, Gtk  # noqa: E402
+
+from g12.tools.cycles_page.gtk_view import CyclesView  # noqa: E402
+
+ini, picture = sys.argv[1:]
+window = Gtk.Window()
+view = CyclesView(ini, print)
+window.add(view)
+window.set_default_size(1000, 640)
+window.show_all()
+
+
+def step():
+    if not view.page.sketch.lines:
+        return True
+    view.widgets["i"].set_text("7,5")
+    GLib.timeout_add(500, add)
+    return False
+
+
+def add():
+    view._add()
+    assert len(view.steps.get_children()) == 1
+    GLib.timeout_add(200, save)
+    return False
+
+
+def save():
+    shown = window.get_window()
+    size = shown.get_width(), shown.get_height()
+    Gdk.pixbuf_get_from_window(shown, 0, 0, *size).savev(picture, "png", [], [])
+    window.destroy()
+    Gtk.main_quit()
+    return False
+
+
+GLib.timeout_add(100, step)
+GLib.timeout_add(20_000, Gtk.main_quit)
+Gtk.main()
