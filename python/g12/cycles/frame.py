@@ -7,7 +7,7 @@ frame that is narrower in X, on a half circle from the ring before.
 
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
 the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
-Q, P above 0, Q in a pocket only; E above 0; the cutter; inside R from its radius, I and J greater
+Q, P above 0, Q in a pocket only; E above 0, or 0; the cutter; inside R from its radius, I and J greater
 than its diameter; room for the finish; not too many rings; a helix of not too many turns.
 """
 
@@ -138,8 +138,8 @@ def frame_of(words: Words) -> Frame:
             rule = f"must be at most half of {letter}{number(2 * half)}"
             raise words.refuse_word("R", corner, rule)
     kind = words.take_whole("H", least=POCKET, most=WALL_OUTSIDE, default=POCKET)
-    finish = words.take_positive("E") or 0.0
-    if 0 < finish < 2 * words.context.smallest_ring:
+    finish = words.take("E") or 0.0
+    if finish and finish < 2 * words.context.smallest_ring:
         rule = f"must be at least {number(2 * words.context.smallest_ring)}"
         raise words.refuse_word("E", finish, rule)
     return Frame(half_x, half_y, min(corner, half_x, half_y), kind, finish)
