@@ -250,12 +250,10 @@ def thread(plan: Axes, side: Axes, *, page: bool = False) -> None:
     helix(side, 0.33, -0.5, 0.3, 4)
     measure(side, (-0.46, 0.0), (-0.46, 0.2), "")
     side.text(-0.54, 0.1, "P", **WORDS)
-    for foot, head, code in ((-0.32, -0.1, "13.6"), (0.12, -0.1, "12.6")):
-        at_x = -0.14 if code == "13.6" else 0.12
-        ends = (foot, 0.15) if code == "13.6" else (0.15, -0.32)
-        side.annotate("", (at_x, ends[1]), (at_x, ends[0]),
+    for place, ends, code in ((-0.17, (-0.32, 0.15), "13.6"), (0.17, (0.15, -0.32), "12.6")):
+        side.annotate("", (place, ends[1]), (place, ends[0]),
                       arrowprops={**ARROW, "arrowstyle": "-|>", "color": PATH})  # fmt: skip
-        side.text(at_x, -0.42, code, **{**WORDS, "fontsize": 5.2})
+        side.text(place, -0.64, code, **WORDS)
     at_heights(side, {"start": 0.9, "R": 0.3, "Z": -0.5})
 
 

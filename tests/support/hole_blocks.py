@@ -4,10 +4,12 @@
 ``chance`` is a `random.Random`. Lengths are mm, in the blocks those of their units.
 """
 
+import functools
 import math
 from typing import NamedTuple
 
 import numpy as np
+import pytest
 from shapely.geometry import LineString, box
 from shapely.ops import unary_union
 
@@ -60,7 +62,9 @@ def written(chance, code, words, start, diameter):
         shown.append(f"{letter}{given:.6f}")
         read[letter] = given * scale + base
     at = " ".join(f"{axis}{value / unit:.9f}" for axis, value in zip("XYZ", start))
-    modes = f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f} F{300 / unit}"
+    modes = (
+        f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f} F{300 / unit}"
+    )
     before = (modes, f"G0 {at}", "G91" if incremental else "G90")
     return Block(code, read, before, f"{code} {' '.join(shown)}", start, diameter / 2)
 
@@ -142,6 +146,7 @@ def frame(chance):
     return written(chance, chance.choice(("G12.7", "G13.7")), words, start, diameter)
 
 
+near = functools.partial(pytest.approx, abs=1e-6)
 MAKERS = {"bore": bore, "thread": thread, "frame": frame}
 
 
@@ -160,7 +165,7 @@ def sampled(move, count=40):
 
 
 def check_ends(block, moves):
-    """The tool ends in the centre, at the Z where the block began; rapids are beside the part."""
+    """Check that the tool ends in the centre at the Z where the block began, and its depth."""
     end = moves[-1].end
     assert abs(complex(*end[:2]) - centre_of(block)) < 1e-6
     assert abs(end[2] - block.start[2]) < 1e-6
@@ -196,7 +201,7 @@ def check_bore(block, moves):
             away = np.abs(sampled(each)[0] - centre)
             assert np.ptp(away) < 2 * RADIUS
         radii.append(away[0])
-        assert helix.start[2] == pytest_near(top) and floor.start[2] == pytest_near(block.Z)
+        assert helix.start[2] == near(top) and floor.start[2] == near(block.Z)
         assert abs(floor.end[2] - block.Z) < 1e-6 and abs(off.end[2] - block.Z) < 1e-6
         assert turned(onto, helix, True) < ANGLE and turned(floor, off, True) < ANGLE
         assert abs(complex(*onto.start[:2]) - centre) < 1e-6
@@ -311,7 +316,7 @@ def check_frame(block, moves):
     step = block.words.get("K", 1e9)
     heights = [block.start[2], *sorted(levels, reverse=True)]
     assert (-np.diff(heights) < step + 1e-5).all() and abs(heights[-1] - block.Z) < 1e-5
-    for number, (z, lines) in enumerate(sorted(levels.items(), reverse=True)):
+    for number, (_, lines) in enumerate(sorted(levels.items(), reverse=True)):
         last = number == len(levels) - 1
         allowance = 0.0 if last else block.E
         swept = unary_union([line.buffer(radius, 64) for line in lines])
@@ -329,9 +334,3 @@ def check_frame(block, moves):
 
 
 CHECKS = {"bore": check_bore, "thread": check_thread, "frame": check_frame}
-
-
-def pytest_near(value):
-    import pytest
-
-    return pytest.approx(value, abs=1e-6)

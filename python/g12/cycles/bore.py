@@ -65,7 +65,7 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     extent = CycleExtent(XY, centre, last, (hole.start, hole.bottom))
     message = remains(words, wall, stepover, cutter) if core > opened else None
     message = message or between_helices(words, stepover, cutter)
-    return CyclePlan(numbers | turns, extent, cut, message, **cutter.plan)
+    return cutter.plan(numbers | turns, extent, cut, message)
 
 
 def open_radius(words: Words, wall: float) -> float:

@@ -7,7 +7,7 @@ frame that is narrower in X, on a half circle from the ring before.
 
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
 the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
-Q, P above 0, Q in a pocket only; E above 0, or 0; the cutter; inside R from its radius, I and J greater
+Q, P above 0, Q in a pocket only; E from 0; the cutter; inside R from its radius, I and J greater
 than its diameter; room for the finish; not too many rings; a helix of not too many turns.
 """
 
@@ -56,7 +56,7 @@ class Rings(NamedTuple):
     b: float
     corner: float
     step: float
-    count: int
+    number: int
 
 
 def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
@@ -77,7 +77,7 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         raise words.refuse("Q is missing: the stepover, which D0 does not give")
     rings = rings_of(words, frame, cutter, stepover)
     levels = max(1, steps_between(0.0, hole.depth, level, context.rounding))
-    check_count(words, levels * (rings.count + 1), "Q and K make")
+    check_count(words, levels * (rings.number + 1), "Q and K make")
     turned = rings.a < rings.b
     lead = min(CLEARED * cutter.radius or rings.b, rings.a, rings.b)
     other = CLOCKWISE + COUNTERCLOCKWISE - arc
@@ -93,7 +93,7 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         "corner": rings.corner,
         "turned": turned,
         "step": rings.step,
-        "rings": rings.count,
+        "rings": rings.number,
         "finish": frame.finish,
         "least": context.smallest_ring,
         "lead": lead,
@@ -118,13 +118,8 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
             cutter.used,
         )
 
-    return CyclePlan(
-        numbers,
-        extent_of(hole, frame, rings, cutter, lead),
-        cut,
-        uncut_corners(words, frame, rings, cutter),
-        **cutter.plan,
-    )
+    extent = extent_of(hole, frame, cutter, lead)
+    return cutter.plan(numbers, extent, cut, uncut_corners(words, rings, cutter))
 
 
 def frame_of(words: Words) -> Frame:
@@ -187,7 +182,7 @@ def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -
     return turns
 
 
-def extent_of(hole: Hole, frame: Frame, rings: Rings, cutter: Chosen, lead: float) -> CycleExtent:
+def extent_of(hole: Hole, frame: Frame, cutter: Chosen, lead: float) -> CycleExtent:
     """Return the tool centre's last ring, and outside the lead onto it."""
     beyond = frame.side * cutter.radius
     corner = max(0.0, frame.corner + beyond)
@@ -198,7 +193,7 @@ def extent_of(hole: Hole, frame: Frame, rings: Rings, cutter: Chosen, lead: floa
     return CycleExtent(XY, centre, corner, (hole.top, hole.bottom), (along_x, along_y))
 
 
-def uncut_corners(words: Words, frame: Frame, rings: Rings, cutter: Chosen) -> str | None:
+def uncut_corners(words: Words, rings: Rings, cutter: Chosen) -> str | None:
     """Return the operator message of a stepover that leaves material between rings, or None."""
     if not cutter.radius or rings.step * sqrt(2) <= 2 * cutter.radius + words.context.rounding:
         return None

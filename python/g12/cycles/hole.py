@@ -4,14 +4,17 @@
 Lengths are in program units.
 """
 
+from collections.abc import Callable
 from math import ceil, cos, pi, sin
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, UsedCutter
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, PlannedCut, UsedCutter
 from g12.cycles.haas import choose_cutter, kept_cutter
+from g12.cycles.plan import CyclePlan
 from g12.errors import number
 from g12.request.common import COUNTERCLOCKWISE, check_modes, check_start, other_cutter
 from g12.request.context import Tool
+from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
 CLEARANCE_MM, CLEARANCE_INCH = 1.0, 0.04  # of the rapid down, above the top
@@ -34,16 +37,29 @@ class Hole(NamedTuple):
 
 
 class Chosen(NamedTuple):
-    """The cutter of a block, its name in messages, and what the plan says of it."""
+    """The cutter of a block, its name in messages, and what the operator hears of it."""
 
     tool: Tool
     source: str
     used: UsedCutter
-    plan: dict[str, Any]
+    other: str | None
+    kept: str | None
 
     @property
     def radius(self) -> float:
         return self.tool.radius
+
+    def plan(
+        self,
+        numbers: dict[str, float],
+        extent: CycleExtent,
+        cut: Callable[[], PlannedCut],
+        message: str | None = None,
+    ) -> CyclePlan:
+        commanded = self.tool if self.used.source == BY_D else None
+        return CyclePlan(
+            numbers, extent, cut, message, self.other, commanded, kept_cutter=self.kept
+        )
 
 
 def check_block(words: Words, known: str) -> None:
@@ -78,12 +94,8 @@ def chosen_cutter(words: Words) -> Chosen:
     other = other_cutter(words, context.last_cutter)
     tool, source = choose_cutter(words)
     by = BY_D if with_d else LOADED if context.last_cutter is None else BY_LAST_D
-    plan = {
-        "other_cutter": other,
-        "commanded_cutter": tool if with_d else None,
-        "kept_cutter": None if with_d else kept_cutter(words, tool),
-    }
-    return Chosen(tool, source, UsedCutter(tool.radius, by, tool.number), plan)
+    kept = None if with_d else kept_cutter(words, tool)
+    return Chosen(tool, source, UsedCutter(tool.radius, by, tool.number), other, kept)
 
 
 def turns_of(height: float, pitch: float, arc: int) -> dict[str, float]:

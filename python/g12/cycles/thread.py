@@ -15,8 +15,15 @@ from math import ceil, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.hole import CLEARANCE_MM, Chosen, Hole, check_block, chosen_cutter, hole_of
-from g12.cycles.hole import turns_of
+from g12.cycles.hole import (
+    CLEARANCE_MM,
+    Chosen,
+    Hole,
+    check_block,
+    chosen_cutter,
+    hole_of,
+    turns_of,
+)
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, check_count, steps_between
@@ -109,7 +116,7 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
             cutter.used,
         )
 
-    return CyclePlan(numbers, extent, cut, None, **cutter.plan)
+    return cutter.plan(numbers, extent, cut)
 
 
 def thread_of(words: Words) -> Thread:

@@ -244,7 +244,6 @@ o<circle_mill> call ENTRIES
 )  # fmt: skip
 
 
-
 def hole_code(number: int) -> Entry:
     """Return the choice of direction of G12.5 to G13.7."""
     ways = [(13 + number / 10, "counterclockwise"), (12 + number / 10, "clockwise")]
@@ -274,9 +273,7 @@ o<with_{name}> endif
 """
 
 
-THREAD_BLOCK = (
-    "G#<code> Z#<z> R#<top> I#<i> K#<k> P#<pitch> H#<side> J#<teeth> E#<taper> D#<tool>"
-)
+THREAD_BLOCK = "G#<code> Z#<z> R#<top> I#<i> K#<k> P#<pitch> H#<side> J#<teeth> E#<taper> D#<tool>"
 HOLE_FORMS = (
     Form(
         "bore", "bore", "Bore along a helix",
