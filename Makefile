@@ -59,7 +59,7 @@ bench: setup kinematics
 	@$(IN_PLACE) sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m bench'
 
 soak: setup
-	@echo "soak: for about $(MINUTES) minutes on two cores, seed $(SEED)"
+	@echo "soak: for $(MINUTES) minutes on two cores, seed $(SEED)"
 	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) sh -c 'PYTHONPATH=tests:$$PYTHONPATH \
 		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(SOAKERS) \
 		--durations=20 $(SOAKED)'

@@ -10,29 +10,39 @@ LONGEST_BLOCK = 254  # characters that LinuxCNC reads of a line
 class Refusal(ValueError):
     """A refused block: nothing has moved and nothing has changed.
 
-    The message names the code, its line, the word, the rule and the value, for example
-    ``G12 line 13: I0.125 must be greater than the tool radius 0.125 (D1)``.
+    ``code`` is the block's, or the name of its sub; a setting has none. ``line`` is None until a
+    handler adds it (`at`), 0 in MDI. ``file`` is that of the line, if it is not the program's own.
     """
 
-    def __init__(self, message: str) -> None:
-        super().__init__(message[:LONGEST_MESSAGE])
+    def __init__(self, rule: str, code: str = "", line: int | None = None, file: str = "") -> None:
+        super().__init__(rule)
+        self.rule, self.code, self.line = rule, code, line
+        self.file = file or getattr(line, "file", "")
+
+    @property
+    def lacks_line(self) -> bool:
+        """Whether a block is refused whose line the planner did not know."""
+        return bool(self.code) and self.line is None
+
+    def at(self, line: int | None) -> None:
+        """Add the line, which may be one of another file."""
+        self.line, self.file = line, getattr(line, "file", "")
 
     @property
     def message(self) -> str:
-        """The text for the operator, at most 255 characters."""
-        return self.args[0]
+        """The text for the operator, at most 255 characters.
 
+        It names the code, its line, the word, the rule and the value, for example
+        ``G12 line 13: I0.125 must be greater than the tool radius 0.125 (D1)``.
+        """
+        if not self.code:
+            return self.rule[:LONGEST_MESSAGE]
+        file = f" of {self.file:.80}" if self.file else ""  # room for the rule
+        line = f" line {int(self.line)}{file}" if self.line else ""
+        return f"{self.code}{line}: {self.rule}"[:LONGEST_MESSAGE]
 
-class BlockRefusal(Refusal):
-    """A block of ``code`` that breaks ``rule``; its caller adds the line."""
-
-    def __init__(self, code: str, rule: str, line: int | None = None) -> None:
-        self.code, self.rule = code, rule
-        super().__init__(f"{code}: {rule}" if line is None else f"{code} line {line}: {rule}")
-
-    def at(self, line: int | None) -> BlockRefusal:
-        """Return the refusal with its line in the message; None: without a line."""
-        return BlockRefusal(self.code, self.rule, line)
+    def __str__(self) -> str:
+        return self.message
 
 
 def number(value: float) -> str:

@@ -191,8 +191,7 @@ def test_another_preview_shows_nothing_of_them(tmp_path):
 def test_no_record_is_made_where_nobody_asks(tmp_path):
     made = tmp_path / "made"
     body = f"open({str(made)!r}, 'a').write('made'); return original()"
-    fault = {"function": "g12.host.reported.report_of", "does": body}
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), fault, tmp_path)
+    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.reported.report_of", body, tmp_path)
     for reports in (False, True):
         with Tracer(ini, tools=TOOLS, reports=reports) as tracer:
             tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])
@@ -201,8 +200,7 @@ def test_no_record_is_made_where_nobody_asks(tmp_path):
 
 def test_a_machine_whose_package_reports_otherwise_is_named(tmp_path):
     body = "return original().replace('schema\": 1', 'schema\": 9')"
-    fault = {"function": "g12.cut_report.report_text", "does": body}
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), fault, tmp_path)
+    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.cut_report.report_text", body, tmp_path)
     says = pytest.raises(TraceFailure, match="reports its cuts by schema 9, this one reads 1")
     with Tracer(ini, tools=TOOLS, reports=True) as tracer, says:
         tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])

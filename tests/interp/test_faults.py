@@ -6,14 +6,17 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support.sim_machines import SIM
 
-TOPLEVEL = """\
+RAISING = """\
 import sys
 sys.path.insert(0, "{python}")
 import remap
-from g12.host.handlers import cycles
-from g12.polar import polar_section
 def broken(*_, **__):
     raise KeyError("wire")
+"""
+TOPLEVEL = f"""\
+{RAISING}
+from g12.host.handlers import cycles
+from g12.polar import polar_section
 cycles.plan_pocket = polar_section.plan = broken
 """
 BROKEN = """\
@@ -55,6 +58,31 @@ def test_a_fault_in_a_handler_is_named(tmp_path, machine, program):
         error = tracer.trace_text(program).error
     assert error.text == "g12: a fault of the package, please report it: KeyError: 'wire'"
     assert program[error.line - 1] in ("G12 I20 D1 Z-1", "G13.1")
+
+
+SECTION = ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"]
+END_FAILS = """
+from g12.host.program_lines import ProgramLines
+ProgramLines.catch_up = broken
+"""
+RESTORING_FAILS = """
+from g12.host import borrowed, kinematics_switch, messages
+from g12.host.section_output import SectionOutput
+kinematics_switch.leave = lambda interp: messages.message("off the face")
+SectionOutput._move_on_face = borrowed.restore = broken
+"""
+
+
+def test_an_end_that_fails_names_the_fault_and_gives_back_once(tmp_path):
+    with tracer_of(tmp_path, "lathe_mm", RAISING + END_FAILS) as tracer:
+        error = tracer.trace_text(SECTION).error
+    assert error.text.endswith("KeyError: 'wire'")
+
+
+def test_the_face_is_left_even_if_the_modes_cannot_be_restored(tmp_path):
+    with tracer_of(tmp_path, "lathe_mm_kinematics", RAISING + RESTORING_FAILS) as tracer:
+        trace = tracer.trace_text(SECTION)
+    assert "off the face" in [text for _, text in trace.messages]
 
 
 @pytest.mark.parametrize("broken", HALVES)

@@ -48,6 +48,10 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0"),
     ("fanuc-mill", "G81 X2. Z.5 R.9\nG91 X.5 K2 M98 P5\nG80 G90\nM30\nO5\nY1.\nM99",
      "G81 X2 Z.5 R.9\nX2.5\nX3\nY2\nG80\nG0"),
+    ("fanuc-mill", "G91 G81 X1. Z-.4 R-.1\nG90 X3. Y2.\nY[3.]\nX1.\nG80",
+     "G81 X2 Z.5 R.9\nX3 Y2\nY3\nX1\nG80\nG0"),
+    ("fanuc-mill", "G91 G99 G81 X1. Z-.4 R-.1\nG90 X3.\nG91 Y1.\nG80 G90",
+     "G99 G81 X2 Z.5 R.9\nX3\nY2\nG80\nG0"),
     ("fanuc-mill", "G83 X2. Z.5 R.9 Q2000\nG80", "G83 X2 Z.5 R.9 Q.2\nG80\nG0"),
     *((control, f"G81 Z.5 R.9 {none}0\nX2.\nG91 X.5 {none}2\nG80 G90",
        "G81 X2 Z.5 R.9\nX2.5\nX3\nG80\nG0")
@@ -56,19 +60,13 @@ CONSTRUCTS = [
      "G81 X2 Z.5 R.9\nX3\nG80\nG0"),
     ("haas-mill", "G81 Z.5 R.9 L0\nM98 P5\nG83 Z.6 R.9 Q.2 L0\nM98 P5\nM30\nO5\nX2.\nX3.\nG80\nM99",
      "G81 X2 Z.5 R.9\nX3\nG80\nG0\nG83 X2 Z.6 R.9 Q.2\nX3\nG80\nG0"),
-    # patterns of holes, a turned program
+    # patterns of holes, diameters by program
     ("haas-mill", "T1 M6\nG0 X1. Y1.\nG43 H1 Z1.\nG81 Z.5 R.9 L0\nG70 I1. J0. L4\nG80",
      "T1 M6\nG0 X1 Y1\nG43 H1 Z1\nG81 X2 Y1 Z.5 R.9\nX1 Y2\nX0 Y1\nX1 Y0\nG80\nG0"),
     ("haas-mill", "G83 Z.5 R.9 Q.2 L0\nG71 X2. Y2. I1. J0. K90. L3\nX5.\nG80",
      "G83 X3 Y2 Z.5 R.9 Q.2\nX2 Y3\nX1 Y2\nX5\nG80\nG0"),
     ("haas-mill", "G81 X2. Z.5 R.9\nG72 I.5 J90. L3\nG80",
      "G81 X2 Z.5 R.9\nX2 Y1\nY1.5\nY2\nG80\nG0"),
-    ("haas-mill", "G68 X1. Y2. R90.\nG0 X3. Y2.\nG1 X4.\nG69\nG0 X3.",
-     "G0 X1 Y4\nG1 X1 Y5\nG0 X3"),
-    ("haas-mill", "#100=-45.\nG68 R#100\nG0 X2.\nG1 Y3.\nG69",
-     "G0 X[1+SQRT[.5]] Y[1-SQRT[.5]]\nG1 X[1+3*SQRT[.5]] Y[1+SQRT[.5]]"),
-    ("haas-mill", "G52 X1. Y-2.\nG68 X0 Y0 R90.\nG0 X3. Y2.\nG1 X4.\nG69\nG52 X0 Y0\nG0 X3.",
-     "G52 X0 Y0\nG0 X-1 Y1\nG1 X-1 Y2\nG0 X3"),
     ("haas-mill", "G10 L12 P1 R.5\nG10 L13 P1 R.02\nT1 M6\nG41 D1 G1 X2.\nY3.\nG40 X4.",
      "G10 L1 P1 R.26\nT1 M6\nG41 D1 G1 X2\nY3\nG40 X4"),
     # G41 before the first move in the plane: it waits for that

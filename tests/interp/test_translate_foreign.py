@@ -153,7 +153,6 @@ ON_FOUR = "G20 G90 G54 G0 X1. A1.\n"
         ("G10 L20 P3 X.5 A90.\nG154 P3 X1. A1.", "X1.5 A91"),
         ("G10 L20 P3 A90.\nG91 G10 L20 P3 X.5 A5.\nG90 G112 X1. A1.", "X1.5 A96"),
         ("G10 L20 P3 A1.\nG112\nG10 L20 P3 X.5 A90.\nX1. A1.", "X1.5 A91"),
-        ("G10 L2 P1 A5.\nG68 X0 Y0 R90.\nG0 X2. Y0 A1.\nG69", "X0 Y2 A6"),
     ],
 )
 @pytest.mark.parametrize("unit", ["G20", "G21"])

@@ -1,25 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random valid programs of every cycle, shape and section, judged by the oracle of the planners.
+"""Random valid programs: pockets, events and sections by their pages, shapes by their drawings.
 
-What the oracle sees is proved by tests/faults. Contours that sections report are those that
-LinuxCNC itself reads where C is the Y of a mill.
+The pages' toolpaths are `support.oracle`'s, the drawings shapely's. Contours that sections report
+are those that LinuxCNC itself reads where C is the Y of a mill.
 """
 
 import random
 import re
 
 import pytest
+from shapely.affinity import rotate
+from shapely.geometry import LineString
+from shapely.ops import unary_union
 
 from g12.cut_report import SectionCut
+from g12.tools.path.part import Part
 from g12.tools.preview.tracer import Tracer
 from support.oracle.judge import Oracle
-from support.oracle.tracing import ModalTracer
+from support.shape_geometry import area_off, disc, polygon, slot
 from support.sim_machines import SIM
 from support.valid_programs import MACHINES, machine_of, valid_program
 
 POCKETS, SECTIONS, SHAPES = 24, 8, 4  # in a program
 SAME = 1e-4  # mm: words of inches have five decimals
 POLAR = [kind for kind in MACHINES if kind.startswith("polar") and "beside" not in kind]
+WALL = 0.01  # mm of a shape's wall
+SEGMENTS = 48  # of a quarter circle
+SLIVER = 0.02  # mm², where drawings have chords
 
 
 def count_of(kind):
@@ -30,24 +37,57 @@ def count_of(kind):
 
 
 def traced(kind, folder, seed):
-    """Return a random program's text and its trace for the oracle."""
+    """Return a random program's text and its trace with reports."""
     program = folder / "valid.ngc"
     program.write_text(valid_program(kind, random.Random(seed), count_of(kind)))
-    with ModalTracer(machine_of(kind)) as tracer:
+    with Tracer(machine_of(kind), reports=True) as tracer:
         trace = tracer.trace(program)
     assert trace.error is None and len(trace.cuts) >= count_of(kind), seed
     return program.read_text(), trace
 
 
 def check_cuts(kind, folder, seed):
-    """Let the oracle judge a random program."""
+    """Judge the cuts of a random program."""
     text, trace = traced(kind, folder, seed)
-    assert list(Oracle(trace, machine_of(kind), text).differences()) == [], seed
+    if kind.startswith("shapes"):
+        for cut in trace.cuts:
+            check_shape(trace, cut, machine_of(kind), diameters="\nG7" in text)
+    else:
+        assert list(Oracle(trace, machine_of(kind)).differences()) == [], seed
 
 
 @pytest.mark.parametrize("kind", MACHINES)
 def test_a_valid_program_is_cut_as_its_words_ask(kind, tmp_path):
     check_cuts(kind, tmp_path, kind)
+
+
+# ---------------------------------------------------------------- a shape as it is drawn
+
+
+def check_shape(trace, cut, ini, diameters):
+    """Compare what is left, or cut out, at the last depth with the drawing of a call."""
+    words, unit, zero = cut.report.words, cut.report.frame.mm, cut.report.frame.zero
+    given = {name: value * unit for name, value in words.items() if name not in ("sides", "angle")}
+    moves = [move for move in trace.moves[cut.at : cut.end] if move.kind != "rapid"]
+    bottom = min(move.end[2] for move in moves)
+    assert bottom == pytest.approx(zero[2] * unit - given["depth"], abs=SAME)
+    part = Part(True, ini.tool_beside, zero[0] * unit)
+    level = [move for move in moves if move.start[2] == move.end[2] == bottom]
+    lines = [LineString(part.polyline(move, 1e-3)[:, :2]) for move in level]
+    swept = unary_union([line.buffer(trace.radius(cut.at), SEGMENTS) for line in lines])
+    swept = rotate(swept, -zero[3], origin=(0, 0))
+    if cut.report.code == "polar_polygon":
+        bar = disc(0, 0, given["stock_diameter"])
+        rounding, angle = given.get("corner_radius", 0.0), words.get("angle", 0.0)
+        drawn = polygon(round(words["sides"]), given["across_flats"], rounding, angle)
+        assert area_off(bar.difference(swept), drawn.intersection(bar), WALL) < SLIVER, cut.line
+    elif cut.report.code == "polar_slot":
+        drawn = slot(given["width"], given["length"], words.get("angle", 0.0))
+        assert area_off(swept, drawn, WALL) < SLIVER, cut.line
+    else:
+        x = given.get("x", 0.0) / (2 if diameters else 1)
+        drawn = disc(x, given.get("c", 0.0), given["diameter"])
+        assert area_off(swept, drawn, WALL) < SLIVER, cut.line
 
 
 # ---------------------------------------------------------------- a contour as LinuxCNC reads it

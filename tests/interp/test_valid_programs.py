@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Random valid programs of every cycle, shape and section: verify has no finding in them.
 
-What verify detects is proved by tests/faults; here it is the judge of the motion that LinuxCNC
-makes of the words. `make soak` tries the same kinds with other seeds.
+What verify detects is proved by test_verify_codes.py; here it is the judge of the motion that
+LinuxCNC makes of the words. `make soak` tries the same kinds with other seeds.
 """
 
 import random

@@ -171,7 +171,7 @@ def test_limits_are_compared_with_the_offsets_of_the_var_file_given(verify, tmp_
     stored = tmp_path / "its.var"
     stored.write_text("5221\t490\n")
     code, out, _ = verify(GOOD, "--var", stored)
-    assert code == 1 and "line 4: the X axis would go to 500.057, its limit is 500 mm" in out
+    assert code == 1 and "line 4: the X axis would go to 504, its limit is 500 mm" in out
 
 
 def test_lengths_are_shown_in_inches_on_demand(verify):

@@ -8,9 +8,9 @@ import pytest
 from g12.tools.commands.main import main
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
-from support.fault_tables import MachinedProgram
+from support.clamped import with_clamp
 from support.judged_programs import prove
-from support.sim_machines import ROOT, SIM
+from support.sim_machines import SIM
 
 HEAD = ["{units} G18 {mode} G40 G90 G94 G64 P0.02", "T1 M6", "S500 M3", "G0 X{x} Z{z} C100", "F{f}"]
 FACE = "o<face_holes> call [3] [30] [20] [-9999] [8] [2] [120] [3] [.5] [0]"
@@ -83,8 +83,8 @@ def test_a_clamp_that_is_right_has_no_finding(tmp_path):
     section = ["C0", "G12.1", "G1 Z-1 F90", "X40 C5", "X30", "G13.1", "G0 X60 Z10"]
     slot = "o<polar_slot> call [8] [30] [1] [-9999] [-9999] [300] [-9999] [0]"
     path = written(tmp_path, *calls, *section, slot, "G0 X60 Z10", SIDE, "M10", "M11")
-    settings = {"C_CLAMP": "M10 M11", "C_CLAMP_SHAPES": "M10"}
-    ini = MachinedProgram("", "", "lathe_mm", settings).ini(ROOT)
+    clamp = with_clamp("lathe_mm", tmp_path, C_CLAMP_SHAPES="M10")
+    ini = read_ini(SIM / "lathe_mm.ini").replaced(clamp)
     assert findings(path, ini) == []
 
 

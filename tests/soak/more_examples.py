@@ -5,6 +5,8 @@ Other ones each time; a failure is reduced by hypothesis and printed with what r
 tried is counted, and said at the end.
 """
 
+import signal
+import time
 from collections import Counter
 from functools import wraps
 from itertools import chain
@@ -12,9 +14,10 @@ from itertools import chain
 import pytest
 from hypothesis import HealthCheck, settings
 
-from soak import often
+from soak import END, Share
 
-EXAMPLES = {"interp": 10_000, "unit": 1_000, "soak": 10_000}  # of a file in ten minutes, by folder
+EXAMPLES = 1_000_000  # its share of the time ends a test
+TIME_IS_UP = "its share of the time is used up"
 TRIED = {  # by file
     "test_cycles": "blocks of the cycles",
     "test_polar_plan": "polar contours",
@@ -29,12 +32,10 @@ COUNTED = "soak: "  # begins the name of a report's property
 
 @pytest.hookimpl(trylast=True)  # after the choice of -k
 def pytest_collection_modifyitems(items):
-    properties = [item for item in items if hasattr(item.obj, "hypothesis")]
-    files = Counter(item.path for item in properties)
-    for item in properties:
-        share = 1 if item.path.parent.name == "soak" else files[item.path]
+    Share.of(len(items))
+    for item in (item for item in items if hasattr(item.obj, "hypothesis")):
         item.obj._hypothesis_internal_use_settings = settings(
-            max_examples=often(EXAMPLES[item.path.parent.name] / share),
+            max_examples=EXAMPLES,
             deadline=None,
             derandomize=False,
             database=None,
@@ -43,6 +44,21 @@ def pytest_collection_modifyitems(items):
         )
         item.obj.hypothesis.inner_test = counted(item)
     items[:] = alternated(items)
+
+
+def pytest_runtest_setup(item):
+    Share.begin()
+    if Share.is_used():
+        pytest.skip(TIME_IS_UP)
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_call():
+    """End a test whose last try would go on when the time is over."""
+    signal.signal(signal.SIGALRM, lambda *_: pytest.skip(TIME_IS_UP))
+    signal.setitimer(signal.ITIMER_REAL, max(0.1, END - time.time()))
+    yield
+    signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def alternated(items):
@@ -61,19 +77,27 @@ def counted(item):
 
     @wraps(test)
     def counting(*arguments, **words):
+        if held and Share.is_used():
+            pytest.skip(TIME_IS_UP)  # which ends a property
         test(*arguments, **words)
         held[:] = [sum(held) + 1]
 
     return counting
 
 
+def tried_in(reports):
+    """Return how often each thing was tried."""
+    found = Counter()
+    for name, number in (each for report in reports for each in report.user_properties):
+        if name.startswith(COUNTED):
+            found[name.removeprefix(COUNTED)] += sum(number)
+    return found
+
+
 def pytest_terminal_summary(terminalreporter):
-    reports = [*terminalreporter.getreports("passed"), *terminalreporter.getreports("failed")]
     tried = Counter()
-    for report in reports:
-        for name, number in report.user_properties:
-            if name.startswith(COUNTED):
-                tried[name.removeprefix(COUNTED)] += sum(number)
+    for outcome in ("passed", "failed", "skipped"):
+        tried.update(tried_in(terminalreporter.getreports(outcome)))
     terminalreporter.section("tried")
     for name, number in sorted(tried.items()):
         terminalreporter.write_line(f"{number:8,} {name}")

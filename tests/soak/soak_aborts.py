@@ -24,7 +24,7 @@ def test_aborts(name, request):
     with Machine(SIM / f"{name}.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
-        for number in tries(request, "aborts in a real run, and the program again", 20):
+        for number in tries(request, "aborts in a real run, and the program again"):
             seed = f"abort {number} of seed {SEED}"
             machine.open_text(program)
             machine.start()

@@ -9,7 +9,7 @@ import pytest
 
 from g12.tools.commands import main
 from g12.tools.translate.blocks.control import shipped_controls
-from soak import SEED, often
+from soak import SEED, tries
 from support.sim_machines import copy_of_machines
 from support.small_configs import write_config
 from support.valid_programs import MACHINES, machine_of, valid_program
@@ -85,12 +85,12 @@ def check_codes(codes, damage, what):
 
 
 @pytest.mark.parametrize("kind", MACHINES)
-def test_programs(kind, tmp_path, capsys):
+def test_programs(kind, tmp_path, capsys, request):
     chance = random.Random(f"{SEED} {kind}")
     ini = copy_of_machines(tmp_path) / "machine.ini"
     ini.write_text(machine_of(kind).text)
     named = {"INI": str(ini), "FOLDER": str(tmp_path)}
-    for number in range(often(8)):
+    for number in tries(request, "programs, damaged or not, given to every command"):
         program, text = tmp_path / f"{kind} {number}.ngc", valid_program(kind, chance, 1)
         damage = number % 8 > 0
         program.write_text(damaged(chance, text) if damage else text)
@@ -116,11 +116,11 @@ def filled(word, named):
     return word
 
 
-def test_configs(tmp_path, capsys):
+def test_configs(tmp_path, capsys, request):
     """`check` of an INI with random damage."""
     chance = random.Random(SEED)
     good = write_config(tmp_path).read_text()
-    for number in range(often(100)):
+    for number in tries(request, "damaged INIs given to check"):
         ini = tmp_path / f"{number}.ini"
         ini.write_text(damaged(chance, good + "REMAP = G12 modalgroup=1 prolog=g12_haas\n" * 2))
         check_said(capsys, main.main(["check", str(ini)]), f"check {number} of {SEED}")

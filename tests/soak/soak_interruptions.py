@@ -18,7 +18,7 @@ def test_interruptions(name, request):
     ini, overrides = machine_of(name)
     with Machine(ini, overrides=overrides) as machine:
         interrupted = Interrupted(machine, name)
-        for number in tries(request, f"interruptions on {name}", 100):
+        for number in tries(request, f"interruptions on {name}"):
             seed = f"{SEED} {name} {number}"
             try:
                 interrupted.once(random.Random(seed), HOWS[number % len(HOWS)])

@@ -30,7 +30,7 @@ def test_aborts_with_kinematics(name, request):
     with Machine(SIM / "lathe_mm_kinematics.ini") as machine:
         whole = machine.run_text(program)
         assert whole.error is None
-        for number in tries(request, "aborts with kinematics, and the program again", 20):
+        for number in tries(request, "aborts with kinematics, and the program again"):
             seed = f"abort {number} of seed {SEED}"
             machine.open_text(program)
             machine.sample()

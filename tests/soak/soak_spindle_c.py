@@ -13,5 +13,5 @@ from support.spindle_lathe import INTERRUPTS, SPINDLE_LATHE, SpindleLathe, inter
 def test_interrupts(interrupt, request):
     chance = random.Random(f"{interrupt} {SEED}")
     with SpindleLathe(SPINDLE_LATHE) as lathe:
-        for _ in tries(request, f"spindle and C, {interrupt}, and the next program", 15):
+        for _ in tries(request, f"spindle and C, {interrupt}, and the next program"):
             interrupted(lathe, interrupt, chance)

@@ -9,7 +9,7 @@ import pytest
 from g12.tools.commands import main
 from interp.test_valid_cuts import check_cuts
 from interp.test_valid_programs import check_as_its_words_ask
-from soak import SEED, often
+from soak import SEED, tries
 from support.sim_machines import ROOT, copy_of_machines
 from support.valid_programs import MACHINES, machine_of, valid_program
 
@@ -25,21 +25,21 @@ def with_offset_pin(text):
 
 
 @pytest.mark.parametrize("kind", MACHINES)
-def test_programs_as_they_are_read(kind, tmp_path):
-    for number in range(often(2)):
+def test_programs_as_they_are_read(kind, tmp_path, request):
+    for number in tries(request, "valid programs judged by verify"):
         check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
 
 
 @pytest.mark.parametrize("kind", MACHINES)
-def test_cuts_as_their_words_ask(kind, tmp_path):
-    for number in range(often(4)):
+def test_cuts_as_their_words_ask(kind, tmp_path, request):
+    for number in tries(request, "valid programs judged by their words"):
         check_cuts(kind, tmp_path, f"{SEED} {number}")
 
 
 @pytest.mark.parametrize("kind", MACHINES)
 def test_programs_as_they_run(kind, tmp_path, capsys):
     """With feeds ten times as high, so that it does not take an hour."""
-    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 2)
+    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 1)
     program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
     ini = copy_of_machines(tmp_path) / "machine.ini"
     ini.write_text(

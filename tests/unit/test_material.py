@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from shapely.geometry import box
 
-from g12.tools.material.material import Material, Solid
+from g12.tools.material.material import Material
 
 PERIOD = 40.0
 AGAIN = {"plane": 0.0, "other turns": PERIOD}  # by how much cuts are shifted, a rapid back
@@ -32,8 +32,8 @@ def line(level, shift=0.0):
 )
 def test_a_rapid_along_the_line_of_a_cut(radius, level, move, is_free, surface):
     cuts = [(5, -2.0, 3.0), (6, -2.0, 2.0), (7, -2.0, 4.0), (8, -4.0, 3.0)]
-    solid = Solid(box(-100.0, -100.0, 100.0, 100.0), 0.0)
-    material = Material([solid], period=PERIOD if AGAIN[surface] else 0.0)
+    solid = box(-100.0, -100.0, 100.0, 100.0)
+    material = Material(solid, 0.0, period=PERIOD if AGAIN[surface] else 0.0)
     for index, depth, cutter in cuts:
         material.cut(index, line(depth, AGAIN[surface]), cutter)
     rapid = line(level, -AGAIN[surface])
@@ -44,7 +44,7 @@ def test_a_rapid_along_the_line_of_a_cut(radius, level, move, is_free, surface):
 
 
 def test_a_falling_rapid_touches_on_its_line():
-    material = Material([Solid(box(0.0, -50.0, 100.0, 50.0), 0.0)])
+    material = Material(box(0.0, -50.0, 100.0, 50.0), 0.0)
     rapid = np.array([[-10.0, 0.0, 1.0], [30.0, 0.0, -9.0]])
     x, _, z = material.touched(rapid, 3.0, 0).points.T
     assert z == pytest.approx(-1.5 - x / 4)

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from g12.tools.path.part import Part
 from g12.tools.preview.moves import Error, Move
-from g12.tools.regress.differences import differences
-from g12.tools.regress.edits import Tolerance
+from g12.tools.regress.differences import Tolerance, differences
 from g12.tools.regress.recording_text import (
     Note,
     Recording,

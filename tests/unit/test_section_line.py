@@ -3,10 +3,10 @@
 
 import pytest
 
-from g12.errors import LONGEST_BLOCK, Refusal
+from g12.errors import LONGEST_BLOCK
 from g12.polar.polar_section import POLAR_WORDS
 from g12.section.block_rules import SectionBlock
-from g12.section.line import BlockLocation, line_named, split_line, split_words
+from g12.section.line import BlockLocation, split_line, split_words
 from g12.section.modes import (
     SectionModes,
     action_text,
@@ -183,11 +183,6 @@ def test_a_report_is_cut_to_a_line_that_linuxcnc_reads_and_no_shorter():
 def test_decimals_have_no_exponents():
     values = (1.0, -0.5, 1e-7, 0.0, 100.0)
     assert [decimal(value) for value in values] == ["1", "-0.5", "0.0000001", "0", "100"]
-
-
-def test_the_line_that_a_refusal_names():
-    assert line_named(HERE.refuse("x")) == 7
-    assert line_named(Refusal("G12.1 line 3 of flat.ngc: x")) is None
 
 
 def test_codes_are_g_and_m_with_a_plain_number():

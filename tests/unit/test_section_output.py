@@ -5,7 +5,7 @@ import pytest
 
 from g12.errors import Refusal
 from g12.host import borrowed
-from g12.host.interp import PackageState
+from g12.host.interp import kept
 from g12.host.section_output import STOP_HERE, PathControl, SectionOutput
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
@@ -41,8 +41,7 @@ class Interpreter:
         self.call_level, self.motion_mode, self.distance_mode = 1, 0, 0
         self.ijk_distance_mode, self.plane, self.active_spindle, self.length_units = 1, 3, -1, 2
         self.active_m_codes, self.task, self.feed_rate = [-1] * 9, 0, 100.0
-        self.g12_state = PackageState()
-        self.g12_state.borrowed.append(borrowed.modes_in_force(self))
+        kept(self, borrowed.Borrowed).stack.append(borrowed.modes_in_force(self))
         self.current_y = self.AA_current = self.BB_current = 0.0
         self.u_current = self.v_current = self.w_current = 0.0
         self.done, self.levels, self.begins = [], [], None

@@ -409,7 +409,7 @@ def test_first_and_further_turns(c, first, step, first_turn, turn):
     machine = LIVE._replace(c=c)
     numbers = numbers_of("face_holes", machine, first_angle=first, step_angle=step)
     assert taken(numbers, "first_turn", "turn") == pytest.approx((first_turn, turn))
-    assert taken(numbers, "count", "at_x") == (6, 15)
+    assert taken(numbers, "count", "x") == (6, 15)
 
 
 @pytest.mark.parametrize(
@@ -423,7 +423,7 @@ def test_first_and_further_turns(c, first, step, first_turn, turn):
 )
 def test_where_the_first_hole_is(name, machine, entries, x, turn):
     numbers = numbers_of(name, machine, **entries)
-    assert taken(numbers, "at_x", "first_turn") == pytest.approx((x, turn))
+    assert taken(numbers, "x", "first_turn") == pytest.approx((x, turn))
 
 
 def test_how_far_the_axes_go_to_holes():

@@ -310,12 +310,14 @@ class CompensatedContour:
                 last = WallPoint(index, along, curve.point(share), direction, wall.h0)
                 yield last
 
-    def gouge_text(self, one: int, other: int) -> str:
+    def gouge(self, one: int, other: int) -> tuple[str, str, int]:
+        """Return the rule, the code and the line of a refusal."""
         one, other = sorted((one, other))
-        return (
-            f"{self.code} line {other}: the tool of radius {number(self.radius)} cannot follow both"
+        rule = (
+            f"the tool of radius {number(self.radius)} cannot follow both"
             f" lines {one} and {other}: beside one of them it cuts into the other"
         )
+        return rule, self.code, other
 
     def length_to(self, index: int, point: complex) -> float:
         """Return the length along the contour to a point on one of its moves."""

@@ -146,7 +146,7 @@ class Contour:
         self.notes: list[str] = []
 
     def refuse(self, line: int, reason: str) -> NoReturn:
-        raise Refusal(f"{self.code} line {line}: {reason}")
+        raise Refusal(reason, self.code, line)
 
     def straight(
         self,

@@ -124,7 +124,7 @@ class _OwnWalls:
         """Refuse two lines; where one leads to or from a closed contour the side may be wrong."""
         own, moves = self._own, self._own.moves
         is_lead = own.closing.closed and {moves[0].line, moves[-1].line} & {one, other}
-        raise (LeadRefusal if is_lead else Refusal)(own.gouge_text(one, other))
+        raise (LeadRefusal if is_lead else Refusal)(*own.gouge(one, other))
 
     def _note(self, one: int, other: int, what: str) -> None:
         one, other = sorted((one, other))
@@ -234,7 +234,7 @@ def check_neighbours(contours: Sequence[CompensatedContour]) -> None:
         found = _Neighbourhood(wall, others, section).deepest() if others else None
         if found:
             point, cutting = found
-            raise Refusal(wall.gouge_text(wall.moves[point.move_index].line, cutting.move.line))
+            raise Refusal(*wall.gouge(wall.moves[point.move_index].line, cutting.move.line))
 
 
 def _may_cut(other: CompensatedContour, wall: CompensatedContour) -> bool:

@@ -82,7 +82,7 @@ def _with_other_side(
     except Refusal:
         return refusal
     codes = sorted({_code(contour, move) for move in others if move.offset})
-    return Refusal(f"{refusal.message}. {' and '.join(codes)}?")
+    return Refusal(f"{refusal.rule}. {' and '.join(codes)}?", refusal.code, refusal.line)
 
 
 def _centred(

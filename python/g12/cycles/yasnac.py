@@ -29,7 +29,7 @@ from typing import NamedTuple
 
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
-from g12.errors import BlockRefusal, number
+from g12.errors import Refusal, number
 from g12.request.common import (
     check_count,
     check_modes,
@@ -58,7 +58,7 @@ class OffsetRadii(NamedTuple):
         position = word - self.offset
         return position if abs(position) > self.words.context.rounding else 0.0
 
-    def refuse(self, letter: str, word: float, rule: str) -> BlockRefusal:
+    def refuse(self, letter: str, word: float, rule: str) -> Refusal:
         """Return the refusal of a word whose position breaks ``rule`` (the caller raises it)."""
         position = f"X{number(self.position(word))} from the circle's centre ({self.cutter})"
         return self.words.refuse_word(letter, word, f"puts the tool centre at {position}: {rule}")

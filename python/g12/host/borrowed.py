@@ -23,8 +23,8 @@ from g12.host.interp import (
     PER_REVOLUTION,
     PLANE_CODES,
     Interp,
+    kept,
     millimetres_per_unit,
-    state_of,
 )
 from g12.host.program_lines import without_line
 from g12.section.block_rules import NO_CODE, GGroup
@@ -173,14 +173,26 @@ def _scale(interp: Interp, saved: Saved) -> float:
 # Begin and end.
 
 
+class Borrowed:
+    """The values to restore, and the one that an abort has restored, with its time in seconds."""
+
+    def __init__(self) -> None:
+        self.stack: list[Saved] = []
+        self.aborted: tuple[float, Saved | None] = (0.0, None)
+
+
+def _stack(interp: Interp) -> list[Saved]:
+    return kept(interp, Borrowed).stack
+
+
 def saved_modes(interp: Interp) -> Saved:
     """Return the value of the one that has begun last."""
-    return state_of(interp).borrowed[-1]
+    return _stack(interp)[-1]
 
 
 def begin(interp: Interp) -> None:
     """Take the value before the first change."""
-    state_of(interp).borrowed.append(_with_block(interp, modes_in_force(interp)))
+    _stack(interp).append(_with_block(interp, modes_in_force(interp)))
 
 
 def _with_block(interp: Interp, saved: Saved) -> Saved:
@@ -196,18 +208,18 @@ def _with_block(interp: Interp, saved: Saved) -> Saved:
 
 def renew(interp: Interp, saved: Saved) -> Saved:
     """Replace the value: the program itself has commanded other modes since `begin`."""
-    state_of(interp).borrowed[-1] = saved
+    _stack(interp)[-1] = saved
     return saved
 
 
 def give_back(interp: Interp) -> None:
-    restore(interp, state_of(interp).borrowed[-1], feed_set=False)
+    restore(interp, saved_modes(interp), feed_set=False)
     forget(interp)
 
 
 def forget(interp: Interp) -> None:
     """Drop the value, whose modes are back."""
-    state_of(interp).borrowed.pop()
+    _stack(interp).pop()
 
 
 # Where the end never comes.
@@ -218,11 +230,11 @@ def settle_interrupted(interp: Interp) -> str:
 
     An operator or a program may have commanded those anew, with the same values.
     """
-    borrowed = state_of(interp).borrowed
-    if not borrowed:
+    stack = _stack(interp)
+    if not stack:
         return ""
-    left = borrowed[0]
-    borrowed.clear()
+    left = stack[0]
+    stack.clear()
     interp.c_axis_wrapped = left.wrapped
     kinematics_switch.set_accelerations(left.accelerations)
     return " ".join(missing_modes(interp, left))
@@ -230,10 +242,10 @@ def settle_interrupted(interp: Interp) -> str:
 
 def restore_left(interp: Interp) -> None:
     """Restore all that an interrupted borrower left."""
-    borrowed = state_of(interp).borrowed
-    if borrowed:
-        restore(interp, borrowed[0])
-        borrowed.clear()
+    stack = _stack(interp)
+    if stack:
+        restore(interp, stack[0])
+        stack.clear()
 
 
 def after_abort(interp: Interp, now: float) -> None:
@@ -243,11 +255,11 @@ def after_abort(interp: Interp, now: float) -> None:
     control, F and adaptive feed may be in force in the interpreter already, but not in the planner.
     So they are commanded anyway.
     """
-    state = state_of(interp)
-    if state.borrowed:
-        state.aborted = now, state.borrowed[0]
-        state.borrowed.clear()
-    at, saved = state.aborted
+    borrowed = kept(interp, Borrowed)
+    if borrowed.stack:
+        borrowed.aborted = now, borrowed.stack[0]
+        borrowed.stack.clear()
+    at, saved = borrowed.aborted
     if saved and now - at < ABORTED_AGAIN:
         restore(interp, saved)
         if saved.accelerations:  # the face has M52 on

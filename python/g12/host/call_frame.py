@@ -12,16 +12,17 @@ from collections.abc import Iterator
 
 from interpreter import INTERP_EXECUTE_FINISH
 
-from g12.host.interp import Interp, state_of
+from g12.host.interp import Interp
 from g12.section.block_rules import NO_CODE, GGroup
 
 NO_O_WORD = 0  # o_type
+_NAMES: dict[str, str] = {}  # never freed
 NOT_CALLED, CALLED_AS_REMAP = 0, 4  # call_type
 
 
-def interned(interp: Interp, text: str) -> str:
+def interned(text: str) -> str:
     """Return a text that is never freed: the interpreter makes no copies of names."""
-    return state_of(interp).texts.setdefault(text, text)
+    return _NAMES.setdefault(text, text)
 
 
 def locals_at(interp: Interp, level: int) -> dict[str, float]:
@@ -51,8 +52,8 @@ class CallFrame:
         self._remap, self._phase = block.executing_remap, block.phase
         self._interrupted = False  # by a wait: a sub that MDI called
         caller = interp.sub_context[self.level - 1]
-        self.caller = interned(interp, caller.subname or "")
-        caller.filename = interned(interp, home)  # it may still be that of an earlier call
+        self.caller = interned(caller.subname or "")
+        caller.filename = interned(home)  # it may still be that of an earlier call
 
     @property
     def is_current(self) -> bool:

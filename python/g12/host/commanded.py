@@ -13,7 +13,7 @@ from math import inf
 from typing import NamedTuple
 
 from g12.cycles.plan import EventPlanes
-from g12.host.interp import Interp
+from g12.host.interp import Interp, kept
 from g12.host.messages import in_mdi, main_program
 from g12.request.context import Tool
 
@@ -96,10 +96,7 @@ class CommandedValues:
 
 
 def commanded_of(interp: Interp) -> CommandedValues:
-    commanded = getattr(interp, "g12_commanded", None)
-    if commanded is None:
-        commanded = interp.g12_commanded = CommandedValues()
-    return commanded
+    return kept(interp, CommandedValues)
 
 
 def compensates_above(place: Place) -> bool:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The interpreter: names for its types and values, which its modules lack; the package's state."""
+"""The interpreter: names for its types and values, which its modules lack."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from g12.lengths import MM_PER_INCH
 from g12.request.context import XY, XZ, YZ
@@ -13,6 +13,7 @@ Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
 ParsedBlock: TypeAlias = Any  # interpreter.block, as it was parsed
 CanonModule: TypeAlias = Any  # the module emccanon, or a test's substitute
 ToolTableEntry: TypeAlias = Any  # of the tool table
+Kept = TypeVar("Kept")
 
 G7 = 70
 DIAMETER_ACTIVE = 15  # index of G7 and G8 in active_g_codes
@@ -60,24 +61,11 @@ def millimetres_per_unit(interp: Interp) -> float:
     return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0
 
 
-class PackageState:
-    """The package's state of one interpreter, stored on the interpreter object.
-
-    ``borrowed`` are the values to restore (`host.borrowed`), ``aborted`` the one that an abort has
-    restored, with its time. ``shown`` are the messages that are shown once for each program.
-    ``source`` is the file of the last section.
-    """
-
-    def __init__(self) -> None:
-        self.borrowed: list[Any] = []
-        self.aborted: tuple[float, Any] = (0.0, None)
-        self.shown: set[object] = set()
-        self.texts: dict[str, str] = {}
-        self.source: Any = None
-
-
-def state_of(interp: Interp) -> PackageState:
-    state = getattr(interp, "g12_state", None)
-    if state is None:
-        state = interp.g12_state = PackageState()
-    return state
+def kept(interp: Interp, kind: type[Kept]) -> Kept:
+    """Return the one value of its kind that lasts as long as the interpreter."""
+    name = f"g12_{kind.__name__}"
+    value = getattr(interp, name, None)
+    if value is None:
+        value = kind()
+        setattr(interp, name, value)
+    return value

@@ -14,9 +14,9 @@ import emccanon
 import linuxcnc
 from interpreter import INTERP_ERROR, INTERP_OK
 
-from g12.errors import LONGEST_MESSAGE, BlockRefusal, Refusal
+from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.host import borrowed
-from g12.host.interp import Interp, state_of
+from g12.host.interp import Interp, kept
 from g12.host.program_lines import line_at, running_file
 
 NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
@@ -34,8 +34,8 @@ def refuse_block(interp: Interp, error: Exception) -> int:
     LinuxCNC would show a raised exception or a returned string as "pycall(...) failed". After a
     failed execute, which is a SystemError, LinuxCNC has set its own text already.
     """
-    if isinstance(error, BlockRefusal):
-        error = error.at(line_of_refusal(interp, error))
+    if isinstance(error, Refusal) and error.lacks_line:
+        error.at(line_of(interp, error.code))
     if not isinstance(error, SystemError):
         interp.set_errormsg(shown_text(error))
     return INTERP_ERROR
@@ -49,21 +49,30 @@ def shown_text(error: Exception) -> str:
     return fault_text(error)[:LONGEST_MESSAGE]
 
 
-def line_of_refusal(interp: Interp, refusal: BlockRefusal) -> int | None:
-    """Return the line of a refused block, None where it is typed in MDI.
+def line_of(interp: Interp, code: str) -> int | None:
+    """Return the line of the block being remapped, None where it is typed in MDI.
 
-    A code that refuses in the name of its sub has the line of the call.
+    If ``code`` is not the block's but the name of its sub, that of the call.
     """
-    own, mdi = refusal.code == code_of_block(interp), in_mdi(interp)
-    if mdi and interp.call_level == (1 if own else 2):
+    own, mdi = code == code_of_block(interp), in_mdi(interp)
+    level = interp.call_level - 1 if own else level_of_call(interp, code)
+    if mdi and not level:
         return None
     if own:
         filename, offset = file_of_block(interp), interp.blocks[interp.remap_level].offset
     else:
-        frame = interp.sub_context[interp.call_level - 2]
+        frame = interp.sub_context[level]
         filename, offset = frame.filename, frame.position - 1
     main = filename if interp.call_level < 2 else interp.sub_context[0].filename
     return line_at(filename, offset, own=not mdi and filename == main)
+
+
+def level_of_call(interp: Interp, sub: str) -> int:
+    """Return the call level from which a running sub was called."""
+    level = interp.call_level - 1
+    while level and interp.sub_context[level].subname != sub:
+        level -= 1
+    return level - 1
 
 
 def file_of_block(interp: Interp) -> str:
@@ -145,9 +154,13 @@ def message(text: str) -> None:
     emccanon.MESSAGE(text)
 
 
+class ShownOnce(set[object]):
+    """The messages that were shown, by program and key."""
+
+
 def message_once(interp: Interp, key: object, text: str) -> None:
     """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
-    shown, once = state_of(interp).shown, (main_program(interp), key)
+    shown, once = kept(interp, ShownOnce), (main_program(interp), key)
     if once not in shown:
         shown.add(once)
         message(text)

@@ -9,6 +9,7 @@ file itself: after a return from a sub, or after the section.
 
 from __future__ import annotations
 
+import functools
 import os
 from bisect import bisect_right
 from collections.abc import Iterable
@@ -27,25 +28,26 @@ SKIPPED_OVER = "g12_skipped_over"  # ngc/g12_skipped_over.ngc
 
 
 class ProgramFile(NamedTuple):
-    """A program file: its lines, the byte at which each begins, and when it was written."""
+    """A program file: its lines, and the byte at which each begins."""
 
     filename: str
     lines: list[str]
     starts: list[int]
-    version: tuple[int, int]
 
 
-def read_source(filename: str, known: ProgramFile | None = None) -> ProgramFile:
-    """Return the lines of a program file; ``known`` itself if that is the file, unchanged."""
+def read_source(filename: str) -> ProgramFile:
+    """Return the lines of a program file."""
     status = os.stat(filename)
-    version = (status.st_mtime_ns, status.st_size)
-    if known and (known.filename, known.version) == (filename, version):
-        return known
+    return _read(filename, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=2)  # the file of the last section, and one that it calls
+def _read(filename: str, changed: int, size: int) -> ProgramFile:
     with open(filename, "rb") as file:
         source = file.read().removesuffix(b"\n")
     starts = list(accumulate((len(line) + 1 for line in source.split(b"\n")), initial=0))
     text = source.decode("utf-8", "replace").replace("\ufffd", "?")  # of the same length
-    return ProgramFile(filename, text.split("\n"), starts, version)
+    return ProgramFile(filename, text.split("\n"), starts)
 
 
 class LineOfFile(int):
@@ -102,13 +104,12 @@ class ProgramLines:
     """The lines that follow the block being remapped.
 
     ``line`` is the number of the line taken last, counted from 1 as an editor does; ``shown_line``
-    is the same number for messages; it names the file if that is not the program's own. ``known``
-    is the source of an earlier section, which may be in the same file.
+    is the same number for messages; it names the file if that is not the program's own.
     """
 
-    def __init__(self, interp: Interp, known: ProgramFile | None = None) -> None:
+    def __init__(self, interp: Interp) -> None:
         self.interp = interp
-        self.home = self.source = read_source(interp.filename, known)
+        self.home = self.source = read_source(interp.filename)
         offset = interp.blocks[interp.remap_level].offset
         self.line = bisect_right(self.source.starts, offset, hi=len(self.source.lines))
         self._in_file = self.line  # the last line that the interpreter itself has read

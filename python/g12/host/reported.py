@@ -30,7 +30,7 @@ SECTION_BEGAN = "section"  # key: its first part has been reported
 def begin_cut(interp: Interp, words: Words, cut: Callable[[], PlannedCut]) -> None:
     """Report the cut of the block, or of the call of its sub."""
     if asked(interp) is not None:
-        line = messages.line_of_refusal(interp, words.refuse("")) or 0
+        line = messages.line_of(interp, words.code) or 0
         report = report_of(interp, words.code, line, words.given, cut())
         emccanon.COMMENT(cut_report.report_text(report))
 

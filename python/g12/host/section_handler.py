@@ -11,7 +11,7 @@ from interpreter import MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.cut_report import CutElement, SectionCut, more_text, report_text
-from g12.errors import BlockRefusal, Refusal
+from g12.errors import Refusal
 from g12.geometry.curve import Arc
 from g12.host import borrowed, messages, modes
 from g12.host.call_frame import CallFrame
@@ -23,12 +23,11 @@ from g12.host.interp import (
     ParsedBlock,
     millimetres_per_unit,
     position_of,
-    state_of,
     words_in,
 )
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.program_lines import LineOfFile, ProgramLines, running_file, without_line
+from g12.host.program_lines import ProgramLines, running_file, without_line
 from g12.host.reported import SECTION_BEGAN, asked, report_of
 from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader, block_of
@@ -38,7 +37,7 @@ from g12.lengths import DEGREES_PER_TURN
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.request.context import YZ
 from g12.section.block_rules import alone
-from g12.section.line import BlockLocation, line_named, with_line
+from g12.section.line import BlockLocation
 from g12.section.modes import SectionModes
 from g12.section.start import SectionCodes, SectionStart
 
@@ -161,18 +160,16 @@ def is_typed(interp: Interp) -> bool:
 def refuse_typed(interp: Interp) -> None:
     """Refuse a section typed in MDI, where no following lines can be read."""
     if is_typed(interp):
-        raise BlockRefusal(messages.code_of_block(interp), NOT_IN_MDI)
+        raise Refusal(NOT_IN_MDI, messages.code_of_block(interp))
 
 
 def following_lines(interp: Interp) -> ProgramLines:
     """Return the lines after the block; refuse a program whose file is missing."""
     try:
-        program = ProgramLines(interp, state_of(interp).source)
+        return ProgramLines(interp)
     except OSError as problem:
         rule = f"the program's file cannot be read while it runs: {problem.strerror}"
-        raise BlockRefusal(messages.code_of_block(interp), rule) from None
-    state_of(interp).source = program.home
-    return program
+        raise Refusal(rule, messages.code_of_block(interp)) from None
 
 
 def run_section(
@@ -201,15 +198,16 @@ def run_section(
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
-        if isinstance(error, BlockRefusal):
-            error = error.at(program.shown_line)
-        line = line_named(error)
+        line = None
+        if isinstance(error, Refusal):
+            if error.lacks_line:
+                error.at(program.shown_line)
+            line = None if error.file else error.line
+            if line and program.home.filename != running:
+                error.file = os.path.basename(program.home.filename)
         called = program.source is not program.home and not line
         frame.unwind(line or program.line, called=called, continue_at=program.next_at_home)
-        if isinstance(error, Refusal) and line and program.home.filename != running:
-            file = os.path.basename(program.home.filename)
-            raise with_line(error, LineOfFile(line, file)) from None
-        raise error
+        raise
 
 
 def report_turns(interp: Interp, turned: float) -> None:

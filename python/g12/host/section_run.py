@@ -93,11 +93,13 @@ class Section:
     def _undo(self) -> None:
         """Undo the changes of reading ahead, and all that is borrowed; executed motion stays."""
         interp = self.reader.interp
-        if self._phase is not Phase.MOVING:
-            self.reader.restore()
-        borrowed.give_back(interp)
-        if self.output.on_face:
-            kinematics_switch.leave(interp)
+        try:
+            if self._phase is not Phase.MOVING:
+                self.reader.restore()
+            borrowed.give_back(interp)
+        finally:
+            if self.output.on_face:
+                kinematics_switch.leave(interp)
 
     def _read(self) -> Iterator[int]:
         program, plain_line = self.program, self.reader.plain_line
@@ -265,10 +267,10 @@ class Section:
             raise self._missing_off("the sub called here has one, but not the code that it ends")
         self.reader.contour.close(at=self.program.line)
         yield from self._emit()
-        borrowed.forget(self.reader.interp)
         self.program.catch_up()
         reported.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)
+        borrowed.forget(self.reader.interp)
         self._phase = Phase.DONE
 
     def _emit(self) -> Generator[int, None, SectionPlan]:

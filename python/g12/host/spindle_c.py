@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from interpreter import INTERP_OK
 
-from g12.errors import BlockRefusal, number
+from g12.errors import Refusal, number
 from g12.host import messages
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
@@ -38,7 +38,7 @@ def spindle_c_is_on(self, **words):
             f"the spindle did not become C within {seconds} s: it has to stop, to find "
             "its index and to reach the angle of C (spindle_c.md)"
         )
-        raise BlockRefusal(messages.code_of_block(self), rule)
+        raise Refusal(rule, messages.code_of_block(self))
     return INTERP_OK
 
 
@@ -46,7 +46,7 @@ def spindle_c_is_on(self, **words):
 def spindle_c_off(self, **words):
     """Refuse to end C inside a section: prolog of M255."""
     if in_section(self):
-        raise BlockRefusal(messages.code_of_block(self), "the section needs C to its end")
+        raise Refusal("the section needs C to its end", messages.code_of_block(self))
     return INTERP_OK
 
 

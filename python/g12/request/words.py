@@ -5,7 +5,7 @@ Every rule about a single word lives here, so that each refusal names the code, 
 the rule and the value in the same way.
 """
 
-from g12.errors import BlockRefusal, number
+from g12.errors import Refusal, number
 from g12.lengths import LARGEST
 from g12.request.context import Context
 
@@ -33,10 +33,10 @@ class Words:
         """Return whether the word is in the block and not yet taken."""
         return letter in self._remaining
 
-    def refuse(self, rule: str) -> BlockRefusal:
-        return BlockRefusal(self.code, rule)
+    def refuse(self, rule: str) -> Refusal:
+        return Refusal(rule, self.code)
 
-    def refuse_word(self, letter: str, value: float, rule: str) -> BlockRefusal:
+    def refuse_word(self, letter: str, value: float, rule: str) -> Refusal:
         """Return the refusal of a word and its value for breaking ``rule``."""
         return self.refuse(f"{self.written(letter, value)} {rule}")
 

@@ -25,7 +25,6 @@ _NAME = re.compile(r"<[^>]*>?")
 _DIGITS = re.compile(r"[\d.]*")
 _CODE = re.compile(r"\d+(?:\.\d*)?")
 _NINE = re.compile(r"0*9(?:\.0*)?")
-_LINE_NAMED = re.compile(r" line (\d+):")
 PYTHON_LINE = ";py,"  # Interp::read_semicolon (interp_read.cc): at the very start of a line alone
 
 
@@ -78,25 +77,13 @@ class SectionWords(NamedTuple):
 
 
 class BlockLocation(NamedTuple):
-    """The source location of a refused block: the section's code, and the line (0 in MDI)."""
+    """The source location of a block: the section's code, and the line (0 in MDI)."""
 
     code: str
     line: int
 
-    def refuse(self, reason: str) -> Refusal:
-        line = f" line {self.line}" if self.line else ""
-        return Refusal(f"{self.code}{line}: {reason}")
-
-
-def line_named(error: Exception) -> int | None:
-    """Return the line of the section's file that a refusal names, None if it names none."""
-    named = _LINE_NAMED.search(str(error))
-    return int(named[1]) if named else None
-
-
-def with_line(refusal: Refusal, line: int) -> Refusal:
-    """Return a refusal with another text for the line that it names, which may name its file."""
-    return Refusal(_LINE_NAMED.sub(lambda _: f" line {line}:", refusal.message, count=1))
+    def refuse(self, rule: str) -> Refusal:
+        return Refusal(rule, self.code, self.line)
 
 
 class TextLine(NamedTuple):

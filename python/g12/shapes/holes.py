@@ -141,10 +141,9 @@ def plan_holes(
     )
     extent = Extent((min(x), max(x)), (min(z), max(z)), (min(angles), max(angles)))
     own = {"count": count, "first_turn": first_turn, "turn": turn, "travel": travel}
-    at = {f"at_{name}": value for name, value in locals_of(position).items()}
     places = tuple((position.x, position.z, first + turn * index) for index in range(count))
     return ShapePlan(
-        own | at | locals_of(hole),
+        own | locals_of(position, hole),
         extent,
         lambda: HolesCut(
             position.x * position.x_axis,

@@ -102,15 +102,12 @@ def _along_the_arc(arc: Arc, start: Point, end: Point) -> list[Point]:
 class PathDifference:
     """The first difference of a kind: OFF, MISSING, EXTRA, RAPID, FEED or FEED_MODE.
 
-    ``size`` is the distance of OFF in mm, of FEED the actual one; ``at`` the actual point, or the
-    missing one; ``index`` the actual move, None of MISSING; ``expected`` is None of EXTRA.
+    ``size`` is the distance of OFF in mm, of FEED the actual one; ``expected`` is None of EXTRA.
     """
 
     kind: str
     expected: Expected | None
-    at: Point
     size: float = 0.0
-    index: int | None = None
 
     @property
     def code(self) -> str:
@@ -141,12 +138,11 @@ class Span:
 class Laid:
     """The actual motion along an expected toolpath.
 
-    ``deviation`` is the greatest distance (mm) as far as the path was followed, ``moves`` are the
-    indices of the actual moves along each expected one, ``spans`` are those of the actual moves, by
-    index. ``differences`` are the first of each kind; OFF, MISSING and EXTRA are the last.
+    ``deviation`` is the greatest distance (mm) as far as the path was followed, ``spans`` are those
+    of the actual moves, by index. ``differences`` are the first of each kind; OFF, MISSING and
+    EXTRA are the last.
     """
 
-    moves: list[list[int]]
     deviation: float = 0.0
     spans: dict[int, Span] = field(default_factory=dict)
     differences: list[PathDifference] = field(default_factory=list)
@@ -289,7 +285,7 @@ def _size(found: tuple[float, Point]) -> float:
 
 def lay(path: Sequence[Expected], made: Iterable[Made], tolerance: float) -> Laid:
     """Lay actual moves along a toolpath; farther off than ``tolerance`` (mm) is a difference."""
-    laid, cursor = Laid([[] for _ in path]), _Cursor(path)
+    laid, cursor = Laid(), _Cursor(path)
     for move in made:
         off = _lay_move(cursor, move, tolerance, laid)
         if off:
@@ -297,7 +293,7 @@ def lay(path: Sequence[Expected], made: Iterable[Made], tolerance: float) -> Lai
             return laid
     if cursor.remaining > tolerance:
         missing = cursor.next_move()
-        laid.add(PathDifference(MISSING, missing, missing.point(1.0)))
+        laid.add(PathDifference(MISSING, missing))
     return laid
 
 
@@ -306,10 +302,9 @@ def _lay_move(cursor: _Cursor, move: Made, tolerance: float, laid: Laid) -> Path
     if not cursor.path or cursor.remaining <= tolerance:
         return _beyond_the_end(cursor, move, tolerance)
     before, due = (cursor.index, cursor.share), cursor.next_move()
-    farthest, where = cursor.follow(move)
+    farthest = cursor.follow(move)[0]
     if farthest > tolerance:
-        return PathDifference(OFF, due, where, farthest, move.index)
-    laid.moves[cursor.index].append(move.index)
+        return PathDifference(OFF, due, farthest)
     laid.spans[move.index] = Span(*before, cursor.index, cursor.share)
     laid.deviation = max(laid.deviation, farthest)
     laid.add(_difference_of_feed(cursor.path[cursor.index], move))
@@ -321,7 +316,7 @@ def _beyond_the_end(cursor: _Cursor, move: Made, tolerance: float) -> PathDiffer
     end = cursor.path[-1].point(1.0) if cursor.path else move.points[0]
     at = max(move.points, key=lambda point: distance(point, end))
     off = distance(at, end) > tolerance
-    return PathDifference(EXTRA, None, at, index=move.index) if off else None
+    return PathDifference(EXTRA, None) if off else None
 
 
 def _difference_of_feed(expected: Expected, move: Made) -> PathDifference | None:
@@ -334,7 +329,7 @@ def _difference_of_feed(expected: Expected, move: Made) -> PathDifference | None
         kind = FEED_MODE
     elif compared and abs(move.feed - expected.feed) > SAME_FEED * expected.feed:
         kind, size = FEED, move.feed
-    return PathDifference(kind, expected, move.points[-1], size, move.index) if kind else None
+    return PathDifference(kind, expected, size) if kind else None
 
 
 def judge_path(laid: Laid, line: int) -> Iterator[Difference]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from g12.cylinder.cylinder_section import RADIUS, Cylinder
-from g12.errors import BlockRefusal
+from g12.errors import Refusal
 from g12.host import messages
 from g12.host.interp import MOVE_WORDS, words_in
 from g12.host.machine import MACHINE
@@ -27,7 +27,7 @@ def cylinder_mode(self, **words) -> Iterator[int]:
             self, Cylinder, _codes, lambda start: Cylinder(start, section_machine())
         )
     elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
-        raise BlockRefusal(code, f"{RADIUS}0 must be alone in its block")
+        raise Refusal(f"{RADIUS}0 must be alone in its block", code)
 
 
 def _codes(code: str) -> SectionCodes:

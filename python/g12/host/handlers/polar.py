@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from g12.errors import BlockRefusal, Refusal
+from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, words_in
 from g12.host.machine import MACHINE
-from g12.host.program_lines import ProgramLines, read_source
+from g12.host.program_lines import ProgramLines
 from g12.host.section_handler import (
     check_ini,
     is_typed,
@@ -58,7 +58,7 @@ def polar_off(self, **words) -> Iterator[int]:
     """
     block = self.blocks[self.remap_level]
     if words_in(block, MOVE_WORDS):
-        raise BlockRefusal(messages.code_of_block(self), "must be alone in its block")
+        raise Refusal("must be alone in its block", messages.code_of_block(self))
     if block.p_flag:
         aborts.restore_all(self, round(block.p_number))
         aborts.after_abort_on_face(self)
@@ -72,15 +72,15 @@ def polar_off(self, **words) -> Iterator[int]:
 
 def _leave_face(interp: Interp) -> Iterator[int]:
     code, mdi = messages.code_of_block(interp), messages.in_mdi(interp)
-    home = read_source(interp.filename) if not mdi else None
-    frame = CallFrame(interp, home.filename if home else messages.NO_FILE)
-    line = ProgramLines(interp, home).line if home else MDI_LINE
+    program = None if mdi else ProgramLines(interp)
+    frame = CallFrame(interp, program.home.filename if program else messages.NO_FILE)
+    line = program.line if program else MDI_LINE
     frame.enter()
     for block in kinematics_switch.to_axes(interp, ()):
         yield from frame.execute_and_wait(block)
     frame.leave(line)
     if not kinematics_switch.has_switched(interp):
-        raise BlockRefusal(code, kinematics_switch.not_switched())
+        raise Refusal(kinematics_switch.not_switched(), code)
 
 
 def _codes(code: str) -> SectionCodes:

@@ -2,14 +2,16 @@
 """G12.4 and G13.4, the first and the last block of the subs of shapes and holes.
 
 G12.4 takes the entries of the call from the sub's named locals, checks the shape as a whole, and
-passes the values of its motion to the sub. G13.4 restores the modes before G12.4.
+sets the locals of its motion. G13.4 restores the modes before G12.4.
 """
 
 from __future__ import annotations
 
+from collections.abc import Container
+
 from interpreter import INTERP_OK
 
-from g12.errors import BlockRefusal
+from g12.errors import Refusal
 from g12.host import borrowed, messages, modes, reported
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
@@ -39,6 +41,7 @@ SHAPE_CALLS = {  # names of the entries, planner
     "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
     "polar_pocket": (pockets.ROUND_POCKET_ENTRIES, pockets.plan_round_pocket),
 }
+SUB_OF_HOLES = "g12_holes"  # which all of these call
 HOLE_CALLS = {
     "face_holes": (holes.FACE_HOLES, holes.plan_face_holes),
     "side_holes": (holes.SIDE_HOLES, holes.plan_side_holes),
@@ -54,17 +57,16 @@ def polar_shape(self, **words):
     of its hole, or before the move that precedes the call has ended.
     """
     messages.settle(self)
-    level = self.call_level - 1  # the sub's
-    name = shape_at_work(self)
+    name, level = shape_at_work(self)
     if face_in_force(self):
-        raise BlockRefusal(name, FACE_ON)
+        raise Refusal(FACE_ON, name)
     start = start_of_shape(self, name)
     section = Polar(start, section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
     entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, start, section)
-    set_locals_at(self, level, plan.locals)
+    set_locals_at(self, self.call_level - 1, plan.locals)
     reported.begin_cut(self, entries, plan.cut)
     borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
@@ -94,7 +96,7 @@ def plan_of_holes(
     plan = planner(entries, machine)
     stay_in_travel(entries, plan.extent, section)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
-    x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("at_x", "at_x_axis")}
+    x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("x", "x_axis")}
     return plan._replace(locals={**plan.locals, **x_words, **own})
 
 
@@ -131,20 +133,27 @@ def tool_spindle(interp: Interp) -> int:
     return modes.feed_spindle(interp)
 
 
-def shape_at_work(interp: Interp) -> str:
-    """Return the name of the shape that calls the code; refuse the code outside a shape's sub."""
-    name, code = interp.sub_context[interp.call_level - 1].subname, messages.code_of_block(interp)
-    if name not in SHAPE_CALLS and name not in HOLE_CALLS:
+def shape_at_work(interp: Interp) -> tuple[str, int]:
+    """Return the name of the sub that the program calls, and its call level.
+
+    The code is in that sub, or in the one that moves for all holes; elsewhere it is refused.
+    """
+    level, code = interp.call_level - 1, messages.code_of_block(interp)
+    calls: Container[str] = SHAPE_CALLS
+    if interp.sub_context[level].subname == SUB_OF_HOLES:
+        level, calls = level - 1, HOLE_CALLS
+    name = interp.sub_context[level].subname
+    if name not in calls:
         *names, last = *SHAPE_CALLS, *HOLE_CALLS
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
-        raise BlockRefusal(code, where)
+        raise Refusal(where, code)
     if not is_alone(interp.blocks[interp.remap_level]):
-        raise BlockRefusal(code, "must be alone in its block")
-    return name
+        raise Refusal("must be alone in its block", code)
+    return name, level
 
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
-    line = messages.line_of_refusal(interp, BlockRefusal(name, "")) or 0
+    line = messages.line_of(interp, name) or 0
     start = start_of_section(interp, 0)
     there = start.position | {"X": 1.0}  # the sub itself moves the tool to its start
     return start._replace(location=BlockLocation(name, line), position=there)

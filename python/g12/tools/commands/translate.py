@@ -16,7 +16,7 @@ import os
 import re
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -95,7 +95,10 @@ def contents(options: argparse.Namespace) -> str:
     if options.control:
         return listing_of(read_control(options.control))
     controls = [read_control(name) for name in shipped_controls()]
-    return "".join(f"{control.name:16} {control.title}\n" for control in controls)
+    return "".join(
+        f"{control.name:16} {control.title} (.{', .'.join(control.extensions)})\n"
+        for control in controls
+    )
 
 
 def changed(control: Control, options: argparse.Namespace) -> Control:
@@ -123,16 +126,8 @@ def translated(options: argparse.Namespace, control: Control) -> str:
         control = replace(control, start=(*control.start, units_code(ini)))
     result = translate_program(text, control, progress())
     if result.refused:
-        if result.missing:
-            print(paste_text(result.missing, options.control), file=sys.stderr)
         raise ProgramError(f"{options.program}:{refusal_sentence(result.refused)}")
     return result.text
-
-
-def paste_text(lines: Sequence[str], control: str) -> str:
-    """Return the lines that a user's own control file needs for a program."""
-    head = "what the control's file lacks for this program; a control of your own says it:"
-    return "\n    ".join([head, f'based_on = "{control}"', *lines])
 
 
 def units_code(ini: Ini) -> str:

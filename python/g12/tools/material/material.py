@@ -1,23 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The material of a part: solid below a top, less the areas cut to a level or below it.
+"""The material of a part: solid below a top, less what cutters have swept, each down to a level.
 
-A part is made of solids, each an area of the plane and the top below which it is material. Each cut
-removes material: it has an area, the level down to which that is free, and its move. So the
-remaining material is known at every move of a program, and queries may come in any order. The plane
-and the levels are those of the points that come in: X, Y and Z of a mill, the face of a lathe, or
-the unrolled surface of a cylinder, whose level is the radius; that has a ``period``.
+It is known at every move of a program, and queries may come in any order. The plane and the levels
+are those of the points that come in: X, Y and Z of a mill, the face of a lathe, or the unrolled
+surface of a cylinder, whose level is the radius; that has a ``period``.
 
-Areas are computed at their first use, once for equal toolpaths. Lengths are mm.
+The area of a sweep is computed at its first use. Lengths are mm.
 """
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cached_property, partial
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from shapely.affinity import translate
-from shapely.geometry import Point, Polygon, box
+from shapely.geometry import MultiLineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -29,11 +28,6 @@ LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
 RAPID_STEP = 0.5  # between the evaluated points of a rapid
 BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
 NOTHING = Polygon()
-ALWAYS = -1  # move number of what exists before the program
-
-Bounds = Sequence[float]  # least and greatest of both coordinates of the plane
-Levels = tuple[float, float]  # the lowest and the highest
-Drawn = Callable[[], np.ndarray]  # points (n, 2) along a path
 
 
 class Portion(NamedTuple):
@@ -48,18 +42,6 @@ class Portion(NamedTuple):
         return self.points[:, :2]
 
 
-class Course(NamedTuple):
-    """How a cutter of a radius went along a line: down to which level, in which move."""
-
-    radius: float
-    level: float
-    move: float
-
-    def clears(self, other: "Course") -> bool:
-        """Return whether another, along the same line, has nothing left to remove."""
-        return other.radius <= self.radius and self.level <= other.level and self.move < other.move
-
-
 class Touch(NamedTuple):
     """Material that a move goes through: its area, and the tool's points (n, 3) there."""
 
@@ -67,124 +49,29 @@ class Touch(NamedTuple):
     points: np.ndarray
 
 
-class Solid(NamedTuple):
-    """An area that is material below a ``level``, for the moves after one and up to another."""
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """What a cutter of a radius removes along a line (n, 2) down to a level, in a move."""
 
-    shape: BaseGeometry
+    line: np.ndarray
+    radius: float
     level: float
-    since: int = ALWAYS
-    until: float = math.inf
-
-
-class Opening(NamedTuple):
-    """An area that is free down to a ``level``, for the moves after one.
-
-    ``perhaps`` says that material may remain there.
-    """
-
-    shape: BaseGeometry
-    level: float = -math.inf
-    since: int = ALWAYS
-    perhaps: bool = False
-
-
-class _Sweep:
-    """The area that a cutter sweeps along a path, computed at its first use."""
-
-    def __init__(self, draw: Drawn, radius: float, known: dict) -> None:
-        self._draw, self._radius, self._known = draw, radius, known
+    move: int
 
     @cached_property
     def shape(self) -> BaseGeometry:
-        """The area; that of an equal path elsewhere is translated."""
-        line = self._draw()
-        start = line[0]
-        shifted = line - start
-        key = (round(self._radius, 6), _key(shifted))
-        if key not in self._known:
-            self._known[key] = swept([shifted], self._radius)
-        return translate(self._known[key], *start)
+        return swept([self.line], self.radius)
 
-
-Area = Solid | Opening | _Sweep
-
-
-class _Near(NamedTuple):
-    """Areas that may meet a region, and those of them that may cover it."""
-
-    areas: Sequence[Area]
-    wider: Sequence[Area]
-
-    def within(self, region: BaseGeometry) -> BaseGeometry:
-        """Return what of the region lies in them; one that covers it saves their union."""
-        if self._one_covers(region):
-            return region
-        return region.intersection(self._union()) if self.areas else NOTHING
-
-    def without(self, region: BaseGeometry) -> BaseGeometry:
-        """Return what of the region lies in none; one that covers it saves their union."""
-        if self._one_covers(region):
-            return NOTHING
-        return region.difference(self._union()) if self.areas else region
-
-    def _one_covers(self, region: BaseGeometry) -> bool:
-        return any(area.shape.covers(region) for area in self.wider)
-
-    def _union(self) -> BaseGeometry:
-        return unary_union([area.shape for area in self.areas])
-
-
-class _Areas:
-    def __init__(self) -> None:
-        self._areas: list[Area] = []
-        self._rows: list[tuple[float, ...]] = []
-
-    def add(
-        self, area: Area, bounds: Bounds, level: float, since: int, until: float = math.inf
-    ) -> None:
-        if bounds:  # an empty area has none
-            self._areas.append(area)
-            self._rows.append((*bounds, level, since, until))
-            self.__dict__.pop("_table", None)
-
-    @cached_property
-    def _table(self) -> np.ndarray:
-        return np.ascontiguousarray(np.array(self._rows).reshape(-1, 7).T)
-
-    def near(self, region: BaseGeometry, levels: Levels, move: float | None) -> _Near:
-        """Return the areas that may meet a region, between levels, at a move or at any."""
-        if region.is_empty:
-            return _Near([], [])
-        low_x, low_y, high_x, high_y = region.bounds
-        x0, y0, x1, y1, level, since, until = self._table
-        found = np.flatnonzero((x0 <= high_x) & (x1 >= low_x))
-        found = found[(y0[found] <= high_y) & (y1[found] >= low_y)]
-        found = found[(levels[0] <= level[found]) & (level[found] <= levels[1])]
-        if move is not None:
-            found = found[(since[found] < move) & (move <= until[found])]
-        wider = (x0[found] <= low_x) & (x1[found] >= high_x)
-        wider &= (y0[found] <= low_y) & (y1[found] >= high_y)
-        return _Near(*([self._areas[index] for index in own] for own in (found, found[wider])))
+    @property
+    def bounds(self) -> np.ndarray:
+        ends = self.line.min(axis=0) - self.radius, self.line.max(axis=0) + self.radius
+        return np.concatenate(ends)
 
 
 class Material:
-    def __init__(
-        self, solids: Iterable[Solid], openings: Iterable[Opening] = (), period: float = 0.0
-    ) -> None:
-        self._solids, self._cuts, self._perhaps_cut = _Areas(), _Areas(), _Areas()
-        self._period = period
-        self._known: dict = {}
-        self._courses: dict[bytes, list[Course]] = {}  # by the lines along which they go
-        self.top = -math.inf
-        for solid in solids:
-            self._solids.add(solid, solid.shape.bounds, *solid[1:])
-            self.top = max(self.top, -math.inf if solid.shape.is_empty else solid.level)
-        for each in openings:
-            self.open(each)
-
-    def open(self, opening: Opening) -> None:
-        cuts = self._perhaps_cut if opening.perhaps else self._cuts
-        cuts.add(opening, opening.shape.bounds, opening.level, opening.since)
+    def __init__(self, shape: BaseGeometry, top: float, period: float = 0.0) -> None:
+        self.shape, self.top, self._period = shape, top, period
+        self._sweeps: list[Sweep] = []
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3), after those before."""
@@ -193,52 +80,73 @@ class Material:
         if _goes_along_z(points):
             points = points[points[:, 2].argmin()][None]
         for portion in _portions(points):
-            course = Course(radius, portion.low, move)
-            if self._is_swept(portion.line, course):
-                continue
-            for line in self._unrolled(portion.line, radius):
-                self._courses.setdefault(_key(line), []).append(course)
-                bounds = (*line.min(axis=0), *line.max(axis=0))
-                self.cut_level(move, bounds, portion.low, partial(np.asarray, line), radius)
+            if portion.low < self.top:
+                for line in self._unrolled(portion.line, radius):
+                    self._sweeps.append(Sweep(line, radius, portion.low, move))
+        self.__dict__.pop("_table", None)
 
-    def _is_swept(self, line: np.ndarray, course: Course) -> bool:
-        """Return whether a course clears what another would along a line (n, 2)."""
-        lines = self._unrolled(line, course.radius)
-        known = (self._courses.get(_key(each), ()) for each in lines)
-        return all(any(each.clears(course) for each in along) for along in known)
+    @cached_property
+    def _table(self) -> np.ndarray:
+        """The bounds, the level and the move of each sweep: rows (6, n)."""
+        rows = [(*sweep.bounds, sweep.level, sweep.move) for sweep in self._sweeps]
+        return np.ascontiguousarray(np.array(rows, float).reshape(-1, 6).T)
 
-    def cut_level(
-        self, move: int, bounds: Bounds, level: float, draw: Drawn, radius: float
-    ) -> None:
-        """Remove the area swept by a cutter at a level along a path within bounds."""
-        if level < self.top:
-            x0, y0, x1, y1 = bounds
-            within = (x0 - radius, y0 - radius, x1 + radius, y1 + radius)
-            self._cuts.add(_Sweep(draw, radius, self._known), within, level, move)
+    def sweeps_of(self, moves: range) -> list[Sweep]:
+        """Return what a range of moves removes, if that stands."""
+        move = self._table[5]
+        first, last = np.searchsorted(move, (moves.start, moves.stop))
+        return self._sweeps[first:last]
+
+    def removes(self, moves: range) -> bool:
+        """Return whether a range of moves removes anything that stands before them."""
+        return any(
+            self._standing(each.shape, each.level, moves.start).area > LEAST_AREA
+            for each in self.sweeps_of(moves)
+        )
+
+    def is_under(self, line: np.ndarray, radius: float) -> bool:
+        """Return whether a cutter along a line (n, 2) is over or in what was material at first."""
+        lines = MultiLineString([each.tolist() for each in self._unrolled(line, radius)])
+        away = self.shape.distance(lines) if not self.shape.is_empty else math.inf
+        return away < radius - ALLOWED
 
     def standing(
-        self, region: BaseGeometry, level: float, before: float = math.inf, perhaps: bool = False
+        self, region: BaseGeometry, level: float, before: float = math.inf
     ) -> BaseGeometry:
-        """Return the material in a region just below a level, before a move.
-
-        With ``perhaps`` that which may remain counts.
-        """
+        """Return the material in a region just below a level, before a move."""
+        if not self._period:
+            return self._standing(region, level, before)
         found = [
-            translate(self._standing(portion, level + SAME_LEVEL, before, perhaps), away)
+            translate(self._standing(portion, level, before), away)
             for portion, away in self._turned(region)
         ]
-        return unary_union(found) if len(found) > 1 else found[0]
+        return unary_union([NOTHING, *found])
 
-    def _standing(
-        self, region: BaseGeometry, level: float, before: float, perhaps: bool
-    ) -> BaseGeometry:
-        region = self._solids.near(region, (level, math.inf), before).within(region)
-        for cuts in (self._cuts,) if perhaps else (self._cuts, self._perhaps_cut):
-            region = cuts.near(region, (-math.inf, level), before).without(region)
-        return region
+    def _standing(self, region: BaseGeometry, level: float, before: float) -> BaseGeometry:
+        if self.top < level + SAME_LEVEL or region.is_empty:
+            return NOTHING
+        near, wider = self._near(region.bounds, level + SAME_LEVEL, before)
+        if any(sweep.shape.covers(region) for sweep in wider):  # saves their union
+            return NOTHING
+        region = region.intersection(self.shape)
+        return region.difference(unary_union([each.shape for each in near])) if near else region
+
+    def _near(
+        self, bounds: tuple[float, ...], level: float, before: float
+    ) -> tuple[list[Sweep], list[Sweep]]:
+        """Return the sweeps before a move that may meet bounds, and those that may cover them."""
+        low_x, low_y, high_x, high_y = bounds
+        x0, y0, x1, y1, levels, move = self._table
+        found = np.flatnonzero((x0 <= high_x) & (x1 >= low_x) & (levels <= level) & (move < before))
+        found = found[(y0[found] <= high_y) & (y1[found] >= low_y)]
+        wider = found[(x0[found] <= low_x) & (x1[found] >= high_x)]
+        wider = wider[(y0[wider] <= low_y) & (y1[wider] >= high_y)]
+        return [self._sweeps[n] for n in found], [self._sweeps[n] for n in wider]
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
         """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
+        if not self._period:
+            return [line]
         turns = self._turns(line[:, 0].min() - radius, line[:, 0].max() + radius)
         return [line - (turn * self._period, 0.0) for turn in turns]
 
@@ -255,86 +163,30 @@ class Material:
         return [(translate(region, -away).intersection(first_turn), away) for away in ways]
 
     def _turns(self, least: float, most: float) -> range:
-        """Return the turns of a surface between two positions around it; of a plane one."""
-        if not self._period:
-            return range(1)
+        """Return the turns of a surface between two positions around it."""
         return range(math.floor(least / self._period), math.floor(most / self._period) + 1)
 
-    def is_cut(self, region: BaseGeometry, level: float, before: float) -> bool:
-        """Return whether a portion of a region may be cut down to a level before a move."""
-        levels = (-math.inf, level + SAME_LEVEL)
-        return any(self._cuts.near(each, levels, before).areas for each, _ in self._turned(region))
-
-    def was_solid(self, region: BaseGeometry, level: float, before: float) -> bool:
-        """Return whether a portion of a region was material above a level."""
-        found = self._solids_near(region, level, before)
-        return any(solid.shape.intersects(portion) for portion, solid in found)
-
-    def surrounds(self, region: BaseGeometry, level: float, before: float) -> bool:
+    def surrounds(self, region: BaseGeometry, level: float) -> bool:
         """Return whether a portion of a region was material above a level, or in a hole of it."""
-        found = self._solids_near(region, level, before)
-        return any(_filled(solid.shape).intersects(portion) for portion, solid in found)
+        if self.shape.is_empty or level + SAME_LEVEL > self.top:
+            return False
+        return any(self._without_holes.intersects(each) for each, _ in self._turned(region))
 
-    def _solids_near(
-        self, region: BaseGeometry, level: float, before: float
-    ) -> Iterator[tuple[BaseGeometry, Area]]:
-        """Yield each portion of a region with a solid above a level that may meet it."""
-        levels = (level + SAME_LEVEL, math.inf)
-        for portion, _ in self._turned(region):
-            for solid in self._solids.near(portion, levels, before).areas:
-                yield portion, solid
+    @cached_property
+    def _without_holes(self) -> BaseGeometry:
+        polygons = getattr(self.shape, "geoms", [self.shape])
+        return unary_union([Polygon(each.exterior) for each in polygons])
 
-    def is_cleared(self, region: BaseGeometry, level: float, before: float) -> bool:
-        """Return whether a region was material above a level, of which nothing stands there."""
-        known = self.was_solid(region, level, before)
-        return known and self.standing(region, level, before).area <= LEAST_AREA
-
-    def covers(self, points: np.ndarray, radius: float, before: float, top: float) -> bool:
-        """Return whether all that a cutter sweeps below a top is solid, or was cut as low before.
-
-        What is below a cut outside of the solids is not known.
-        """
-        for portion in _below(top, points):
-            course = Course(radius, portion.high + SAME_LEVEL, before)
-            if self._is_swept(portion.line, course):
-                continue
-            rest = [each for each, _ in self._turned(swept([portion.line], radius))]
-            for areas, most, move in (
-                (self._solids, math.inf, None),
-                (self._cuts, course.level, before),
-            ):
-                rest = [areas.near(each, (-math.inf, most), move).without(each) for each in rest]
-            if sum(each.area for each in rest) > LEAST_AREA:
-                return False
-        return True
-
-    def touched(
-        self, points: np.ndarray, radius: float, before: float, perhaps: bool = False
-    ) -> Touch | None:
-        """Return the material that a cutter goes through along points (n, 3), None if none.
-
-        With ``perhaps`` it may go through it.
-        """
+    def touched(self, points: np.ndarray, radius: float, before: float) -> Touch | None:
+        """Return the material that a cutter goes through along points (n, 3), None if none."""
         found, where = [], []
         for portion in _below(self.top, points) if radius > ALLOWED else ():
-            if self._is_swept(portion.line, Course(radius, portion.high + SAME_LEVEL, before)):
-                continue
             region = swept([portion.line], radius - ALLOWED)
-            area = self.standing(region, portion.high, before, perhaps)
+            area = self.standing(region, portion.high, before)
             if area.area > LEAST_AREA:
                 found.append(area)
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
-
-
-def _filled(shape: BaseGeometry) -> BaseGeometry:
-    """Return an area without its holes."""
-    polygons = [each for each in getattr(shape, "geoms", [shape]) if isinstance(each, Polygon)]
-    return unary_union([Polygon(each.exterior) for each in polygons])
-
-
-def _key(line: np.ndarray) -> bytes:
-    return np.round(line, 6).tobytes()
 
 
 def _below(top: float, points: np.ndarray) -> Iterator[Portion]:

@@ -189,6 +189,18 @@ def arc_points(move: Move, fractions: np.ndarray) -> np.ndarray:
     return points
 
 
+def turning_points(move: Move) -> np.ndarray:
+    """Return the positions (n, 9) of a move's ends, and of an arc where X, Y or Z turns back."""
+    if move.kind != "arc":
+        return np.array([move.start, move.end])
+    one, two, _ = plane_axes(move)
+    first, sweep = np.subtract(move.start[:3], move.centre), move.sweep
+    ahead = np.arctan2(two, one) - math.atan2(two @ first, one @ first)
+    turns = (math.copysign(1.0, sweep) * ahead) % math.pi
+    shares = np.concatenate([turns, turns + math.pi]) / max(abs(sweep), 1e-12)
+    return arc_points(move, np.concatenate([[0.0], np.sort(shares[shares < 1.0]), [1.0]]))
+
+
 def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -> list[np.ndarray]:
     """Return the moves as polylines (n, 3) on the part, one for each run without a gap."""
     found: list[list[np.ndarray]] = []

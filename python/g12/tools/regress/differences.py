@@ -1,28 +1,79 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The differences between two recordings of a program as text: lines, moves, amounts.
 
-Consecutive moves with the same kind of change are one difference. Equal differences at several
-lines are one, too.
+Each step is a line of text with its numbers rounded to the tolerance, and patiencediff compares the
+lines; so an inserted block is one difference and the moves after it are none. The steps of a
+stretch that differs are compared one by one if their number is the same. Consecutive moves with the
+same kind of change are one difference. Equal differences at several lines are one, too.
 """
 
+import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Hashable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import SequenceMatcher
+from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
+from patiencediff import PatienceSequenceMatcher
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.path.farthest_apart import gap_between
-from g12.tools.path.part import Part
-from g12.tools.preview.moves import Move
-from g12.tools.regress.edits import Change, Edit, Tolerance, edits_of
-from g12.tools.regress.recording_text import RecordedStep, Recording, number_text
+from g12.tools.path.part import Part, arc_points
+from g12.tools.preview.moves import IS_LENGTH, Move
+from g12.tools.regress.recording_text import (
+    Note,
+    RecordedStep,
+    Recording,
+    number_text,
+    turns_only,
+)
 from g12.tools.units import UNITS, counted_as
 
 SHOWN_DECIMALS = 6  # shown, if the two numbers differ in them
 LONG_RUN = 10  # edits; fewer are reported together even if they differ
 SIZE_FORMAT = ".4g"
 MOVED = (*AXIS_LETTERS, "radius")
+MAX_COMPARED = 250_000  # product of the lengths of a stretch that difflib compares
+EXACT = 1e-9  # the tolerance, if it is 0
+
+
+class Tolerance(NamedTuple):
+    """What counts as equal: ends in mm, ends in degrees, feeds as a share."""
+
+    length: float
+    angle: float
+    feed: float
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        return tuple(self.length if linear else self.angle for linear in IS_LENGTH)
+
+
+class Change(NamedTuple):
+    """One changed property of a step.
+
+    ``what`` is an axis (``by`` in mm or degrees), radius (``by`` is how far the arc's middle
+    moved, mm), feed or rotary feed (``by`` is a share), or kind, direction, plane, feed mode,
+    note with texts.
+    """
+
+    what: str
+    by: float
+    was: float | str
+    now: float | str
+
+
+class Edit(NamedTuple):
+    """Changed steps, by their indices.
+
+    ``changes`` are those of a pair; without them steps were added, are missing, or are replaced.
+    """
+
+    was: tuple[int, ...]
+    now: tuple[int, ...]
+    changes: tuple[Change, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -50,17 +101,12 @@ def differences(
     was: Recording, now: Recording, tolerance: Tolerance, part: Part
 ) -> list[Difference]:
     """Return the differences of a program, in its order; ``part`` is the machine's."""
-    found = _found(was, now, tolerance, part)
-    return [_located(difference, was, now) for difference in found]
-
-
-def _found(was: Recording, now: Recording, tolerance: Tolerance, part: Part) -> list[Difference]:
-    edits = edits_of(was.steps, now.steps, tolerance)
-    phrases = Phrases(was, now, part)
+    edits = list(edits_of(was.steps, now.steps, tolerance))
     lost = _lost(edits, was, now)
-    runs = _runs(edits[: len(edits) - len(lost)])
-    found = [phrases.of_run(alike) for run in runs for alike in _alike(run)]
-    return [*_merged(found), *_endings(was, now, lost)]
+    phrases = Phrases(was, now, part)
+    found = [phrases.of_run(run) for run in _runs(edits[: len(edits) - len(lost)])]
+    found = [*_merged(found), *_endings(was, now, lost)]
+    return [_located(difference, was, now) for difference in found]
 
 
 def _located(difference: Difference, was: Recording, now: Recording) -> Difference:
@@ -75,6 +121,97 @@ def _program_lines(recording: Recording, steps: Iterable[int]) -> list[int]:
     return sorted({recording.steps[index].block for index in steps})
 
 
+# ---------------------------------------------------------------- edits
+
+
+def edits_of(
+    was: Sequence[RecordedStep], now: Sequence[RecordedStep], tolerance: Tolerance
+) -> Iterator[Edit]:
+    """Yield the edits between two recordings' steps, in order."""
+    old, new = ([_rounded(step, tolerance) for step in steps] for steps in (was, now))
+    for before, after in _stretches(old, new):
+        if not (before and after):
+            yield Edit(tuple(before), tuple(after))
+            continue
+        for kind in (Note, Move):
+            some = tuple(i for i in before if isinstance(was[i], kind))
+            others = tuple(j for j in after if isinstance(now[j], kind))
+            if len(some) == len(others):
+                pairs = ((i, j, changes(was[i], now[j], tolerance)) for i, j in zip(some, others))
+                yield from (Edit((i,), (j,), tuple(found)) for i, j, found in pairs if found)
+            else:
+                yield Edit(some, others)
+
+
+def _rounded(step: RecordedStep, tolerance: Tolerance) -> Hashable:
+    """Return a step as a line of text, its numbers in units of the tolerance."""
+    if isinstance(step, Note):
+        return step.text
+    numbers = zip((*step.end, *(step.centre or ())), (*tolerance.ends, *[tolerance.length] * 3))
+    places = (f"{round(number / (size or EXACT))}" for number, size in numbers)
+    return f"{step.kind} {step.turns} {' '.join(places)}"
+
+
+def _stretches(old: Sequence[Hashable], new: Sequence[Hashable]) -> Iterator[tuple[range, range]]:
+    """Yield stretches of the same lines and of others.
+
+    patiencediff matches lines that occur once. What it leaves is matched by difflib where that is
+    quick.
+    """
+    for tag, i, i_end, j, j_end in PatienceSequenceMatcher(None, old, new).get_opcodes():
+        if tag == "replace" and (i_end - i) * (j_end - j) <= MAX_COMPARED:
+            matcher = SequenceMatcher(None, old[i:i_end], new[j:j_end], autojunk=False)
+            for _, a, a_end, b, b_end in matcher.get_opcodes():
+                yield range(i + a, i + a_end), range(j + b, j + b_end)
+        else:
+            yield range(i, i_end), range(j, j_end)
+
+
+def changes(was: RecordedStep, now: RecordedStep, tolerance: Tolerance) -> list[Change]:
+    if isinstance(was, Note) and isinstance(now, Note):
+        return [Change("note", 0.0, was.text, now.text)] if was.text != now.text else []
+    assert isinstance(was, Move) and isinstance(now, Move)
+    found = [
+        Change(axis, b - a, a, b)
+        for axis, a, b, most in zip(AXIS_LETTERS, was.end, now.end, tolerance.ends)
+        if abs(b - a) > most
+    ]
+    if was.kind != now.kind:
+        found.append(Change("kind", 0.0, was.kind, now.kind))
+    elif was.kind == "arc":
+        found += _arc_changes(was, now, tolerance, moved=bool(found))
+    return found + _feed_changes(was, now, tolerance)
+
+
+def _arc_changes(was: Move, now: Move, tolerance: Tolerance, moved: bool) -> list[Change]:
+    """Compare arcs by their middle point: the centre of a flat arc is too sensitive."""
+    if was.plane != now.plane:
+        return [Change("plane", 0.0, f"G{was.plane}", f"G{now.plane}")]
+    if was.turns != now.turns:
+        return [Change("direction", 0.0, _direction(was), _direction(now))]
+    if moved or math.dist(was.centre, now.centre) <= tolerance.length:
+        return []
+    by = math.dist(*(arc_points(move, np.array([0.5]))[0, :3] for move in (was, now)))
+    return [Change("radius", by, was.radius, now.radius)] if by > tolerance.length else []
+
+
+def _direction(move: Move) -> str:
+    sense = "clockwise" if move.turns < 0 else "counterclockwise"
+    return sense if abs(move.turns) == 1 else f"{sense}, {abs(move.turns)} turns"
+
+
+def _feed_changes(was: Move, now: Move, tolerance: Tolerance) -> list[Change]:
+    if "rapid" in (was.kind, now.kind):
+        return []
+    if was.feed_mode != now.feed_mode:
+        return [Change("feed mode", 0.0, was.feed_mode, now.feed_mode)]
+    larger = max(was.feed, now.feed)
+    if abs(now.feed - was.feed) <= tolerance.feed * larger:
+        return []
+    what = "rotary feed" if turns_only(now) else "feed"
+    return [Change(what, (now.feed - was.feed) / larger, was.feed, now.feed)]
+
+
 def _lost(edits: list[Edit], was: Recording, now: Recording) -> list[Edit]:
     """Return the steps that are missing because the program is now refused before them."""
     if not now.error or not edits:
@@ -85,38 +222,37 @@ def _lost(edits: list[Edit], was: Recording, now: Recording) -> list[Edit]:
 
 
 def _runs(edits: Sequence[Edit]) -> Iterator[list[Edit]]:
-    """Edits of consecutive pairs with the same kind of change; others alone."""
-    run: list[Edit] = []
-    for edit in edits:
-        if run and not (_follows(run[-1], edit) and _kinds_of(run[-1]) & _kinds_of(edit)):
+    """Yield edits of consecutive pairs with the same kind of change; others alone.
+
+    Of a long run those with the most frequent amounts are yielded together, if they are most.
+    """
+    for (kinds, *_), group in groupby(enumerate(edits), _place_and_kinds):
+        run = [edit for _, edit in group]
+        if not kinds:
+            yield from ([edit] for edit in run)
+            continue
+        common, count = Counter(map(_amounts, run)).most_common(1)[0]
+        if len(run) < LONG_RUN or not len(run) < 2 * count < 2 * len(run):
             yield run
-            run = []
-        run.append(edit)
-    if run:
-        yield run
+            continue
+        yield [edit for edit in run if _amounts(edit) == common]
+        yield [edit for edit in run if _amounts(edit) != common]
 
 
-def _alike(run: list[Edit]) -> list[list[Edit]]:
-    """Return the common edit of most of a run and the edits of the others, if there is one."""
-    common, count = Counter(map(_amounts, run)).most_common(1)[0]
-    if len(run) < LONG_RUN or 2 * count <= len(run):
-        return [run]
-    most = [edit for edit in run if _amounts(edit) == common]
-    others = [edit for edit in run if _amounts(edit) != common]
-    return [most, others] if others else [most]
+def _place_and_kinds(numbered: tuple[int, Edit]) -> tuple:
+    """Return what edits of one run have in common."""
+    number, edit = numbered
+    if not edit.changes:
+        return (frozenset(),)
+    kinds = {"moved" if change.what in MOVED else change.what for change in edit.changes}
+    return (frozenset(kinds), edit.was[0] - number, edit.now[0] - number)
 
 
 def _amounts(edit: Edit) -> tuple:
     return tuple((change.what, f"{change.by:{SIZE_FORMAT}}") for change in edit.changes)
 
 
-def _follows(before: Edit, edit: Edit) -> bool:
-    alone = not before.changes or not edit.changes
-    return not alone and (before.was[0] + 1, before.now[0] + 1) == (edit.was[0], edit.now[0])
-
-
-def _kinds_of(edit: Edit) -> set[str]:
-    return {"moved" if change.what in MOVED else change.what for change in edit.changes}
+# ---------------------------------------------------------------- sentences
 
 
 class Phrases:
@@ -220,12 +356,19 @@ def _merged(found: Sequence[Difference]) -> list[Difference]:
     return [
         replace(
             max(group, key=lambda difference: abs(difference.by)),
+            text=f"{_times(group)}{group[0].text}",
             was=tuple(index for difference in group for index in difference.was),
             now=tuple(index for difference in group for index in difference.now),
             moves=sum(difference.moves for difference in group),
         )
         for group in groups.values()
     ]
+
+
+def _times(group: Sequence[Difference]) -> str:
+    """Return how often moves of other number are the same difference, as at each of four levels."""
+    of_number = group[0].kind in ("replaced", "added", "missing")
+    return f"{len(group)} times: " if of_number and len(group) > 1 else ""
 
 
 def _endings(was: Recording, now: Recording, lost: list[Edit]) -> list[Difference]:

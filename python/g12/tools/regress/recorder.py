@@ -20,8 +20,7 @@ from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Report, silent
-from g12.tools.regress.differences import Difference, differences
-from g12.tools.regress.edits import Tolerance
+from g12.tools.regress.differences import Difference, Tolerance, differences
 from g12.tools.regress.recording_text import (
     Recording,
     TraceTextError,

@@ -21,11 +21,11 @@ from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, UNSURE, ModalState, merged
 from g12.tools.translate.jumps import OPENING
 from g12.tools.translate.on_lathe.sections import before_loop
+from g12.tools.translate.phases import translate_words
 from g12.tools.translate.rules.modes import keep_modes
 from g12.tools.translate.rules.motion import is_plain
 from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, Structure, find_ends, ways_from
-from g12.tools.translate.word_rules import WORD_RULES
 
 Progress = Callable[[int], None]
 
@@ -111,8 +111,7 @@ class FollowedProgram:
         if begins and begun == MAIN and not word.value.isdigit():
             raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
         if draft.words and not is_plain(draft):
-            for rule in WORD_RULES:
-                rule(draft)
+            translate_words(draft)
         if begins and begun == MAIN:
             draft.comments.insert(0, word.text)
         elif begins:

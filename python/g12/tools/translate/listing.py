@@ -1,14 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The codes and settings of a control as a list, and those that its file lacks for a program."""
+"""The codes and settings of a control as a list."""
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
+from collections.abc import Iterator, Mapping
 from textwrap import wrap
 
 from g12.tools.translate.blocks.control import Control
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS
-from g12.tools.translate.blocks.lexer import ForeignBlock
 
 REFUSE_PREFIX = "refuse: "
 HEADINGS = {
@@ -64,32 +61,3 @@ def _tables(control: Control) -> Iterator[str]:
     for name, table in control.tables.items():
         values = (f"{key} = {re.sub(r'[][]', '', str(value))}" for key, value in table.items())
         yield f"[{name}] {', '.join(values)}"
-
-
-CHOICES = '"…" # "comment", "machine", "same" or codes of LinuxCNC'
-
-
-def missing_lines(
-    blocks: Iterable[ForeignBlock], control: Control, settings: Iterable[tuple[str, str]]
-) -> list[str]:
-    """Return the lines; ``settings`` are the tables and lines that rules need."""
-    tables: dict[str, list[str]] = {"": []}
-    words = [w for block in blocks for w in block.words if w.kind == "number"]
-    letters = {control.value("words", w.letter, w.letter) for w in words}
-    has_section = {"polar on", "cylinder"} & {control.meanings.get(w.code) for w in words}
-    known = {*control.axes, *("Y" if has_section else "")}  # where Y is C
-    axes = "".join(sorted((letters & AXIS_NUMBERS.keys()) - known))
-    if axes and not control.onto and not control.on_machine:
-        tables[""].append(f'axes = "{control.axes}{axes}"')
-    for table, line in settings:
-        tables.setdefault(table, []).append(line)
-    for code in sorted({w.code for w in words} - {""}, key=_number):
-        meaning = control.meanings.get(code, "")
-        if not meaning or (
-            meaning == "machine" and control.on_machine and not control.is_machines(code)
-        ):
-            name = f'"{code}"' if "." in code else code
-            tables.setdefault(f"{code[0].lower()}_codes", []).append(f"{name} = {CHOICES}")
-    top = tables.pop("")
-    named = [[f"[{table}]", *dict.fromkeys(lines)] for table, lines in tables.items()]
-    return [*dict.fromkeys(top), *chain(*named)]

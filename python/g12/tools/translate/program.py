@@ -16,7 +16,6 @@ from g12.tools.translate.blocks.lexer import (
     source_lines,
 )
 from g12.tools.translate.follow import FollowedProgram, followed_program
-from g12.tools.translate.listing import missing_lines
 from g12.tools.translate.native import (
     Construct,
     lacking_constructs,
@@ -27,7 +26,7 @@ from g12.tools.translate.order import written_order
 from g12.tools.translate.output import lines_of, output_lines
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
-from g12.tools.translate.variables import unset_locals, without_clocks
+from g12.tools.translate.variables import unset_locals
 from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
@@ -41,14 +40,10 @@ class RefusedBlock(NamedTuple):
 
 
 class Translation(NamedTuple):
-    """A LinuxCNC program, or the blocks for which there is none.
-
-    ``missing`` are the lines of TOML that the control's file lacks for the program.
-    """
+    """A LinuxCNC program, or the blocks for which there is none."""
 
     text: str
     refused: list[RefusedBlock]
-    missing: Sequence[str] = ()
 
 
 def translate_program(
@@ -71,9 +66,7 @@ def translate_program(
     )
     refused = sorted(set(_refusals(followed)))
     if refused:
-        refusals = [draft.refusal for draft in followed.drafts if draft and draft.refusal]
-        settings = [refusal.setting for refusal in refusals if refusal.setting]
-        return Translation("", refused, missing_lines(blocks, control, settings))
+        return Translation("", refused)
     order = written_order(followed, len(rows))
     if order.circular:
         return Translation("", sorted(_circular_calls(followed, order.circular)))
@@ -102,7 +95,7 @@ def _read_blocks(
         blocks += blocks_of(line, row, remarks, variables)
         if line % 1000 == 0:
             progress(READ * line / len(rows))
-    return without_clocks(blocks)
+    return blocks
 
 
 def _circular_calls(followed: FollowedProgram, circular: frozenset[int]) -> Iterator[RefusedBlock]:

@@ -1,22 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Variables that LinuxCNC lacks: empty local ones of macros, and the control's clocks.
+"""Local variables of macros that may be empty.
 
 A local variable that no call gives and no line sets is empty on the control, and its word vanishes;
-LinuxCNC takes 0. Such a macro is refused, unless it compares the variable with #0 first. All
-programs that no G65 calls share their local variables: a word of one that nothing sets before it is
-refused.
-
-Many programs measure the time of a cycle. A variable that a clock, or another such variable, gives
-a value may stand in assignments of its kind alone. Those become comments; where such a variable
-decides or moves, it is refused.
+LinuxCNC takes 0. Such a macro is refused. All programs that no G65 calls share their local
+variables: a word of one that nothing sets before it is refused.
 """
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.expressions import CLOCK, LOCAL_VARIABLES, SHARED
-from g12.tools.translate.blocks.lexer import ForeignBlock
+from g12.tools.translate.blocks.expressions import LOCAL_VARIABLES, SHARED
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 
@@ -66,23 +60,3 @@ def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
             users[variable].add(followed.structure.programs[index])
             if len(users[variable]) > 1:
                 yield block.line, f"#{variable} is used in two programs: LinuxCNC has it once"
-
-
-def without_clocks(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
-    """Return the blocks with the assignments of times as comments."""
-    timed, known = {CLOCK}, 0
-    while len(timed) > known:
-        known = len(timed)
-        timed.update(b.variable for b in blocks if b.kind == "assign" and timed & b.read)
-    return [_without_time(block, timed) for block in blocks]
-
-
-def _without_time(block: ForeignBlock, timed: set[int]) -> ForeignBlock:
-    """Return a block: a time is a comment, what depends on one is refused."""
-    if block.kind == "assign" and block.variable in timed:
-        comments = ("a time: LinuxCNC has no clock", *block.comments)
-        return block._replace(kind="words", variable=0, expression=None, comments=comments)
-    if timed & block.read:
-        problem = "this depends on the control's clock, which LinuxCNC lacks: take it out"
-        return block._replace(problem=block.problem or problem)
-    return block

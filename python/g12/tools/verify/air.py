@@ -5,7 +5,6 @@ import math
 from collections.abc import Iterator
 
 from g12.cut_report import PolygonCut
-from g12.tools.path.part import swept
 from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
@@ -38,13 +37,15 @@ def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
-    top, lowest = solids.top(cut.surface), lowest_of(cut, solids)
+    top = solids.top(cut.surface)
+    lowest = min((each.level for each in solids.made_by(cut)), default=math.inf)
     place = solids.program.tip(cut.at, cut.surface)[0]
     if lowest > top - LEVEL:
+        lowest = lowest_of(cut, solids)
         values = {"above": lowest - top, "hint": MINUS if lowest > top + LEVEL else ""}
         yield Finding(AIR, cut.line, values, place, cut.file)
     elif not solids.removes(cut):
-        if not _meets(cut, solids):
+        if not solids.is_met(cut):
             yield Finding(BESIDE, cut.line, {}, place, cut.file)
         elif not cut.is_tap:
             yield Finding(BEFORE, cut.line, {}, place, cut.file)
@@ -81,10 +82,3 @@ def _lies_outside(cut: Cut, solids: Solids) -> bool:
     if not pocket or not solids.stock.is_whole:
         return False
     return bool(cut.goes.difference(solids.unbored).area > LEAST_GONE)
-
-
-def _meets(cut: Cut, solids: Solids) -> bool:
-    return any(
-        solids.was_solid(swept([points], radius), points[:, 2].min(), cut.surface)
-        for points, radius in solids.made_by(cut)
-    )

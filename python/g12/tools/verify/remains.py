@@ -43,8 +43,8 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
-    side, radius = cut.surface, solids.program.cutter(cut.at)
-    left = without_slivers(solids.standing(cut.goes, cut.floor, side))
+    radius = solids.program.cutter(cut.at)
+    left = left_of(cut.goes, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
         yield from _core(cut, left.buffer(-radius / 2))
         left = NOTHING
@@ -54,7 +54,7 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         place = (*_middle_of(cut, left), cut.floor)
         yield Finding(UNCUT, cut.line, values, place, cut.file)
     yield from _bar(cut, solids, radius)
-    yield from _core(cut, without_slivers(solids.standing(cut.core, cut.floor, side)))
+    yield from _core(cut, left_of(cut.core, cut, solids))
 
 
 def _middle_of(cut: Cut, left: BaseGeometry) -> tuple[float, float]:
@@ -62,8 +62,11 @@ def _middle_of(cut: Cut, left: BaseGeometry) -> tuple[float, float]:
     return cut.centre if cut.is_circle else (at.x, at.y)
 
 
-def without_slivers(area: BaseGeometry) -> BaseGeometry:
-    """Return an area without what is narrower than two slacks: chords and rounding."""
+def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
+    """Return what stands of a region at a cut's floor, without what is narrower than two slacks."""
+    if solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
+        return NOTHING  # no more than a rim, of chords and rounding
+    area = solids.standing(region, cut.floor, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
 
 
@@ -81,7 +84,7 @@ def _bar(cut: Cut, solids: Solids, radius: float) -> Iterator[Finding]:
     beyond = [beyond_contour(outline, bar, radius) for outline in cut.outlines]
     if isinstance(cut.plan, PolygonCut):
         beyond = [reachable(bar.difference(cut.stays[0][0]), radius)]
-    left = without_slivers(solids.standing(unary_union([NOTHING, *beyond]), cut.floor, cut.surface))
+    left = left_of(unary_union([NOTHING, *beyond]), cut, solids)
     if left.area > LEAST_LEFT:
         at = left.representative_point()
         values = {"area": left.area, "level": cut.floor - cut.zero[2]}
@@ -120,11 +123,11 @@ def too_far(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what a circle's own moves remove beyond its wall: D is not the cutter that cuts."""
     if not cut.is_circle or cut.has_boss:
         return
-    for points, radius in solids.made_by(cut):
-        away = np.abs(points[:, 0] + 1j * points[:, 1] - complex(*cut.centre))
-        over = float(away.max()) + radius - cut.wall
+    for sweep in solids.made_by(cut):
+        away = np.hypot(*(sweep.line - cut.centre).T)
+        over = float(away.max()) + sweep.radius - cut.wall
         if over > SLACK:
-            place = points[away.argmax()]
+            place = (*sweep.line[away.argmax()], sweep.level)
             at = solids.program.words(cut.at, place, cut.surface)
             yield Finding(WALL, cut.line, {"over": over, "at": at}, place, cut.file)
             return

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from g12.tools.translate.blocks.expressions import CLOCK, OWN
+from g12.tools.translate.blocks.expressions import OWN
 
 CONTROL_FOLDER = Path(__file__).parents[1] / "controls"
 HOLE_MEANINGS = (  # cycles of a lathe
@@ -36,7 +36,7 @@ MEANINGS = {
         "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
-        "circle of holes", "arc of holes", "row of holes", "turned", "turned back",
+        "circle of holes", "arc of holes", "row of holes",
         *HOLE_MEANINGS,
         "radius or diameter",
     ),
@@ -97,8 +97,8 @@ TABLES: dict[str, Any] = {
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
     "variables": TextRule(
-        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|clock|own",
-        "must be a number, and a parameter of LinuxCNC (#500), a value, clock, or own: refused",
+        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|own",
+        "must be a number, and a parameter of LinuxCNC (#500), a value, or own: refused",
         "[0-9]{1,6}(-[0-9]{1,6})?",
     ),
     "turning": {
@@ -186,9 +186,7 @@ class Control:
         for key, value in variables.items():
             first, _, last = key.partition("-")
             for offset, number in enumerate(range(int(first), int(last or first) + 1)):
-                if value == "clock":
-                    found[number] = f"#{OWN}{CLOCK}"
-                elif value.startswith("#"):
+                if value.startswith("#"):
                     found[number] = f"#{OWN}{int(value[1:]) + offset}"
                 elif value != "own":
                     found[number] = value

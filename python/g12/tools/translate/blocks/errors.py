@@ -8,7 +8,6 @@ class NotTranslated(ValueError):
     """A word or a code that is not understood; the message is a sentence without the line."""
 
     modes: tuple[str, ...] = ()  # that cause it: they differ between ways to the block
-    setting: tuple[str, str] | None = None  # table and line that the control's file lacks
 
 
 class NotSure(NotTranslated):
@@ -17,14 +16,6 @@ class NotSure(NotTranslated):
     def __init__(self, sentence: str, *modes: str) -> None:
         super().__init__(sentence)
         self.modes = modes
-
-
-class NotSaid(NotTranslated):
-    """A setting that the control's file lacks: its ``table`` ("" for the top) and its line."""
-
-    def __init__(self, sentence: str, table: str, line: str) -> None:
-        super().__init__(sentence)
-        self.setting = (table, line)
 
 
 def excerpt(text: str) -> str:

@@ -29,7 +29,6 @@ EMPTY = "-9999999"  # passed to a macro for an empty variable that it compares w
 EMPTY_QUESTION = re.compile(r"(EQ|NE)#0+(?![0-9.])")
 MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
-CLOCK = 0  # the number that a variable of the control's clock has
 OTHER_MEANING = (
     "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
 )

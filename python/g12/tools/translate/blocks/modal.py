@@ -65,8 +65,6 @@ class ModalState(NamedTuple):
     kept: tuple = ()  # values of the first blocks of cycles
     pass_words: tuple = ()  # the words of ``turning_cycle``
     chamfers: bool | str = True  # threads end with one
-    local: tuple | str = ()  # X and Y of G52, as far as they are known
-    turned: str = UNKNOWN  # the work offset that G68 has rotated
     retract: str = UNKNOWN
     x_words: str = UNKNOWN  # G7: diameters, G8: radii
     live_tool: str = UNKNOWN  # the ``$`` word of a spindle that drives the tool and turns

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a mill's program needs worked out: patterns of holes, a turned pattern."""
+"""What a mill's program needs worked out: holes, their patterns, rigid taps."""

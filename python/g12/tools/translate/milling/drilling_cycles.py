@@ -4,7 +4,7 @@
 LinuxCNC gets the words that the control stores:
 
 - L0 (or K0) only stores the cycle; without R the tool's Z level is R
-- levels given under G90 hold under G91 as they are
+- levels given under G90 hold under G91 as they are, and the other way round
 - a new cycle code keeps the words of an earlier one; dwell is in the control's unit
 - G80 beside a motion is the motion
 
@@ -88,7 +88,7 @@ def _drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     if {"Z", "R"} <= given.keys():
         under = distance
     if under != distance:
-        _absolute(draft, code, given, under)
+        _positions_under(draft, code, given, under)
     if repeats == "0":
         _store(draft, code)
     else:
@@ -97,15 +97,16 @@ def _drill(draft: Draft, code: str, kept: dict[str, str]) -> None:
     draft.change(cycle_words=tuple(sorted({"R": UNKNOWN, **values, "@": under}.items())))
 
 
-def _absolute(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
-    """Write the positions of holes under G91 as absolute ones: the levels were given under G90."""
-    if under != "G90" or given.keys() & {"Z", "R"}:
-        raise NotTranslated(f"G90 or G91 changed within {code}: write Z and R again")
+def _positions_under(draft: Draft, code: str, given: dict[str, str], under: str) -> None:
+    """Write the positions of holes in the distance mode in which the levels were given."""
+    if given.keys() & {"Z", "R"}:
+        raise NotTranslated(f"G90 or G91 changed within {code}: write both Z and R again")
     for word in draft.axis_words():
         here = position(word.letter)
-        draft.replace(word, word._replace(value=f"[{here} + {word.value}]", kind="expression"))
-    draft.take_codes({"G91"})
-    draft.change(own_distance="G90")
+        value = f"[{here} + {word.value}]" if under == "G90" else f"[{word.value} - {here}]"
+        draft.replace(word, word._replace(value=value, kind="expression"))
+    draft.take_codes({"G90", "G91"})
+    draft.change(own_distance=under)
     draft.is_settled = True
 
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from g12.lengths import DEGREES_PER_TURN
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.errors import NotSaid
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 SIGNED_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -130,10 +130,8 @@ def _word(letter: str, value: str) -> ForeignWord:
 def diameter(draft: Draft) -> float:
     value = draft.control.value("mill", "diameter", 0.0)
     if not value:
-        raise NotSaid(
-            "the diameter of the part is not known: say --diameter, or diameter = … under [mill]",
-            "mill",
-            "diameter = …",
+        raise NotTranslated(
+            "the diameter of the part is not known: say --diameter, or diameter = … under [mill]"
         )
     return value
 

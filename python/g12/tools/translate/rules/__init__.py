@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The rules of the translation, one file each; `word_rules` has their order."""
+"""The rules of the translation, one file each; `phases` has their order."""

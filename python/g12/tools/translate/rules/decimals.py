@@ -5,7 +5,7 @@ from decimal import Decimal
 
 from g12.tools.translate.blocks.control import HOLE_MEANINGS
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
 LENGTH_WORDS = frozenset((*"XYZUVWIJKRQE", ",C", ",R"))
@@ -64,12 +64,10 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
             "is programmed before it (--units)"
         )
     if rule == "":
-        raise NotSaid(
+        raise NotTranslated(
             f"{word.text} has no decimal point: is it {_increments_text(draft, word, kind)} or "
             f"{word.value}.? write --decimals least, or whole, behind --control "
-            f"{draft.control.name}, in the [FILTER] line too",
-            "",
-            'decimals = "least" # or "whole"',
+            f"{draft.control.name}, in the [FILTER] line too"
         )
     if not least:
         raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")

@@ -7,7 +7,7 @@ defines a rapid in polar mode.
 """
 
 from g12.tools.translate.blocks.draft import Draft, word_of
-from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ALL_PLANES, ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
@@ -55,11 +55,9 @@ def turn_on(draft: Draft, code: ForeignWord) -> None:
     """Write G12.1; X a radius if it is one on the control."""
     x = draft.control.value("polar", "x", "")
     if x in ("", "say"):
-        raise NotSaid(
+        raise NotTranslated(
             f'{code.code}: is X a diameter or a radius in it? say x = "diameter" or "radius" under '
-            "[polar] of your control (--polar-x)",
-            "polar",
-            'x = "diameter" # or "radius"',
+            "[polar] of your control (--polar-x)"
         )
     if draft.control.is_lathe and "C" in draft.letters() and draft.words[-1].is_zero:
         draft.take("C")
@@ -169,7 +167,7 @@ def rapid(draft: Draft) -> None:
         sentence = f"G0 {SECTION_NAMES[draft.state.polar]}: write G1 with a high feed"
         if "G0" not in draft.codes():
             raise NotTranslated(f"{sentence}, or G1 if this is a cut: no G1 is before it")
-        raise NotSaid(f'{sentence}, or say rapid = "feed" in [polar]', "polar", 'rapid = "feed"')
+        raise NotTranslated(f'{sentence}, or say rapid = "feed" in [polar]')
     feed = feed_of_rapids(draft)
     draft.take_codes({"G0"})
     draft.take("F")  # of later blocks
@@ -192,7 +190,7 @@ def feed_of_rapids(draft: Draft) -> float:
     key = f"rapid_feed_{unit}"
     feed = draft.control.value("polar", key, 0)
     if not feed:
-        raise NotSaid(f"G0 {where} needs its speed: say {key} under [polar]", "polar", f"{key} = …")
+        raise NotTranslated(f"G0 {where} needs its speed: say {key} under [polar]")
     return feed
 
 

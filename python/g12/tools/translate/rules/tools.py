@@ -4,7 +4,7 @@
 import re
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
-from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import is_unmoved
@@ -88,12 +88,15 @@ def _parts_of(draft: Draft, word: ForeignWord) -> tuple[int, int]:
     if not patterns:
         raise NotTranslated(f"{word.text}: [tools] patterns does not say what its digits are")
     pattern = next((p for p in patterns if len(p) >= len(word.value)), None)
-    if not pattern or len(word.value) < len(patterns[0]) - 1:
-        raise NotSaid(
+    if not pattern:
+        raise NotTranslated(
             f"{word.text} has {len(word.value)} digits: tool and offset are "
-            f"{' or '.join(patterns)}; say another pattern under [tools]",
-            "tools",
-            'patterns = ["TTOO", "TTTOOO"] # T tool, O offset, R what LinuxCNC does not need',
+            f"{' or '.join(patterns)}; say another pattern under [tools], as patterns = "
+            '["TTOO", "TTTOOO"]'
+        )
+    if len(word.value) < len(patterns[0]) - 1:
+        raise NotTranslated(
+            f"{word.text} is too short for tool and offset, {patterns[0]}: write both, as T0101"
         )
     digits = word.value.zfill(len(pattern))
     tool, offset = (

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import HOLE_MEANINGS
 from g12.tools.translate.blocks.draft import PARTNERS, Draft
-from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import FIELDS, known_position, value_text
@@ -180,11 +180,10 @@ def _clamp_of(draft: Draft) -> list[str]:
             pair = (mapped(draft, ForeignWord("M", code[1:])) for code in codes)
             return [" ".join(one.text for one in words) for words in pair]
         if word.code not in OWN_M_CODES and is_own(draft, word):
-            raise NotSaid(
-                f"{word.code} in the block of a drilling cycle: if it clamps C, say so and by which"
-                " code C is free again; if not, write it in a block of its own",
-                "holes",
-                f'clamp = "{word.code} M…"',
+            raise NotTranslated(
+                f"{word.code} in the block of a drilling cycle: if it clamps C, say clamp = "
+                f'"{word.code} M…" under [holes], with the code by which C is free again; if not, '
+                "write it in a block of its own"
             )
     return []
 
@@ -201,10 +200,8 @@ def _tap_spindle(draft: Draft, cycle: LatheCycle) -> list[str]:
     """Return the word of the tap's spindle if it is not the main one."""
     number = draft.control.value("holes", "spindle", None)
     if cycle.live and number is None:
-        raise NotSaid(
-            "a live tap: which spindle of LinuxCNC's drives it? say spindle = 1 under [holes]",
-            "holes",
-            "spindle = 1 # of LinuxCNC's, the live tool",
+        raise NotTranslated(
+            "a live tap: which spindle of LinuxCNC's drives it? say spindle = 1 under [holes]"
         )
     return [f"${number}"] if number and (cycle.live or not cycle.start) else []
 

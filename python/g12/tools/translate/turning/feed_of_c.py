@@ -10,7 +10,7 @@ or ``mm`` (as LinuxCNC). A slide that moves next to nothing is held back for a l
 from math import hypot
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
-from g12.tools.translate.blocks.errors import NotSaid, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import axis_of, known_position, value_text
 
@@ -66,11 +66,9 @@ def _scale_of(draft: Draft, axis: str) -> float:
 
 def _check_rule(draft: Draft, rule: str) -> None:
     if rule == "say":
-        raise NotSaid(
+        raise NotTranslated(
             'C beside a slide at a feed: say what F is then, feed_of_c = "mm and degrees", '
-            '"degrees" or "mm" in a control of your own',
-            "",
-            'feed_of_c = "mm and degrees" # or "degrees", "mm"',
+            '"degrees" or "mm" in a control of your own'
         )
     if draft.sure("feed_mode", "C beside a slide at a feed") != "G94":
         raise NotTranslated(

@@ -198,15 +198,14 @@ def circles_of(cut: Cut, program: TracedProgram) -> dict[int, float]:
 
 def off_circles(cut: Cut, program: TracedProgram) -> Deviation:
     """Return how far off its circles a run is."""
-    worst = Deviation(0.0, None, cut.at)
-    for index, radius in (
-        circles_of(cut, program).items() if program.real and not cut.upright else ()
-    ):
-        points = program.tip(index, 0.0)
-        off = np.abs(np.abs(points[:, 0] + 1j * points[:, 1] - complex(*cut.centre)) - radius)
-        if off.max() > worst.size:
-            worst = Deviation(float(off.max()), points[off.argmax()], index)
-    return worst
+    real = program.real
+    if not real or cut.upright:
+        return Deviation(0.0, None, cut.at)
+    own = np.flatnonzero(np.isin(real.move, list(circles_of(cut, program))))
+    if not len(own):
+        return Deviation(0.0, None, cut.at)
+    worst = own[real.deviation[own].argmax()]
+    return Deviation(float(real.deviation[worst]), real.points[worst], int(real.move[worst]))
 
 
 def _of_circle(cut: Cut, program: TracedProgram) -> Deviation:

@@ -4,9 +4,9 @@
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import groupby
 from pathlib import Path
 from typing import NamedTuple, Self
@@ -28,6 +28,7 @@ from g12.tools.verify.model.cut import Cut, cuts_of
 WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
 CHORD = 2e-3  # of the paths that are judged
+KEPT_TIPS = 4096  # moves
 A, B = 3, 4
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
@@ -108,6 +109,10 @@ class TracedProgram:
         """The motion of the run, laid on the path."""
         return follow(self.path, self.samples, self.ini.mm) if self.samples else None
 
+    @cached_property
+    def _tool_beside(self) -> float:
+        return self.ini.tool_beside
+
     def part_of_cut(self, cut: Cut) -> Part:
         return self.part_at(cut.surface, cut.at)
 
@@ -123,7 +128,7 @@ class TracedProgram:
         centre = first.zero[X] if first else 0.0
         if self.turning and radius:
             return Surface(turning=True, radius=radius, centre=centre)
-        return Part(self.turning, self.ini.tool_beside, centre if self.turning else 0.0)
+        return Part(self.turning, self._tool_beside, centre if self.turning else 0.0)
 
     def _changed(self, one: int, other: int) -> bool:
         return self.moves[one].tool != self.moves[other].tool
@@ -207,16 +212,10 @@ class TracedProgram:
         safe = code == "G43.1" and self.missing_length(index) < 0.0
         return code == "G43.2" or safe or (code == "G49" and self.turning)
 
-    def tip(self, index: int, radius: float) -> np.ndarray:
-        """Return the points (n, 3) of the part at which the tool's tip is along a move."""
-        key = index, radius
-        if key not in self._tips:
-            self._tips[key] = self._tip(index, radius)
-        return self._tips[key]
-
     @cached_property
-    def _tips(self) -> dict[tuple[int, float], np.ndarray]:
-        return {}
+    def tip(self) -> Callable[[int, float], np.ndarray]:
+        """Points (n, 3) of the part at which the tool's tip is along a move; see ``part_at``."""
+        return lru_cache(maxsize=KEPT_TIPS)(self._tip)
 
     def _tip(self, index: int, radius: float) -> np.ndarray:
         move, part = self.moves[index], self.part_at(radius, index)

@@ -7,7 +7,7 @@ of them.
 """
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cached_property
 
 import numpy as np
@@ -16,7 +16,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cut_report import HolesCut, PolygonCut
-from g12.tools.material.material import ALLOWED, Material, Solid, Touch
+from g12.tools.material.material import Material, Sweep, Touch
 from g12.tools.material.stock import Stock
 from g12.tools.path.part import disc, swept
 from g12.tools.verify.model.cut import NOTHING, Cut
@@ -36,14 +36,10 @@ class Solids:
     def __init__(self, program: TracedProgram, stock: Stock | None) -> None:
         self.program, self.stock = program, stock
         self._materials: dict[float, Material] = {}
-        self._shapes: dict[float, BaseGeometry] = {}
         for side in {FACE, *(cut.surface for cut in program.cuts)}:
-            self._shapes[side] = self._stock(side, stock)
-            solid = Solid(self._shapes[side], self.top(side))
-            self._materials[side] = Material([solid], period=2 * math.pi * side)
-        for index, points, radius, side in self.made_cuts:
-            for piece in pieces(points):
-                self._materials[side].cut(index, piece, radius)
+            shape = self._stock(side, stock)
+            self._materials[side] = Material(shape, self.top(side), period=2 * math.pi * side)
+        self._cut_all()
 
     # ------------------------------------------------------------ the stock
 
@@ -120,35 +116,27 @@ class Solids:
         return self._stock(FACE, self.stock._replace(bore=0.0) if self.stock else None)
 
     def shape(self, side: float) -> BaseGeometry:
-        return self._shapes[side]
+        return self._materials[side].shape
 
     # ------------------------------------------------------------ what is made
 
-    @cached_property
-    def made_cuts(self) -> list[tuple[int, np.ndarray, float, float]]:
-        """Each stretch at feed: its last move, the tip's points, the cutter's radius, the side."""
-        found, program = [], self.program
+    def _cut_all(self) -> None:
+        """Remove what each stretch at feed sweeps."""
+        program = self.program
         for rapid, run in program.runs():
-            sides = program.sides[run[0]]
-            if rapid or not sides:
+            sides, radius = program.sides[run[0]], program.cutter(run[0])
+            if rapid or not sides or radius <= 0:
                 continue
-            radius, side = program.cutter(run[0]), max(sides)
-            points = joined([program.tip(i, side) for i in run])
-            if radius > 0 and points[:, 2].min() < self.top(side):
-                found.append((run[-1], points, radius, side))
-        return found
+            side = max(sides)
+            for piece in pieces(joined([program.tip(i, side) for i in run])):
+                self._materials[side].cut(run[-1], piece, radius)
 
-    def made_by(self, cut: Cut) -> Iterator[tuple[np.ndarray, float]]:
-        for index, points, radius, side in self.made_cuts:
-            if cut.at <= index < cut.end and side == cut.surface:
-                yield points, radius
+    def made_by(self, cut: Cut) -> list[Sweep]:
+        return self._materials[cut.surface].sweeps_of(cut.moves)
 
-    def touched(
-        self, points: np.ndarray, index: int, side: float, before: int = -1, more: float = 0.0
-    ) -> Touch | None:
-        """Return what a move (index) goes through, of what stands before it or another."""
-        radius, before = self.program.cutter(index) + more, index if before < 0 else before
-        return self._materials[side].touched(points, radius, before)
+    def touched(self, points: np.ndarray, index: int, side: float) -> Touch | None:
+        """Return what a move (index) goes through of what stands before it."""
+        return self._materials[side].touched(points, self.program.cutter(index), index)
 
     def standing(
         self, region: BaseGeometry, level: float, side: float, before: float = math.inf
@@ -158,24 +146,19 @@ class Solids:
 
     def removes(self, cut: Cut) -> bool:
         """Return whether a cut's feed moves remove anything."""
-        for index in cut.moves:
-            if self.program.moves[index].kind == "rapid":
-                continue
-            points = self.program.tip(index, cut.surface)
-            if points[:, 2].min() < self.top(cut.surface) and self.touched(
-                points, index, cut.surface, cut.at, ALLOWED
-            ):
-                return True
-        return False
+        return self._materials[cut.surface].removes(cut.moves)
+
+    def is_met(self, cut: Cut) -> bool:
+        """Return whether a cut is over the stock or in it."""
+        material, tip = self._materials[cut.surface], self.program.tip
+        fed = (i for i in cut.moves if self.program.moves[i].kind != "rapid")
+        lines = (tip(i, cut.surface)[:, :2] for i in fed)
+        return any(material.is_under(line, self.program.cutter(cut.at)) for line in lines)
 
     def surrounds(self, tip: np.ndarray, index: int, side: float) -> bool:
         """Return whether a tool's tip is below the top, inside of what the stock was."""
         around = disc(tip[:2], self.program.cutter(index) + NEAR)
-        return self._materials[side].surrounds(around, float(tip[2]), math.inf)
-
-    def was_solid(self, region: BaseGeometry, level: float, side: float) -> bool:
-        """Return whether a portion of a region was material above a level."""
-        return self._materials[side].was_solid(region, level, math.inf)
+        return self._materials[side].surrounds(around, float(tip[2]))
 
     def swept_in(
         self, region: BaseGeometry, moves: Iterable[int], side: float

@@ -9,6 +9,7 @@ import numpy as np
 
 from g12.machine_ini import face_joints
 from g12.tools.machine.stored_positions import shift_at_start
+from g12.tools.path.part import turning_points
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
@@ -34,11 +35,11 @@ def beyond_travel(program: TracedProgram) -> Values:
     limits, mm = program.ini.axis_limits, program.ini.mm
     if face_joints(program.ini.get):  # whose X and Y are the tool's, and refused by the package
         return None
-    for k, axis in enumerate("XYZ"):
-        if axis not in limits or not program.moves:
+    positions, moves = _positions(program)
+    for axis, at in zip("XYZ", positions.T):
+        if axis not in limits:
             continue
         low, high = limits[axis].low * mm, limits[axis].high * mm
-        at, moves = _positions(program, k)
         if not program.is_placed:
             shift = at.min(initial=low) - low
             low, high = low + shift, high + shift
@@ -50,19 +51,26 @@ def beyond_travel(program: TracedProgram) -> Values:
     return None
 
 
-def _positions(program: TracedProgram, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return an axis's positions along the moves that a work offset places, with their moves."""
-    placed = np.array([program.is_placed or not move.by_machine for move in program.moves])
-    own = placed[program.path.move]
-    path = program.path
-    return (path.positions + path.offsets)[own, axis], path.move[own]
+def _positions(program: TracedProgram) -> tuple[np.ndarray, np.ndarray]:
+    """Return where X, Y and Z (n, 3) come to rest or turn back, with the indices of the moves.
+
+    They are those of the moves that a work offset places.
+    """
+    positions, moves = [np.empty((0, 3))], []
+    for index, move in enumerate(program.moves):
+        if program.is_placed or not move.by_machine:
+            own = turning_points(move)[int(index > 0) :, :3] + move.tool_offset[:3]
+            positions.append(own)
+            moves += [index] * len(own)
+    return np.concatenate(positions), np.array(moves, int)
 
 
 def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
     """Yield the axes of a program that no work offset places, with its least and its greatest."""
-    for k, axis in enumerate("XYZ") if not program.is_placed else ():
-        at = _positions(program, k)[0] if axis in program.ini.axis_limits else np.array([])
-        if len(at):
+    if program.is_placed:
+        return
+    for axis, at in zip("XYZ", _positions(program)[0].T):
+        if axis in program.ini.axis_limits and len(at):
             yield axis, float(at.min()), float(at.max())
 
 
