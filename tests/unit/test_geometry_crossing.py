@@ -9,8 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.geometry.crossing import common_points, crossings
-from g12.geometry.curve import Arc, Line
+from g12.geometry.curve import Arc, Line, common_points, crossings
 
 NUMBER = st.floats(-20, 20).map(lambda value: round(value, 3))
 PLACE = st.builds(complex, NUMBER, NUMBER)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Plunge
 from g12.polar.face import FaceLimits, MoveDemands
 from g12.polar.quickest import quickest
-from g12.section.modes import Action
+from g12.section.effects import Action
 from support import planned_moves
 from support.growth import growth
 
@@ -55,9 +55,9 @@ FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1),
 MARK, PLUNGE = Action(2, "M8", None), Plunge(3, 500.0, 0.0, -1.0)
 
 
-@pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
-def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
-    far = line((40, 0), (40, 10 * seconds), feed=600.0)
+@pytest.mark.parametrize(("length", "worth"), [(7, False), (10, True)])
+def test_a_line_that_is_long_enough_is_worth_the_way_to_the_face(length, worth):
+    far = line((40, 0), (40, length), feed=3000.0)
     shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
     assert [*map(bool, shares)] == [False, worth, worth, False]
 
@@ -97,3 +97,10 @@ def test_all_of_the_path_is_made_and_followed(path, limits):
         for move, _ in run:
             assert not share or MoveDemands(move, limits).can_be_followed(share)
             assert share or move.feed in [one.feed for one in path]
+
+
+def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
+    made = made_of([circle(10, 20, 2000.0)], SLOW)
+    feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
+    assert 2000.0 == max(feeds) > min(feeds)
+    assert abs(made.path[-1].end) == pytest.approx(30.0)

@@ -22,8 +22,7 @@ from g12.compensation.compensated import PathOfMove
 from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove, Plunge
 from g12.compensation.gouge import LeadRefusal, check_gouges
 from g12.errors import Refusal, number
-from g12.geometry.crossing import PARALLEL_SINE, crossings
-from g12.geometry.curve import Arc, Curve, Line, sweep_between
+from g12.geometry.curve import PARALLEL_SINE, Arc, Curve, Line, crossings, sweep_between
 
 JOINED = 0.04  # tolerances: parallels with an arc of less sagitta are joined without it
 ONE_CORNER = 2.0  # tolerances: ends within this distance are one corner

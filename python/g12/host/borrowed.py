@@ -28,7 +28,7 @@ from g12.host.interp import (
 )
 from g12.host.program_lines import without_line
 from g12.section.block_rules import NO_CODE, GGroup
-from g12.section.modes import SectionModes, decimal
+from g12.section.effects import SectionModes, decimal
 
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640

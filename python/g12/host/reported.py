@@ -18,8 +18,7 @@ from interpreter import MODE_INCREMENTAL
 from g12 import cut_report
 from g12.cut_report import CutReport, PlannedCut, ProgramFrame
 from g12.host import messages
-from g12.host.interp import PER_REVOLUTION, Interp
-from g12.host.modes import millimetres_per_unit
+from g12.host.interp import PER_REVOLUTION, Interp, millimetres_per_unit
 
 if TYPE_CHECKING:  # sections load without the cycles
     from g12.request.words import Words

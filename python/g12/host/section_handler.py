@@ -13,7 +13,7 @@ from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.cut_report import CutElement, SectionCut, more_text, report_text
 from g12.errors import Refusal
 from g12.geometry.curve import Arc
-from g12.host import borrowed, messages, modes
+from g12.host import borrowed, messages, units
 from g12.host.call_frame import CallFrame
 from g12.host.interp import (
     INVERSE_TIME,
@@ -37,8 +37,8 @@ from g12.lengths import DEGREES_PER_TURN
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.request.context import YZ
 from g12.section.block_rules import alone
+from g12.section.effects import SectionModes
 from g12.section.line import BlockLocation
-from g12.section.modes import SectionModes
 from g12.section.start import SectionCodes, SectionStart
 
 OTHER_WORDS = "ABDHKTUVWY"
@@ -51,14 +51,14 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     ``words`` are the letters that the block may have.
     """
     block = interp.blocks[interp.remap_level]
-    tool = modes.tool_in_spindle(interp)
+    tool = units.tool_in_spindle(interp)
     return SectionStart(
         location=BlockLocation(messages.code_of_block(interp), line),
         words=block_of(block).words,
         alone=is_alone(block, words),
         level=interp.call_level,
         position=position_of(interp, "XCZ"),
-        machine_unit=modes.program_units_per_machine_unit(interp),
+        machine_unit=units.program_units_per_machine_unit(interp),
         millimetre=1 / millimetres_per_unit(interp),
         offsets=_offsets(interp),
         x_shift=interp.axis_offset_x,
@@ -66,13 +66,13 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
             incremental=interp.distance_mode == MODE_INCREMENTAL,
             per_revolution=interp.feed_mode == PER_REVOLUTION,
             feed=interp.feed_rate,
-            speed=modes.spindle_speed(interp),
+            speed=units.spindle_speed(interp),
             motion=interp.motion_mode,
         ),
-        spindle=modes.feed_spindle(interp),
+        spindle=units.feed_spindle(interp),
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
         tool_radius=tool.radius if tool else None,
-        diameter=modes.diameter_mode(interp),
+        diameter=units.diameter_mode(interp),
         yz_plane=PLANE_CODES.get(interp.plane) == YZ,
         compensated=interp.cutter_comp_side != 0,
         offset_pending=bool(interp.arc_not_allowed),
@@ -194,7 +194,7 @@ def run_section(
         codes = codes_of(start.location.code)
         yield from _running(interp, section, codes, frame, program).run()
         if MACHINE.settings.c_clamp_shapes:
-            modes.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
+            units.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:

@@ -21,8 +21,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from g12.cut_report import CutReport, SectionCut
-from g12.geometry.crossing import crossings
-from g12.geometry.curve import FULL_TURN, Arc, Curve, Line
+from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, crossings
 from support.oracle.toolpath import NO_LENGTH, Expected
 
 BACK = math.pi - 1e-6  # radians: the contour goes back on itself

@@ -10,7 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from g12.host import borrowed, kinematics_switch, messages, modes
+from g12.host import borrowed, kinematics_switch, messages, units
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import error_text
@@ -27,7 +27,7 @@ def g12_on_abort(interp: Interp) -> None:
     """
     restore_all(interp, round(interp.params[REASON]))
     if interp.call_level:
-        _attempt(interp, modes.run_code, END_OF_SUB)
+        _attempt(interp, units.run_code, END_OF_SUB)
     after_abort_on_face(interp)
 
 
@@ -38,9 +38,9 @@ def restore_all(interp: Interp, reason: int) -> None:
     """
     _attempt(interp, borrowed.after_abort, time.monotonic())
     if MACHINE.settings.c_clamp:
-        _attempt(interp, modes.run_code, f"M{MACHINE.settings.c_clamp[1]}")
+        _attempt(interp, units.run_code, f"M{MACHINE.settings.c_clamp[1]}")
     if MACHINE.settings.on_abort_command:
-        _attempt(interp, modes.run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
+        _attempt(interp, units.run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
 
 
 def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> None:

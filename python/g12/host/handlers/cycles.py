@@ -19,11 +19,11 @@ from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.machine import MACHINE
-from g12.host.modes import program_units_per_machine_unit
+from g12.host.units import program_units_per_machine_unit
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE
 from g12.request.words import Words
 
-ARCS = CLOCKWISE, COUNTERCLOCKWISE  # of G12 and G13
+PERIMETER, POCKET = False, True
 
 
 def check_at_start() -> None:
@@ -113,26 +113,31 @@ def prepare_frame(interp: Interp, arc: int) -> int:
     return hand_over(interp, words, plan_frame(words, arc, entry_of_machine()))
 
 
-def prolog(prepare: Callable[..., int], argument: int) -> Callable[..., int]:
-    """Return the prolog of a code: ``prepare`` for its arc code, or its kind of event."""
+def prolog(prepare: Callable[..., int], which: int) -> Callable[..., int]:
+    """Return the prolog of a code: it prepares the arc or the event that the code stands for."""
 
     @messages.handler
     def prolog_of_code(self, **words):
         messages.settle(self)
-        return prepare(self, argument)
+        return prepare(self, which)
 
     return prolog_of_code
 
 
-g12_haas, g13_haas = (prolog(prepare_haas, arc) for arc in ARCS)
-g12_yasnac, g13_yasnac = (prolog(prepare_yasnac, arc) for arc in ARCS)
-g12_mitsubishi, g13_mitsubishi = (prolog(prepare_mitsubishi, arc) for arc in ARCS)
-g12_bore, g13_bore = (prolog(prepare_bore, arc) for arc in ARCS)
-g12_thread, g13_thread = (prolog(prepare_thread, arc) for arc in ARCS)
-g12_frame, g13_frame = (prolog(prepare_frame, arc) for arc in ARCS)
-circle_mill_perimeter, circle_mill_pocket = (  # G12.2 and o<circle_mill> call, G13.2
-    prolog(prepare_circle_mill, pocket) for pocket in (False, True)
-)
+g12_haas = prolog(prepare_haas, CLOCKWISE)
+g13_haas = prolog(prepare_haas, COUNTERCLOCKWISE)
+g12_yasnac = prolog(prepare_yasnac, CLOCKWISE)
+g13_yasnac = prolog(prepare_yasnac, COUNTERCLOCKWISE)
+g12_mitsubishi = prolog(prepare_mitsubishi, CLOCKWISE)
+g13_mitsubishi = prolog(prepare_mitsubishi, COUNTERCLOCKWISE)
+g12_bore = prolog(prepare_bore, CLOCKWISE)
+g13_bore = prolog(prepare_bore, COUNTERCLOCKWISE)
+g12_thread = prolog(prepare_thread, CLOCKWISE)
+g13_thread = prolog(prepare_thread, COUNTERCLOCKWISE)
+g12_frame = prolog(prepare_frame, CLOCKWISE)
+g13_frame = prolog(prepare_frame, COUNTERCLOCKWISE)
+circle_mill_perimeter = prolog(prepare_circle_mill, PERIMETER)  # G12.2, o<circle_mill> call
+circle_mill_pocket = prolog(prepare_circle_mill, POCKET)  # G13.2
 
 
 @messages.handler

@@ -12,7 +12,7 @@ from collections.abc import Container
 from interpreter import INTERP_OK
 
 from g12.errors import Refusal
-from g12.host import borrowed, messages, modes, reported
+from g12.host import borrowed, messages, reported, units
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import Interp
@@ -130,7 +130,7 @@ def tool_spindle(interp: Interp) -> int:
     """Return the number of the tool's spindle, never that of a spindle that is C."""
     if MACHINE.spindle_c_code and interp.num_spindles > LIVE_SPINDLE:
         return LIVE_SPINDLE
-    return modes.feed_spindle(interp)
+    return units.feed_spindle(interp)
 
 
 def shape_at_work(interp: Interp) -> tuple[str, int]:

@@ -96,7 +96,7 @@ def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
     if cut.at >= cut.end:
         return Deviation()
     if cut.is_section:
-        return max(_of_section(cut, program), default=Deviation(), key=lambda each: each.size)
+        return _of_section(cut, program)
     if isinstance(cut.plan, ThreadCut):
         return _of_thread(cut, cut.plan, program)
     if cut.is_circle:
@@ -116,8 +116,8 @@ def _sideways(cut: Cut, program: TracedProgram) -> Iterator[tuple[int, np.ndarra
             yield index, points
 
 
-def _of_section(cut: Cut, program: TracedProgram) -> Iterator[Deviation]:
-    groups, at, chords = _groups(cut), 0, None
+def _of_section(cut: Cut, program: TracedProgram) -> Deviation:
+    groups, at, worst, chords = _groups(cut), 0, Deviation(), None
     moves = groupby(_sideways(cut, program), key=lambda own: program.moves[own[0]].line)
     for line, own in moves:
         found = next((n for n in range(at, len(groups)) if groups[n].line == line), None)
@@ -125,13 +125,25 @@ def _of_section(cut: Cut, program: TracedProgram) -> Iterator[Deviation]:
             continue
         at, group = found, groups[found]
         for index, points in own if group.near else ():
-            for point in points[:: max(1, len(points) // SAMPLES)]:
+            for point in points[:: math.ceil(len(points) / SAMPLES)]:
                 here = complex(*point[:2])
-                off = min(abs(curve.distance(here) - group.radius) for curve in group.near)
-                if off > LAST_DECIMAL:  # a move may cut more lines than its own
+                off = _off_curves(here, group, worst.size)
+                if off > max(worst.size, LAST_DECIMAL):  # a move may cut more lines than its own
                     chords = chords or _chords(cut)
                     off = min(off, _off_chords(here, *chords))
-                yield Deviation(off, point, index)
+                if off > worst.size:
+                    worst = Deviation(off, point, index)
+    return worst
+
+
+def _off_curves(at: complex, group: _Group, enough: float) -> float:
+    """Return how far a point is off the nearest of some curves, or no more than is enough."""
+    off = math.inf
+    for curve in group.near:
+        off = min(off, abs(curve.distance(at) - group.radius))
+        if off <= enough:
+            break
+    return off
 
 
 def _chords(cut: Cut) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -170,13 +182,13 @@ def _groups(cut: Cut) -> list[_Group]:
 
 
 def _around_group(curves: Sequence[Curve], first: int, last: int, least: int) -> list[Curve]:
-    """Return curves with those beside them that a move may cut as well: CAM's are short."""
+    """Return curves, then those beside them that a move may cut as well: CAM's are short."""
     begin, end = max(first - NEIGHBOURS, least), min(last + NEIGHBOURS, len(curves))
     while begin > least and abs(curves[begin].start - curves[first].start) < SHORT:
         begin -= 1
     while end < len(curves) and abs(curves[end - 1].end - curves[last - 1].end) < SHORT:
         end += 1
-    return list(curves[begin:end])
+    return [*curves[first:last], *curves[begin:first], *curves[last:end]]
 
 
 def section_curve(element: CutElement, cut: Cut) -> Curve:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The handlers of G12.1 and G13.1, whatever codes the REMAP lines give them."""
+"""The handlers of G12.1, G13.1 and G7.1, whatever codes the REMAP lines give them."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
 
+from g12.cylinder.cylinder_section import RADIUS, Cylinder
 from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
@@ -22,7 +23,7 @@ from g12.host.section_handler import (
 )
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.polar.polar_section import Polar
-from g12.section.start import SectionCodes, codes_of_section
+from g12.section.start import SectionCodes, codes_of_section, codes_with_word
 from g12.shapes import SHAPE_SUBS
 
 MDI_LINE = 0  # the number of a line in MDI
@@ -44,7 +45,7 @@ def polar_on(self, **words) -> Iterator[int]:
     if not in_shape:
         messages.settle(self)
     yield from run_section(
-        self, Polar, _codes, lambda start: Polar(start, section_machine(), in_shape=in_shape)
+        self, Polar, _polar_codes, lambda start: Polar(start, section_machine(), in_shape=in_shape)
     )
 
 
@@ -83,5 +84,23 @@ def _leave_face(interp: Interp) -> Iterator[int]:
         raise Refusal(kinematics_switch.not_switched(), code)
 
 
-def _codes(code: str) -> SectionCodes:
+def _polar_codes(code: str) -> SectionCodes:
     return codes_of_section(code, MACHINE.remaps.values(), polar_on.__name__, polar_off.__name__)
+
+
+@messages.waiting_handler
+def cylinder_mode(self, **words) -> Iterator[int]:
+    """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
+    block, code = self.blocks[self.remap_level], messages.code_of_block(self)
+    if not (block.c_flag and block.c_number == 0.0):
+        refuse_typed(self)
+        messages.settle(self)
+        yield from run_section(
+            self, Cylinder, _cylinder_codes, lambda start: Cylinder(start, section_machine())
+        )
+    elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
+        raise Refusal(f"{RADIUS}0 must be alone in its block", code)
+
+
+def _cylinder_codes(code: str) -> SectionCodes:
+    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
