@@ -25,7 +25,7 @@ from support.sim_machines import SIM
 
 FEEDS = {1000: 1.02, 2000: 1.03, 3000: 1.03}  # and the most of the ideal time
 ROUNDING = 1e-3
-NO_SLOWER = 1.19  # than segments at 1000 mm/s²: the axes of the face have 707, whose root that is
+NO_SLOWER = 1.04  # than segments at 1000 mm/s²: AXIS_X of the face has 707, in segments too
 THIRD = 2 * math.pi / 3  # C turns the other way in between
 CIRCLE = [  # r 10, 20 off the axis
     Round(20 + 10 * cmath.rect(1, turn), 20, THIRD) for turn in (0, THIRD, 2 * THIRD)

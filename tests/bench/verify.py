@@ -2,12 +2,14 @@
 """verify: CPU time and memory of the whole process for programs of many pockets."""
 
 import math
+import random
 import sys
 import tempfile
 from pathlib import Path
 
 from bench import Figure, used
 from support.sim_machines import ROOT, SIM
+from support.valid_programs import valid_program
 
 MILL, LATHE = SIM / "mill_mm_headless.ini", SIM / "lathe_mm_headless.ini"
 FIRST = ["G21 G17 G40 G49 G54 G80 G90 G94 F600", "T4 M6", "S2000 M3", "G0 Z5"]
@@ -26,7 +28,9 @@ def figures():
         thousand = verified(folder, MILL, milled(1000))
         how = "pockets of 1,000 sizes, without a stock"
         yield Figure("verify: CPU time of 1,000 pockets", thousand.seconds, 6.0, how, " s")
-        most = thousand.memory
+        few, many = (verified(folder, MILL, valid(n)) for n in (100, 1000))
+        yield against("verify: CPU time of 1,000 random pockets, against 100", many, few, 12.0)
+        most = max(thousand.memory, many.memory)
         for name, contour in CONTOURS.items():
             few, many = (verified(folder, LATHE, contour(n)) for n in (1000, 10_000))
             what = f"verify: CPU time of 10,000 polar lines, {name}, against 1,000"
@@ -57,6 +61,11 @@ def milled(count):
         radius = LEAST + (MOST - LEAST) * index / count
         lines += [f"G0 X{x} Y{y}", "G0 Z1", f"G13 I7 K{radius:.3f} Q4 Z-3 D4", "G0 Z5"]
     return lines
+
+
+def valid(count):
+    """Return a program of so many random pockets."""
+    return valid_program("haas", random.Random(1), count).splitlines()
 
 
 def plain(count):

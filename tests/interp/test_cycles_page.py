@@ -59,7 +59,13 @@ def page(tmp_path, monkeypatch):
 
 
 def test_a_machine_offers_the_forms_of_its_codes(page):
-    assert [form.name for form in page("mill_yasnac_mm").forms] == ["yasnac", "circle_mill"]
+    assert [form.name for form in page("mill_yasnac_mm").forms] == [
+        "yasnac",
+        "circle_mill",
+        "bore",
+        "thread",
+        "frame",
+    ]
     assert len(page("lathe_mm").forms) == 5
 
 

@@ -332,3 +332,14 @@ def test_elements_are_not_compared_each_with_each(made, side):
 
     assert planned(2000)() == ""
     assert growth(planned, 500) < 10
+
+
+@pytest.mark.parametrize(
+    ("heights", "deep"), [([-2.0] * 5, False), ([-2.0, -2.0, -1.0, -1.0, -1.0], True)]
+)
+def test_a_pass_behind_a_wall_clears_it_where_it_is_as_deep(heights, deep):
+    """Between both a tool comes down, half a millimetre into the wall: there it must be gone."""
+    behind = [-39 - 30j, -39 - 1j, -38 - 1j, -10.5 - 1j, -10.5 + 30j]
+    between = [-33 + 30j, -33 + 2.5j]
+    text = refusal(through_air((-2.0, WALL), (-3.0, between), (heights, behind)))
+    assert ("cannot follow both lines 3 and 5" in text) is deep

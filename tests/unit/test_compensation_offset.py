@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour
 from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.section.modes import Action
+from g12.section.effects import Action
 from support.contour_geometry import distance, shape_of
 from support.random_contours import (
     TOLERANCE,

@@ -87,3 +87,8 @@ def turned_back(move):
 
 def test_at_the_pole_the_tool_always_stops():
     assert stops([line(5, 0, 0, 0, feed=1.0), line(0, 0, -5, 0, feed=1.0)], 1.0, 1e3, 1e2)[0]
+
+
+def test_down_and_up_again_is_a_turn_back():
+    pecks = [Plunge(1, FEED, 0.0, -5.0), Plunge(2, FEED, -5.0, -1.0), Plunge(3, FEED, -1.0, 0.0)]
+    assert stops(pecks, ROUNDING, 1000.0, C) == [True, False, True]

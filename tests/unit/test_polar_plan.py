@@ -12,7 +12,7 @@ from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.moves.steps import Segments
 from g12.polar.polar_section import PolarSettings, plan
-from g12.section.modes import Action
+from g12.section.effects import Action
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Plunge
 from g12.polar.face import FaceLimits, MoveDemands
 from g12.polar.quickest import quickest
-from g12.section.modes import Action
+from g12.section.effects import Action
 from support import planned_moves
 from support.growth import growth
 
@@ -49,6 +49,12 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
     assert in_segments[0].length < 40
     for before, after in zip(made.path, made.path[1:]):
         assert before.end == pytest.approx(after.start)
+
+
+@pytest.mark.parametrize("feed", [1000.0, 3000.0])
+def test_along_a_radius_one_segment_is_as_quick_as_the_face(feed):
+    slot = [line((18, 0), (0, 0), feed=feed), line((0, 0), (-18, 0), feed=feed)]
+    assert shares_of(quickest(slot, [True, True], QUICK)) == [0.0, 0.0]
 
 
 FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
@@ -97,3 +103,10 @@ def test_all_of_the_path_is_made_and_followed(path, limits):
         for move, _ in run:
             assert not share or MoveDemands(move, limits).can_be_followed(share)
             assert share or move.feed in [one.feed for one in path]
+
+
+def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
+    made = made_of([circle(10, 20, 2000.0)], SLOW)
+    feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
+    assert 2000.0 == max(feeds) > min(feeds)
+    assert abs(made.path[-1].end) == pytest.approx(30.0)

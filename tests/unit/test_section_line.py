@@ -5,15 +5,15 @@ import pytest
 
 from g12.errors import LONGEST_BLOCK
 from g12.polar.polar_section import POLAR_WORDS
-from g12.section.block_rules import SectionBlock
-from g12.section.line import BlockLocation, split_line, split_words
-from g12.section.modes import (
+from g12.section.block_rules import SectionBlock, alone, m_code_alone
+from g12.section.effects import (
     SectionModes,
     action_text,
     comment_text,
     decimal,
     modes_after,
 )
+from g12.section.line import BlockLocation, split_line, split_words
 
 HERE = BlockLocation("G12.1", 7)
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
@@ -195,3 +195,13 @@ def test_a_line_that_is_not_split_says_nothing_of_its_words(text):
     line = split_line(text, POLAR_WORDS)
     assert (line.letters, line.codes, line.assignments, line.spindle) == ((), (), "", "")
     assert (line.rewritten, line.relative, line.exact_stop) == (False, "", False)
+
+
+def test_alone():
+    assert alone(block(g={1: 131}))
+    assert not alone(block(g={1: 131, 3: 900}))
+    assert not alone(block(g={1: 131}, m={8: 8}))
+    assert not alone(block(g={1: 131}, X=1.0))
+    assert m_code_alone(block(m={10: 410}, P=3.0), 410)
+    assert not m_code_alone(block(m={10: 410}, X=3.0), 410)
+    assert not m_code_alone(block(m={10: 410, 8: 8}), 410)

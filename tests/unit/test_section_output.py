@@ -11,7 +11,7 @@ from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
 from g12.polar.polar_section import Polar
-from g12.section.modes import Action, SectionModes
+from g12.section.effects import Action, SectionModes
 from g12.settings import Settings
 from support.section_starts import START
 

@@ -431,3 +431,19 @@ def test_how_far_the_axes_go_to_holes():
     side = planned("side_holes", found=FOUND._replace(x=21.0), step_angle=-20)
     assert side.locals["travel"] == 2
     assert side.extent == ((12, 22), (-10, -10), (-60, 0))
+
+
+@pytest.mark.parametrize(
+    ("peck", "expected"),
+    [
+        (LEFT_OUT, (1, 8, 0, 0)),
+        (3, (3, 3, 1, 0.254)),
+        (-3, (3, 3, 0, 0.254)),
+        (8, (1, 8, 1, 0.254)),
+        (4, (2, 4, 1, 0.254)),
+        (0.2, (40, 0.2, 1, 0.1)),
+    ],
+)
+def test_pecks(peck, expected):
+    numbers = numbers_of("face_holes", peck=peck)
+    assert taken(numbers, "pecks", "step", "full", "clear") == pytest.approx(expected)

@@ -18,7 +18,7 @@ from typing import NamedTuple, NoReturn
 from g12.errors import Refusal, number
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, recentred, sweep_between
 from g12.lengths import LARGEST
-from g12.section.modes import Action, BlockEnd
+from g12.section.effects import Action, BlockEnd
 
 SAME_POINT = 1e-6  # program units: points within it coincide, a shorter move is rounding
 RADIUS_TOLERANCE_RATIO = 0.001  # of the radius: the mismatch that LinuxCNC allows any arc

@@ -27,7 +27,7 @@ from g12.host.interp import (
     millimetres_per_unit,
 )
 from g12.section.block_rules import NO_CODE, GGroup
-from g12.section.modes import SectionModes, decimal
+from g12.section.effects import SectionModes, decimal
 
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640

@@ -19,7 +19,7 @@ from g12.errors import Refusal, number
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.machine_ini import ACCELERATION_PINS
-from g12.section.modes import decimal
+from g12.section.effects import decimal
 
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
 REQUEST_PIN, END_PIN = "polar-xzc.request", "polar-xzc.end-request"  # this is the newest

@@ -37,8 +37,8 @@ from g12.lengths import DEGREES_PER_TURN
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.request.context import YZ
 from g12.section.block_rules import alone
+from g12.section.effects import SectionModes
 from g12.section.line import BlockLocation
-from g12.section.modes import SectionModes
 from g12.section.start import SectionCodes, SectionStart
 
 OTHER_WORDS = "ABDHKTUVWY"

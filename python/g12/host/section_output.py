@@ -37,8 +37,8 @@ from g12.moves.setup import SectionKind
 from g12.moves.steps import FaceMove, FaceSwitch, MachinePosition, Segment, Segments, Step
 from g12.polar.face import blending_halves
 from g12.section.block_rules import G1
+from g12.section.effects import Action, SectionModes, decimal
 from g12.section.line import BlockLocation
-from g12.section.modes import Action, SectionModes, decimal
 
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"

@@ -31,11 +31,10 @@ from g12.host.interp import (
 )
 from g12.host.program_lines import ProgramLines, error_text
 from g12.moves.setup import SectionKind
-from g12.section import block_rules
-from g12.section import modes as section_modes
+from g12.section import block_rules, effects
 from g12.section.block_rules import NO_CODE, GGroup, SectionBlock
+from g12.section.effects import Action, BlockEnd, SectionModes
 from g12.section.line import BlockLocation, TextLine
-from g12.section.modes import Action, BlockEnd, SectionModes
 from g12.settings import MOST_FEED
 
 ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
@@ -165,7 +164,7 @@ class SectionReader:
         code = block.m[block_rules.MGroup.MODAL_STATE]
         if code in block_rules.STATE_CODES:
             self._state_code(code)
-        self.set_modes(section_modes.modes_after(self.modes, block, self._speed(line, block)))
+        self.set_modes(effects.modes_after(self.modes, block, self._speed(line, block)))
 
     def _speed(self, line: TextLine, block: SectionBlock) -> float:
         """Return the commanded speed of the spindle that feeds per revolution refer to."""
@@ -190,7 +189,7 @@ class SectionReader:
 
         Between the moves a refusal would come too late.
         """
-        text = section_modes.action_text(block, line)
+        text = effects.action_text(block, line)
         if text:
             self.interp.read(text)
         return text
@@ -205,7 +204,7 @@ class SectionReader:
             self._compensate(block.g[GGroup.COMPENSATION] // 10)
         if block.moves:
             self._move(block.motion, block.words, line.relative)
-        self._mark(section_modes.stop_text(block))
+        self._mark(effects.stop_text(block))
 
     def comment(self, line: TextLine) -> None:
         """Queue a comment, message or report, with the present values of its parameters."""
@@ -215,8 +214,8 @@ class SectionReader:
             if "#" in comment:
                 self.show_plane()
                 self.interp.read("")  # updates #5420
-            text = section_modes.comment_text(comment, self._parameter)
-            modes = self.modes if section_modes.may_fail(comment) else None
+            text = effects.comment_text(comment, self._parameter)
+            modes = self.modes if effects.may_fail(comment) else None
             self.contour.mark(Action(self.program.shown_line, text, modes))
 
     def returned(self) -> None:

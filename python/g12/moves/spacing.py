@@ -90,7 +90,8 @@ def _portions(stretch: Stretch, density: Density) -> list[_Portion]:
     apsides = [
         apsis
         for apsis in stretch.apsides
-        if min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_DIVIDING
+        if start < apsis < end
+        and min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_DIVIDING
     ]
     divisions = [start, *apsides, end]
     losses = [LOSS, *(0.0 for _ in apsides), LOSS]

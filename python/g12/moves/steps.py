@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge, Start
 from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, TooManySegments
+from g12.section.effects import Action, BlockEnd
 from g12.section.line import AxisLetters
-from g12.section.modes import Action, BlockEnd
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
 # STOP_SHARE is for a stop by G61, into which LinuxCNC cuts the corner before it deeper. Blended

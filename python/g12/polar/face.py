@@ -35,6 +35,7 @@ CHECKED = 16  # points evaluated on a line, and on each quarter of an arc
 OVERSHOOT = 0.002  # seconds until polar_xzc notices a higher override
 LEAST_SPEED = 1e-3  # program units per second
 MOST_TURNING = 1e6  # radians for a unit of length: at the pole
+NO_TURNING = 1e-6  # likewise: along a radius
 LEAST_SQUARE = 1e-12  # of p and q / R together: the axis does not accelerate
 FOLLOW_SLACK = 1.0 + 1e-9  # rounding: X and Y together may have just what the slide has
 SEGMENTS, SOFT = 1.2, 4.0  # measured on a circle: how far segments fall short of their speed
@@ -128,8 +129,11 @@ def _slowness(turning: float, feed: float, limits: FaceLimits) -> float:
     """Return the approximate time of segments for a unit of length in which C turns so much.
 
     ``segments_speed`` applies where C accelerates as quickly as the slide. Nearer to the pole the
-    chords are shorter, with the root of the distance, and C is slower.
+    chords are shorter, with the root of the distance, and C is slower. Where C does not turn, a
+    segment has any length.
     """
+    if turning < NO_TURNING:
+        return 60.0 / feed
     even = limits.slide_acceleration / limits.c_acceleration
     slowest: float = max(1.0, even * turning) ** 0.75 / (
         SEGMENTS * max(limits.segments_speed, LEAST_SPEED)

@@ -18,13 +18,15 @@ DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
 class CycleExtent(NamedTuple):
     """The largest circle that a cycle's tool centre follows, in program coordinates and units.
 
-    ``heights`` are the other Z levels of the cycle.
+    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
+    whose centres are as far as ``corners`` from its own.
     """
 
     plane: str
     centre: SpacePoint
     radius: float
     heights: tuple[float, ...] = ()
+    corners: tuple[float, float] = (0.0, 0.0)
 
     def points(self) -> list[SpacePoint]:
         x, y, z = self.centre
@@ -50,9 +52,13 @@ class MachineFrame(NamedTuple):
         return x, y, z
 
     def half_widths(self, extent: CycleExtent) -> list[float]:
-        """Return the circle's extent from its centre along each axis, in machine units."""
-        first, second = (self._turned(*along) for along in DIRECTIONS[extent.plane])
-        return [self.unit * extent.radius * hypot(*pair) for pair in zip(first, second)]
+        """Return the path's extent from its centre along each axis, in machine units."""
+        first, second = (self._turned(*axis) for axis in DIRECTIONS[extent.plane])
+        along, across = extent.corners
+        return [
+            self.unit * (extent.radius * hypot(one, two) + abs(one * along) + abs(two * across))
+            for one, two in zip(first, second)
+        ]
 
     def _turned(self, x: float, y: float, z: float) -> SpacePoint:
         turn = radians(self.rotation)

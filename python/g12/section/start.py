@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from g12.machine_ini import Remap, code_number
 from g12.section.block_rules import GGroup, SectionBlock
+from g12.section.effects import SectionModes
 from g12.section.line import BlockLocation
-from g12.section.modes import SectionModes
 
 
 class SectionStart(NamedTuple):

@@ -33,6 +33,9 @@ HANDLERS = {  # of a REMAP line: the feature whose forms it makes possible
     "g12_yasnac": "yasnac",
     "g12_mitsubishi": "mitsubishi",
     "circle_mill_pocket": "circle-mill",
+    "g12_bore": "bore",
+    "g12_thread": "thread",
+    "g12_frame": "frame",
     "polar_shape": "polar-shapes",
 }
 KEPT = "g12/cycles-page.json"  # below XDG_STATE_HOME

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import MultiLineString
 
-from g12.cut_report import CutElement
+from g12.cut_report import CutElement, ThreadCut
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.path.nearest import on_segments
 from g12.tools.verify.model.cut import Cut, curve_points
@@ -96,7 +96,9 @@ def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
     if cut.at >= cut.end:
         return Deviation()
     if cut.is_section:
-        return max(_of_section(cut, program), default=Deviation(), key=lambda each: each.size)
+        return _of_section(cut, program)
+    if isinstance(cut.plan, ThreadCut):
+        return _of_thread(cut, cut.plan, program)
     if cut.is_circle:
         return _of_circle(cut, program)
     return _of_holes(cut, program) if cut.places else _of_shape(cut, program)
@@ -114,8 +116,8 @@ def _sideways(cut: Cut, program: TracedProgram) -> Iterator[tuple[int, np.ndarra
             yield index, points
 
 
-def _of_section(cut: Cut, program: TracedProgram) -> Iterator[Deviation]:
-    groups, at, chords = _groups(cut), 0, None
+def _of_section(cut: Cut, program: TracedProgram) -> Deviation:
+    groups, at, worst, chords = _groups(cut), 0, Deviation(), None
     moves = groupby(_sideways(cut, program), key=lambda own: program.moves[own[0]].line)
     for line, own in moves:
         found = next((n for n in range(at, len(groups)) if groups[n].line == line), None)
@@ -123,13 +125,25 @@ def _of_section(cut: Cut, program: TracedProgram) -> Iterator[Deviation]:
             continue
         at, group = found, groups[found]
         for index, points in own if group.near else ():
-            for point in points[:: max(1, len(points) // SAMPLES)]:
+            for point in points[:: math.ceil(len(points) / SAMPLES)]:
                 here = complex(*point[:2])
-                off = min(abs(curve.distance(here) - group.radius) for curve in group.near)
-                if off > LAST_DECIMAL:  # a move may cut more lines than its own
+                off = _off_curves(here, group, worst.size)
+                if off > max(worst.size, LAST_DECIMAL):  # a move may cut more lines than its own
                     chords = chords or _chords(cut)
                     off = min(off, _off_chords(here, *chords))
-                yield Deviation(off, point, index)
+                if off > worst.size:
+                    worst = Deviation(off, point, index)
+    return worst
+
+
+def _off_curves(at: complex, group: _Group, enough: float) -> float:
+    """Return how far a point is off the nearest of some curves, or no more than is enough."""
+    off = math.inf
+    for curve in group.near:
+        off = min(off, abs(curve.distance(at) - group.radius))
+        if off <= enough:
+            break
+    return off
 
 
 def _chords(cut: Cut) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -168,13 +182,13 @@ def _groups(cut: Cut) -> list[_Group]:
 
 
 def _around_group(curves: Sequence[Curve], first: int, last: int, least: int) -> list[Curve]:
-    """Return curves with those beside them that a move may cut as well: CAM's are short."""
+    """Return curves, then those beside them that a move may cut as well: CAM's are short."""
     begin, end = max(first - NEIGHBOURS, least), min(last + NEIGHBOURS, len(curves))
     while begin > least and abs(curves[begin].start - curves[first].start) < SHORT:
         begin -= 1
     while end < len(curves) and abs(curves[end - 1].end - curves[last - 1].end) < SHORT:
         end += 1
-    return list(curves[begin:end])
+    return [*curves[first:last], *curves[begin:first], *curves[last:end]]
 
 
 def section_curve(element: CutElement, cut: Cut) -> Curve:
@@ -216,6 +230,36 @@ def _of_circle(cut: Cut, program: TracedProgram) -> Deviation:
         index, innermost = min(rings.items(), key=lambda ring: ring[1])
         reached = abs(innermost - cut.cutter - cut.inner)
     return max(Deviation(reached, program.tip(index, 0.0)[0], index), off, key=lambda d: d.size)
+
+
+def _of_thread(cut: Cut, thread: ThreadCut, program: TracedProgram) -> Deviation:
+    """Return how far a thread is off its radius, its groove, or its ends.
+
+    The half circles belong to the groove as well, as far as they are at its radius.
+    """
+    moves = list(_sideways(cut, program))
+    if not moves or not cut.cutter:
+        return Deviation()
+    points = np.concatenate([points for _, points in moves])
+    own = np.repeat([index for index, _ in moves], [len(points) for _, points in moves])
+    at = points[:, 0] + 1j * points[:, 1] - complex(*cut.centre)
+    z, side = points[:, 2] - cut.zero[2], 1 if thread.outside else -1
+    finished = thread.small if thread.outside else thread.large
+    wall = finished * cut.mm + thread.taper * (z - thread.top * cut.mm)
+    beside = side * (np.abs(at) - wall) - cut.cutter
+    nearest = int(beside.argmin())
+    pitch = thread.pitch * cut.mm
+    cutting = np.flatnonzero(beside < beside[nearest] + WALL)
+    at, z = at[cutting], z[cutting]
+    groove = np.exp(2j * np.pi * z / pitch) * at.conj()
+    along = np.abs(np.angle(groove * groove[0].conj())) * abs(pitch) / (2 * np.pi)
+    top, bottom = thread.top * cut.mm, thread.levels[0] * cut.mm
+    beyond = (thread.teeth - 1) * abs(pitch)
+    short = max(z.min() - bottom - abs(pitch), top - z.max() - beyond, 0.0)
+    worst = cutting[along.argmax()]
+    found = (abs(beside[nearest]), nearest), (float(along.max()), worst), (short, nearest)
+    size, place = max(found, key=lambda each: each[0])
+    return Deviation(float(size), points[place], int(own[place]))
 
 
 def _of_shape(cut: Cut, program: TracedProgram) -> Deviation:

@@ -28,7 +28,7 @@ from g12.tools.verify.model.cut import Cut, cuts_of
 WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
 CHORD = 2e-3  # of the paths that are judged
-KEPT_TIPS = 4096  # moves
+KEPT_TIPS = 16384  # moves
 A, B = 3, 4
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
