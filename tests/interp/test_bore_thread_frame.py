@@ -41,20 +41,24 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "P": "missing", "P3": "ENTRY_ANGLE", "Z": "missing", "Z0": "below", "Z4": "below",
         "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",
-        "J1": "not a word",
+        "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter",
     },
+    "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross"},
+    "G13.5 Z-5 R0 I4 P.2 D0": {"P3": "ENTRY_ANGLE"},
+    "G12.6 Z-9 R0 I1 K.6 P.3 H1 D0": {"K.01": "too thin", "E.3": "no diameter", "E.1": "too thin"},
     "G12.6 Z-9 R0 I6 P1 D1": {
         "I0": "greater", "I": "missing", "P": "missing", "P0": "must not be 0", "P12": "too large",
         "Z": "missing", "Z1": "below", "Z-.5": "longer", "R6": "retract", "K0": "greater",
         "K6": "less", "K2.9": "tool diameter", "H2": "most", "H-1": "least", "J0": "least",
-        "J1.5": "whole", "Q0": "greater", "Q-1": "greater", "E3": "diameter", "D99": "table",
-        "I3.2": "tool diameter",
+        "J1.5": "whole", "Q0": "greater", "Q-1": "greater", "D99": "table", "I3.2": "tool diameter",
+        "E3": "more than the length", "E-2": "more than the length",
     },
     "G13.7 Z-4 I40 J30 R5 D1": {
         "I0": "greater", "I-4": "greater", "I6": "half", "I": "missing", "J": "missing",
         "R": "missing", "R-1": "least", "R2": "tool radius", "R16": "half", "Z": "missing",
         "Z5": "below", "K0": "greater", "Q0": "greater", "Q-1": "greater", "P0": "greater",
-        "H3": "most", "E-1": "least", "E13": "tool diameter", "L1": "not a word", "D99": "table",
+        "H3": "most", "E-1": "least", "E13": "tool radius", "E3.1": "tool radius",
+        "L1": "not a word", "D99": "table",
     },
 }  # fmt: skip
 CASES = [(good, wrong, rule) for good, rows in WRONG.items() for wrong, rule in rows.items()]

@@ -167,6 +167,8 @@ MESSAGES = {
         "G13.6 Z-5 R0 I5 K5 P1.5 D3",
         "G13.6 Z-1 R0 I5 P1.5 D3",
         "G13.6 Z-12 R0 I5 P1.5 E1 D3",
+        "G13.6 Z-12 R0 I5 P1.5 E6.25 D3",
+        "G12.6 Z-12 R0 I1 P1 K.1 H1 D0",
         "G13.6 Z-12 R0 I5 P1.5 H2 D3",
     ),
     "ngc/frame.md": (
@@ -177,6 +179,7 @@ MESSAGES = {
         "G13.7 Z9 I40 J30 R5 D3",
         "G13.7 Z-4 I40 J6 R3 D3",
         "G13.7 Z-4 I40 J30 R5 H1 Q4 D3",
+        "G13.7 Z-4 I40 J30 R5 E4 D3",
         "G13.7 Z-4 I40 J20.6 R5 Q4.6 D3",
     ),
     "ngc/polar.md": (

@@ -4,7 +4,8 @@
 The motions are in `ngc/g12_bore.ngc`. Rules, in the order of the checks: the modes of
 `check_modes`; every word known; Z required, R not above the tool, Z below it; I and P required,
 above 0; K from 0, less than I; Q above 0; L whole, from 0; the cutter; I greater than its radius;
-in the full a slope up to [G12] ENTRY_ANGLE; not too many circles.
+no material on the way back to the centre; in the full a slope up to [G12] ENTRY_ANGLE; not too many
+circles.
 """
 
 from math import atan, ceil, degrees, pi, radians, tan
@@ -34,8 +35,10 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     check_wall(words, wall, cutter)
     last = wall - cutter.radius
     first = first_radius(cutter.radius, last, opened, stepover)
+    if cutter.radius:
+        check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
     steps = steps_between(first, last, stepover, words.context.rounding) if stepover else 0
-    if opened < 2 * cutter.radius:
+    if not opened or opened < 2 * cutter.radius:
         check_slope(words, pitch, first, steepest)
     turns = turns_of(hole.depth, pitch, arc)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
@@ -53,19 +56,15 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
         "circles": springs + 1,
         "arc": arc,
     }
-    core = first - cutter.radius
     centre = hole.x, hole.y, hole.bottom
 
     def cut() -> PocketCut:
         first_wall = first + cutter.radius
-        left = core if core > opened else -1.0
         step = stepover or 0.0
-        return PocketCut(XY, centre, wall, first_wall, step, left, (hole.bottom,), cutter.used)
+        return PocketCut(XY, centre, wall, first_wall, step, -1.0, (hole.bottom,), cutter.used)
 
     extent = CycleExtent(XY, centre, last, (hole.start, hole.bottom))
-    message = remains(words, wall, stepover, cutter) if core > opened else None
-    message = message or between_helices(words, stepover, cutter)
-    return cutter.plan(numbers | turns, extent, cut, message)
+    return cutter.plan(numbers | turns, extent, cut)
 
 
 def open_radius(words: Words, wall: float) -> float:
@@ -83,6 +82,22 @@ def check_wall(words: Words, wall: float, cutter: Chosen) -> None:
     if wall - cutter.radius < context.smallest_ring - context.rounding:
         size, least = context.tool_size(cutter.radius), number(context.smallest_ring)
         rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
+        raise words.refuse_word("I", wall, rule)
+
+
+def check_way_back(
+    words: Words, wall: float, has_core: bool, stepover: float | None, cutter: Chosen
+) -> None:
+    """Refuse a core or a ring between helices: the tool returns to the centre at full depth."""
+    size = words.context.tool_size(2 * cutter.radius)
+    if stepover and stepover > 2 * cutter.radius:
+        rule = f"must not exceed the tool diameter {size} ({cutter.source})"
+        raise words.refuse_word("Q", stepover, rule)
+    if has_core:
+        rule = (
+            f"is greater than the tool diameter {size} ({cutter.source}): the tool would cross a"
+            " core at full depth. Give Q, or K if a hole is open"
+        )
         raise words.refuse_word("I", wall, rule)
 
 
@@ -104,25 +119,3 @@ def check_slope(words: Words, pitch: float, radius: float, steepest: float) -> N
             f" {number(steepest)}: P{fits} fits, or K if a hole is open"
         )
         raise words.refuse_word("P", pitch, rule)
-
-
-def remains(words: Words, wall: float, stepover: float | None, cutter: Chosen) -> str | None:
-    """Return the operator message of a bore that leaves a core, or None."""
-    if not cutter.radius or stepover:
-        return None
-    size = words.context.tool_size(2 * cutter.radius)
-    return (
-        f"{words.code}: I{number(wall)} is greater than the tool diameter {size}: a core is left"
-        " in the centre. Give Q, or K if a hole is open"
-    )
-
-
-def between_helices(words: Words, stepover: float | None, cutter: Chosen) -> str | None:
-    """Return the operator message of a stepover that leaves material, or None."""
-    if not cutter.radius or not stepover or stepover <= 2 * cutter.radius:
-        return None
-    size = words.context.tool_size(2 * cutter.radius)
-    return (
-        f"{words.code}: Q{number(stepover)} is greater than the tool diameter {size}:"
-        " material is left between the helices"
-    )

@@ -8,7 +8,8 @@ frame that is narrower in X, on a half circle from the ring before.
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
 the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
 Q, P above 0, Q in a pocket only; E from 0; the cutter; inside R from its radius, I and J greater
-than its diameter; room for the finish; not too many rings; a helix of not too many turns.
+than its diameter; room for the finish, which is at most its radius; not too many rings; a helix of
+not too many turns.
 """
 
 from math import ceil, pi, radians, sqrt, tan
@@ -141,8 +142,12 @@ def frame_of(words: Words) -> Frame:
 
 
 def check_room(words: Words, frame: Frame, cutter: Chosen) -> None:
-    """Refuse a frame into which the cutter does not fit."""
+    """Refuse a frame into which the cutter does not fit, and a finish in the full."""
     context = words.context
+    if 0 < cutter.radius < frame.finish - context.rounding:
+        size = context.tool_size(cutter.radius)
+        rule = f"must not exceed the tool radius {size} ({cutter.source}): it is cut at full depth"
+        raise words.refuse_word("E", frame.finish, rule)
     if frame.side > 0:
         return
     size = context.tool_size(cutter.radius)

@@ -7,8 +7,9 @@ space. Nothing goes below Z. With one tooth a run is the whole length, with more
 
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, R not
 above the tool, Z below it; I required, above 0; P required, not 0; H whole, 0 or 1; J whole, from
-1; K above 0, less than I; Q above 0; L whole, from 0; the cutter; a length of a pitch; inside room
-for the cutter in the smaller diameter; a diameter above 0 over the whole taper; not too many turns.
+1; K above 0, less than I; E from -1 to 1; Q above 0; L whole, from 0; the cutter; a length of a
+pitch; a diameter above 0 over the whole taper; inside room for the cutter in the smaller diameter;
+half circles that rise by less than a pitch; not too many turns.
 """
 
 from math import ceil, cos, pi, sin, sqrt
@@ -36,6 +37,7 @@ INSIDE, OUTSIDE = 0, 1  # H
 HEIGHT = sqrt(3) / 2  # of the sharp 60 degree triangle, in pitches
 DEPTHS = {INSIDE: 5 / 8, OUTSIDE: 17 / 24}  # of a thread in these heights: ISO 68, ISO 724
 WITHIN_MM = 0.002  # of a taper: its arcs
+MOST_TAPER = 1  # E: a cone of 53 degrees; pipe threads have 0.0625
 QUARTER = 0.0212  # greatest error of a quarter turn's arc, per change of the radius in it
 
 
@@ -72,6 +74,7 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
     beside = (thread.large + cutter.radius + clearance - narrow) / 2
     ratio = -beside / narrow if thread.outside else 0.5
     share = abs(thread.pitch * ratio) / 2  # as the groove falls beside the half circle
+    check_lead(words, thread, share)
     runs = runs_of(hole, thread, share, arc)
     check_count(words, ceil(runs["turns"] * abs(runs["rise"] / thread.pitch) * (passes + springs)),
                 f"P{number(thread.pitch)} makes")  # fmt: skip
@@ -133,7 +136,10 @@ def thread_of(words: Words) -> Thread:
             raise words.refuse_word("P", pitch, f"is too large for I{number(large)}")
     if small >= large - words.context.smallest_ring:
         raise words.refuse_word("K", small, f"must be less than I{number(large)}")
-    return Thread(large, small, pitch, side == OUTSIDE, teeth, (words.take("E") or 0.0) / 2)
+    taper = words.take("E") or 0.0
+    if abs(taper) > MOST_TAPER:
+        raise words.refuse_word("E", taper, "changes the diameter by more than the length")
+    return Thread(large, small, pitch, side == OUTSIDE, teeth, taper / 2)
 
 
 def check_room(words: Words, hole: Hole, thread: Thread, cutter: Chosen) -> None:
@@ -152,6 +158,15 @@ def check_room(words: Words, hole: Hole, thread: Thread, cutter: Chosen) -> None
         f"the tool diameter {size} ({cutter.source}) must be less than the smaller diameter"
         f" {number(2 * smallest)}{' at Z' if thread.taper else ''}"
     )
+
+
+def check_lead(words: Words, thread: Thread, share: float) -> None:
+    """Refuse half circles so wide beside a thin thread that nothing is left of the helix."""
+    pitch = abs(thread.pitch)
+    if share > pitch - words.context.smallest_ring:
+        rise = f"the half circle onto the thread would rise by {number(share)}"
+        rule = f"is too thin: {rise}, the pitch is {number(pitch)}"
+        raise words.refuse_word("K", thread.small, rule)
 
 
 def runs_of(hole: Hole, thread: Thread, share: float, arc: int) -> dict[str, float]:
