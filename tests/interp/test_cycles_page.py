@@ -227,3 +227,60 @@ def test_the_page_opens_and_draws_in_both_toolkits(toolkit, tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert picture.stat().st_size > 10_000
+
+
+GARBAGE = "T1.2.3 P1 D4\nT P. D--\nT7 P7 D6..2 ;odd\nT99999999999 D1\n\xff\x00T2 P2 D8 ;good\n"
+
+
+def test_garbage_in_the_tables_is_no_tool_and_no_offset(tmp_path, monkeypatch):
+    monkeypatch.delenv("INI_FILE_NAME", raising=False)
+    (tmp_path / "tool.tbl").write_text(GARBAGE, encoding="latin-1")
+    (tmp_path / "saved.var").write_text("5221 1.5\n5222 two\n\u00b2 3\n5223 nan\n5224\n")
+    ini = tmp_path / "machine.ini"
+    ini.write_text(
+        "[EMCIO]\nTOOL_TABLE = tool.tbl\n[RS274NGC]\nPARAMETER_FILE = saved.var\n"
+        "[TRAJ]\nCOORDINATES = XYZ\nLINEAR_UNITS = mm\n"
+    )
+    assert tools_of(read_ini(ini))[2].diameter == 8
+    assert machine_state(read_ini(ini)).parameters == {5221: 1.5}
+
+
+def test_a_machine_that_does_not_run_is_as_saved(monkeypatch):
+    ini = read_ini(SIM / "mill_mm_headless.ini")
+    monkeypatch.setenv("INI_FILE_NAME", str(ini.path))
+    assert machine_state(ini).tool == 0
+
+
+def test_a_program_of_the_other_unit_is_not_loaded(page, tmp_path):
+    inch, mm = page("mill_inch"), page("mill_mm")
+    inch.show("bore")
+    program = inch.save(tmp_path / "inch.ngc")
+    with pytest.raises(UsageError, match=r"inch\.ngc: its forms are not those of a machine in mm"):
+        mm.load(program)
+    assert mm.steps == []
+
+
+def test_a_kept_file_of_brackets_is_no_values(page, tmp_path):
+    (tmp_path / "g12").mkdir()
+    (tmp_path / "g12" / "cycles-page.json").write_text("[" * 200_000)
+    assert page("mill_mm").forms
+
+
+def test_turns_on_each_other_are_drawn_as_few(page):
+    sketch = page("mill_mm").show("bore", p="0.001")
+    assert sketch.state == READY and sum(len(line.points) for line in sketch.lines) < 2000
+    cut = np.concatenate([line.points for line in sketch.lines if not line.is_rapid])
+    assert np.abs(cut[-1]).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", ["mill_mm", "mill_inch", "lathe_mm"])
+def test_every_form_is_ready_as_it_first_appears(page, name):
+    page = page(name)
+    said = {form.name: page.show(form.name) for form in page.forms}
+    assert [(form, each.text) for form, each in said.items() if each.state == REFUSED] == []
+
+
+def test_a_pipe_thread_has_a_taper(page):
+    inch = page("mill_inch")
+    texts = {"tool": "1", "i": "0.654", "k": "0.585", "pitch": "0.08696", "taper": "0.0625"}
+    assert inch.show("thread", **texts).state != REFUSED, inch.sketch.text

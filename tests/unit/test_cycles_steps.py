@@ -34,6 +34,7 @@ def test_a_number_may_have_a_comma(text, value):
         ("i", "1e5", "first radius I: 1e5 is no number"),
         ("i", "1.2.3", "first radius I: 1.2.3 is no number"),
         ("i", "[1]", "first radius I: [1] is no number"),
+        ("levels", "9" * 400, "levels: 9+ is no number"),
         ("levels", "2.5", "levels: 2.5 must be a whole number"),
         ("code", "14", "direction: 14 is none of its choices"),
     ],

@@ -14,7 +14,8 @@ from g12.tools.machine.ini import Ini
 OFFSETS = 5201  # parameter of X of the work offset number 0; each is 20 further on
 PER_OFFSET, ROTATION = 20, 9  # of a work offset: parameters, the rotation about Z after the axes
 ACTIVE_OFFSET, G92_ON, G92 = 5220, 5210, 5211
-WORD = re.compile(r"([TD])([-+]?[\d.]+)", re.IGNORECASE)
+WORD = re.compile(r"([TD])([-+]?(?:\d{1,9}(?:\.\d*)?|\.\d+))", re.IGNORECASE | re.ASCII)
+PARAMETER = re.compile(r"\s*(\d{1,4})\s+([-+]?(?:\d+\.?\d*|\.\d+))\s*", re.ASCII)
 
 
 class Tool(NamedTuple):
@@ -54,9 +55,12 @@ def _status():
     """Return LinuxCNC's status, None where none is running."""
     try:
         linuxcnc = import_module("linuxcnc")
+    except ImportError:
+        return None
+    try:
         status = linuxcnc.stat()
         status.poll()
-    except (ImportError, RuntimeError, SystemError):
+    except (linuxcnc.error, RuntimeError, SystemError):
         return None
     return status
 
@@ -80,6 +84,6 @@ def _saved(ini: Ini) -> dict[int, float]:
     path = ini.file("RS274NGC", "PARAMETER_FILE")
     if path is None or not Path(path).is_file():
         return {}
-    rows = (line.split() for line in Path(path).read_text(errors="replace").splitlines())
-    pairs = (row for row in rows if len(row) == 2 and row[0].isdigit())
-    return {int(number): float(value) for number, value in pairs}
+    lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
+    rows = filter(None, map(PARAMETER.fullmatch, lines))
+    return {int(row[1]): float(row[2]) for row in rows}

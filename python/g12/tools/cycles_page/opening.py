@@ -15,12 +15,18 @@ AXIS_REMOTE = "axis-remote"  # AXIS draws what it is told to open
 def open_in_linuxcnc(path: str) -> None:
     """Open a program on the screen that runs; refuse while a program runs."""
     linuxcnc = import_module("linuxcnc")
-    status, command = linuxcnc.stat(), linuxcnc.command()
-    status.poll()
+    try:
+        status, command = linuxcnc.stat(), linuxcnc.command()
+        status.poll()
+    except (linuxcnc.error, RuntimeError, SystemError) as problem:
+        raise UsageError("LinuxCNC does not answer: the program is saved, not open") from problem
     if status.interp_state != linuxcnc.INTERP_IDLE:
         raise UsageError("a program runs: stop it, then open this one")
     if "axis" in Path(screen()).name:
-        subprocess.run([AXIS_REMOTE, path], check=False, timeout=10)
+        try:
+            subprocess.run([AXIS_REMOTE, path], check=False, timeout=10)
+        except subprocess.TimeoutExpired as problem:
+            raise UsageError("AXIS does not answer: the program is saved, not open") from problem
         return
     command.mode(linuxcnc.MODE_AUTO)
     command.wait_complete()

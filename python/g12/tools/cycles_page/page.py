@@ -153,7 +153,10 @@ class Page:
 
     def load(self, path: Path) -> None:
         """Take the steps of a program of the page."""
-        self.steps = read_program(path.read_text(encoding="utf-8", errors="replace"))
+        steps = read_program(path.read_text(encoding="utf-8", errors="replace"))
+        if any(step.unit != self.unit for step in steps):
+            raise UsageError(f"{path.name}: its forms are not those of a machine in {self.unit}")
+        self.steps = steps
 
     def save(self, path: Path) -> Path:
         """Write the program of the steps, of the form alone if there are none."""
@@ -235,7 +238,7 @@ def _read_kept() -> dict[str, dict[str, str]]:
     """Return the values kept by form; whatever else the file holds is no value."""
     try:
         kept = json.loads(_kept_path().read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         return {}
     forms = kept.items() if isinstance(kept, dict) else ()
     return {name: values for name, values in forms if isinstance(values, dict)}

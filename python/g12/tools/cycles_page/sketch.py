@@ -136,16 +136,22 @@ def seen(path: np.ndarray, view: str) -> np.ndarray:
     return np.column_stack([x * cos - y * sin, x * sin + y * cos])
 
 
+def drawn_sweep(move: Move) -> float:
+    """Return an arc's sweep as drawn: of turns that lie on each other no more than two."""
+    turn = math.copysign(2 * math.pi, move.sweep)
+    return math.fmod(move.sweep, turn) + turn if abs(move.sweep) > abs(turn) else move.sweep
+
+
 def path_of(move: Move) -> np.ndarray:
     """Return positions along a move, near enough to draw."""
     start, end = np.array(move.start), np.array(move.end)
-    turned = move.sweep if move.kind == "arc" else math.radians(end[C] - start[C])
+    turned = drawn_sweep(move) if move.kind == "arc" else math.radians(end[C] - start[C])
     shares = np.linspace(0, 1, max(1, math.ceil(abs(turned) / STEP)) + 1)[:, np.newaxis]
     path = start + (end - start) * shares
     if move.kind == "arc":
         first, second = PLANES[move.plane]
         x, y = move.centre[first], move.centre[second]
-        angles = math.atan2(start[second] - y, start[first] - x) + move.sweep * shares[:, 0]
+        angles = math.atan2(start[second] - y, start[first] - x) + turned * shares[:, 0]
         path[:, first] = x + move.radius * np.cos(angles)
         path[:, second] = y + move.radius * np.sin(angles)
     return path

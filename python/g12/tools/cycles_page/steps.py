@@ -14,7 +14,7 @@ from g12.tools.forms.table import CHOICE, COUNT, FORMS, TOOL, Entry, Form
 
 HEAD = "(Cycles page: a call of a form in each line, its entries in their order)"
 CALL = re.compile(r"o<form_(\w+)_(mm|inch)> call((?: \[[-+.\d]+\])+)(?: \((.*)\))?")
-NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)")
+NUMBER = re.compile(r"[-+]?(\d{1,9}(\.\d*)?|\.\d+)", re.ASCII)  # longer ones are no length
 END = "M2"
 BY_NAME = {form.name: form for form in FORMS}
 
@@ -46,7 +46,7 @@ def read_entry(entry: Entry, text: str) -> float:
         shown = f"{text.strip()} is no number" if written else "a number is missing"
         raise UsageError(f"{entry.label}: {shown}")
     value = float(written)
-    if entry.kind in (COUNT, TOOL, CHOICE) and value != int(value):
+    if entry.kind in (COUNT, TOOL) and value != int(value):
         raise UsageError(f"{entry.label}: {written} must be a whole number")
     if entry.kind == CHOICE and value not in dict(entry.choices):
         raise UsageError(f"{entry.label}: {written} is none of its choices")

@@ -7,8 +7,8 @@ it. A form is a sub whose parameters are the entries in their order; its body is
 
 from typing import NamedTuple
 
-LENGTH, FEED, ANGLE, COUNT, CHOICE, TOOL, SPEED, SECONDS = (
-    *("length", "feed", "angle", "count", "choice", "tool", "speed", "seconds"),
+LENGTH, FEED, ANGLE, COUNT, RATIO, CHOICE, TOOL, SPEED, SECONDS = (
+    *("length", "feed", "angle", "count", "ratio", "choice", "tool", "speed", "seconds"),
 )
 MILL, FACE = "mill", "face"  # where a form cuts: decides its start, its end and its machine
 
@@ -315,7 +315,7 @@ F#<feed>
             Entry("pitch", "P pitch, < 0 left", "pitch P, below 0 left-hand", LENGTH, 1.5, 0.0625),
             length("q", "Q infeed, 0: one", "infeed a pass Q", 0, 0, "one pass"),
             levels("teeth", "J teeth", "teeth of the cutter J", 1),
-            Entry("taper", "E taper", "taper E", COUNT, 0),
+            Entry("taper", "E taper", "taper E", RATIO, 0),
         ),
         "x y retract top z",
         no_hole_code(6) + """\
