@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
-from g12.errors import number
-from g12.lengths import ROUNDING_MM, converts, is_inch
+from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
 from g12.request.context import XY, XZ, YZ
 from g12.request.words import Words
 
@@ -89,8 +88,4 @@ def check_travel(
 
 def _beyond(letter: str, position: float, limit: float, frame: MachineFrame) -> str:
     name = "in" if is_inch(frame.millimetres) else "mm"
-    other = f" (G{20 if name == 'mm' else 21} is active)" if converts(frame.unit) else ""
-    return (
-        f"the {letter} axis would go to {number(position)} {name}, beyond its limit"
-        f" {number(limit)} {name}{other}"
-    )
+    return beyond_limit(letter, position, limit, name, converted=converts(frame.unit))

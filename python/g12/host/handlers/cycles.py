@@ -33,8 +33,11 @@ def check_at_start() -> None:
 def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> int:
     """Set the locals of a plan that stays in the travel; show the operator its messages.
 
-    That of another cutter is shown once for each program and tool.
+    That of another cutter is shown once for each program and tool. A form has the block refused
+    where a program would be told.
     """
+    if cycle_state.is_strict(interp) and plan.message:
+        raise words.refuse(plan.message.removeprefix(f"{words.code}: "))
     cycle_state.stay_within_limits(interp, words, plan.extent)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     borrowed.begin(interp)

@@ -92,6 +92,9 @@ class Page:
         """Return the text that an entry begins with on this machine."""
         if entry.kind == TOOL:
             return number_text(self._default_tool())
+        tool = self.tools.get(self._default_tool())
+        if entry.of_tool and tool and tool.diameter > 0:
+            return f"{entry.of_tool * tool.diameter:.3g}"
         live = (self.ini.get(INI_SECTION, LIVE_TOOL) or "").upper().replace("M", " ").split()
         if entry.name in ("on", "off") and len(live) == 2:
             return live[("on", "off").index(entry.name)]

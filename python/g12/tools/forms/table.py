@@ -25,6 +25,7 @@ class Entry(NamedTuple):
     choices: tuple[tuple[float, str], ...] = ()  # of CHOICE: value and words
     zero: str = ""  # what 0 leaves out; empty where 0 is a value like another
     omitted: bool = False  # 0 becomes -9999 in the call
+    of_tool: float = 0.0  # the page proposes this share of the tool's diameter
 
     def default(self, unit: str) -> float:
         """Return the default of a form of ``unit``, mm or inch."""
@@ -134,9 +135,9 @@ CIRCLE_FORMS = (
             length("z", "Z depth", "depth, Z", -4, -0.25),
             levels("levels", "L levels", "levels", 2),
             CODE,
-            length("i", "I first radius", "first radius I", 10, 0.4),
+            length("i", "I first radius", "first radius I", 10, 0.4)._replace(of_tool=0.8),
             length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle"),
-            length("q", "Q ring to ring", "stepover Q", 8, 0.35),
+            length("q", "Q ring to ring", "stepover Q", 8, 0.35)._replace(of_tool=0.7),
         ),
         "x y retract top z",
         NO_CODE + whole("levels", "L") + """\
@@ -428,7 +429,7 @@ o<polar_polygon> call ENTRIES
         "a slot; its entries as in ngc/polar_shapes.md", FACE,
         (
             *on_a_face(3),
-            length("width", "width", "width", 8, 0.3125),
+            length("width", "width", "width", 8, 0.3125)._replace(of_tool=1.3),
             length("length", "length over all", "length over all", 30, 1.2),
             length("depth", "depth", "depth", 4, 0.15),
             PER_PASS, ALLOWANCE, feed(400, 15), PLUNGE,
