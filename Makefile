@@ -7,7 +7,7 @@ LINTERS := build/venv/ruff-$(RUFF_VERSION)-mypy-$(MYPY_VERSION)-import-linter-$(
 MINUTES := 10
 SEED := $(shell date +%s)
 # What make soak tries: its own, and the properties of the normal tests.
-SOAKED := tests/soak/soak_*.py tests/interp/test_cycles.py \
+SOAKED := tests/soak/soak_*.py tests/interp/test_cycles.py tests/interp/test_bore_thread_frame.py \
 	tests/unit/test_cylinder.py tests/unit/test_polar_plan.py \
 	tests/unit/test_compensation_offset.py tests/unit/test_compensation_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)

@@ -217,6 +217,90 @@ def milled_bar(side: Axes, *cuts: tuple[float, float]) -> None:
         box(side, -0.25, low, 0.3, height)
 
 
+def bore(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    circle(plan, 0.95, fill=CUT, width=1.2)
+    circle(plan, 0.45, line=FAINT, dashed=True)
+    circle(plan, 0.63, line=PATH, width=0.6)
+    tool(plan, 0.32, at(0.63, 0), "D" if page else "T")
+    turn(plan, 0.63, 32, 80)
+    measure(plan, (0, 0), at(0.95, 205), "I", 0.7)
+    measure(plan, (0, 0), at(0.45, 120), "K", 0.65)
+    cross(plan, "X Y")
+    plan.text(0, 1.12, "G  12.5 clockwise, 13.5 counterclockwise", **NOTE)
+    stock_and_hole(side, 0.31)
+    helix(side, 0.14, 0.3, -0.5, 6)
+    box(side, -0.15, 0.5, 0.3, 0.5, TOOL)
+    measure(side, (-0.46, 0.03), (-0.46, -0.1), "")
+    side.text(-0.53, -0.03, "P", **WORDS)
+    at_heights(side, {"start": 0.9, "R": 0.3, "Z": -0.5})
+
+
+def thread(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    circle(plan, 0.95, fill=CUT, width=1.2)
+    circle(plan, 0.75, line=INK, width=0.6)
+    circle(plan, 0.6, line=PATH, width=0.6)
+    tool(plan, 0.35, at(0.6, 0), "D" if page else "T")
+    turn(plan, 0.6, 38, 80)
+    measure(plan, (0, 0), at(0.95, 205), "I", 0.7)
+    measure(plan, (0, 0), at(0.75, 130), "K", 0.6)
+    cross(plan, "X Y")
+    plan.text(0, 1.12, "right-hand, inside: G13.6 goes up, G12.6 down", **NOTE)
+    plan.text(0, -1.2, "left-hand (P below 0): the other way", **NOTE)
+    stock_and_hole(side, 0.33)
+    helix(side, 0.33, -0.5, 0.3, 4)
+    measure(side, (-0.46, 0.0), (-0.46, 0.2), "")
+    side.text(-0.54, 0.1, "P", **WORDS)
+    for place, ends, code in ((-0.17, (-0.32, 0.15), "13.6"), (0.17, (0.15, -0.32), "12.6")):
+        side.annotate("", (place, ends[1]), (place, ends[0]),
+                      arrowprops={**ARROW, "arrowstyle": "-|>", "color": PATH})  # fmt: skip
+        side.text(place, -0.64, code, **WORDS)
+    at_heights(side, {"start": 0.9, "R": 0.3, "Z": -0.5})
+
+
+def frame(plan: Axes, side: Axes, *, page: bool = False) -> None:
+    for half, line in ((0, INK), (0.3, PATH), (0.5, FAINT)):
+        corner = max(0.0, 0.3 - half)
+        across, along = 0.98 - half - corner, 0.75 - half - corner
+        ends = [at_from((a * across, b * along), corner, first + angle)
+                for a, b, first in ((1, 1, 0), (-1, 1, 90), (-1, -1, 180), (1, -1, 270))
+                for angle in range(0, 91, 15)]  # fmt: skip
+        fill = CUT if not half else "none"
+        plan.add_patch(Polygon(ends, closed=True, facecolor=fill, edgecolor=line, lw=0.9))
+    tool(plan, 0.29, (0.68, 0.2), "D" if page else "T")
+    measure(plan, (-0.98, -0.88), (0.98, -0.88), "I")
+    measure(plan, (-0.85, -0.75), (-0.85, 0.75), "J", 0.62)
+    measure(plan, (0.68, -0.45), at_from((0.68, -0.45), 0.3, 315), "R", 0.4)
+    measure(plan, (-0.3, -0.45), (-0.3, -0.25), "")
+    plan.text(-0.2, -0.35, "Q", **WORDS)
+    cross(plan, "X Y", (0.0, -0.13))
+    plan.text(0, 1.12, "H  0 pocket, 1 inside, 2 outside", **NOTE)
+    plan.text(0, -1.2, "G  12.7 clockwise, 13.7 counterclockwise", **NOTE)
+    section(side, {"start": 0.3, "Z": -0.5}, (-0.1,))
+    side.text(-0.54, 0.1, "K", **WORDS)
+
+
+def stock_and_hole(side: Axes, radius: float) -> None:
+    """Draw the workpiece with a hole in section, and the hole's middle line."""
+    side.add_patch(Rectangle((-0.66, -0.85), 1.02, 1.15, facecolor=STOCK, edgecolor=INK, lw=0.7))
+    box(side, -radius, -0.5, 2 * radius, 0.81, CUT)
+    side.plot((0, 0), (-0.6, 0.45), color=FAINT, lw=0.5, ls=(0, (6, 2, 1, 2)))
+
+
+def helix(side: Axes, radius: float, first: float, last: float, turns: int) -> None:
+    """Draw a helix from the side, its half at the back dashed."""
+    for half in range(2 * turns):
+        low, high = (first + (last - first) * (half + end) / 2 / turns for end in (0, 1))
+        ends = (radius, -radius) if half % 2 == 0 else (-radius, radius)
+        style = {"ls": (0, (2, 2))} if half % 2 == 0 else {}
+        side.plot(ends, (low, high), color=PATH, lw=0.9, **style)
+
+
+def at_heights(side: Axes, heights: dict[str, float]) -> None:
+    for words, height in heights.items():
+        side.plot((-0.6, 0.42), (height, height), color=WORD, lw=0.5, ls=(0, (2, 2)))
+        side.text(0.45, height, words, **{**WORDS, "ha": "left"})
+
+
 def polygon(plan: Axes, side: Axes) -> None:
     circle(plan, 0.95, fill=CUT, line=FAINT, dashed=True)
     corners = [at(0.56 / cos(radians(30)), angle) for angle in range(30, 390, 60)]
@@ -366,11 +450,11 @@ def cylinder(plan: Axes, side: Axes) -> None:
     side.text(-0.5, 0.25, "X", **WORDS)
 
 
-ON_A_MILL = (haas, yasnac, mitsubishi, circle_mill)
+ON_A_MILL = (haas, yasnac, mitsubishi, circle_mill, bore, thread, frame)
 ON_A_BAR = (polygon, slot, face_pocket, face_holes, side_holes)
 
 
-ON_PAGES = (haas, yasnac, mitsubishi, circle_mill)
+ON_PAGES = ON_A_MILL
 ON_A_LATHE = (polar, cylinder)
 
 

@@ -76,6 +76,7 @@ LATHE_INCH = (
     Slide("C", -99999, 99999, 360, 3600),
 )
 
+HOLES = ("bore", "thread", "frame")
 FORMS_OF_LATHE = ("polygon", "slot", "face_pocket", "face_holes", "side_holes")
 CODES_OF_LATHE = ("polar", "cylinder", "polar_shapes")
 # The manual's codes for the work and the tool spindle, which do nothing on these machines.
@@ -101,8 +102,8 @@ def mill(name: str, dialect: str, as_on: str, **more) -> Machine:
         unit=unit,
         slides=MILL_MM if unit == "mm" else MILL_INCH,
         velocities=(50, 250) if unit == "mm" else (2, 10),
-        codes=(f"g12_{dialect}", "circle_mill"),
-        forms=(dialect, "circle_mill"),
+        codes=(f"g12_{dialect}", "circle_mill", *HOLES),
+        forms=(dialect, "circle_mill", *HOLES),
         control=f"{dialect}-mill",
         **{"table": f"mill_{unit}", **more},
     )

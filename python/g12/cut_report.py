@@ -87,6 +87,39 @@ class EventCut(NamedTuple):
     cutter: UsedCutter
 
 
+class ThreadCut(NamedTuple):
+    """A milled thread: its radii at ``top``, the signed pitch, the growth of the radius with Z.
+
+    ``levels`` is its lower end, ``teeth`` are the cutter's along its axis.
+    """
+
+    centre: tuple[float, float]
+    large: float
+    small: float
+    pitch: float
+    outside: bool
+    taper: float
+    teeth: int
+    top: float
+    levels: tuple[float]
+    cutter: UsedCutter
+
+
+class FrameCut(NamedTuple):
+    """A rectangle: ``lengths`` along X and Y, the tool on ``side``: -1 in it, 1 outside.
+
+    ``middle``: what is farther than the tool from its wall stays.
+    """
+
+    centre: tuple[float, float]
+    lengths: tuple[float, float]
+    corner: float
+    side: int
+    middle: bool
+    levels: tuple[float, ...]
+    cutter: UsedCutter
+
+
 class CutElement(NamedTuple):
     """A line, an arc or a plunge of a section: line of the program, compensation, feed, levels.
 
@@ -170,10 +203,22 @@ class HolesCut(NamedTuple):
     feed: float
 
 
-PlannedCut = PocketCut | EventCut | SectionCut | PolygonCut | SlotCut | RoundPocketCut | HolesCut
+PlannedCut = (
+    PocketCut
+    | EventCut
+    | ThreadCut
+    | FrameCut
+    | SectionCut
+    | PolygonCut
+    | SlotCut
+    | RoundPocketCut
+    | HolesCut
+)
 KINDS: dict[str, type[PlannedCut]] = {
     "pocket": PocketCut,
     "event": EventCut,
+    "thread": ThreadCut,
+    "frame": FrameCut,
     "section": SectionCut,
     "polygon": PolygonCut,
     "slot": SlotCut,

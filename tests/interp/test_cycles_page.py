@@ -59,7 +59,13 @@ def page(tmp_path, monkeypatch):
 
 
 def test_a_machine_offers_the_forms_of_its_codes(page):
-    assert [form.name for form in page("mill_yasnac_mm").forms] == ["yasnac", "circle_mill"]
+    assert [form.name for form in page("mill_yasnac_mm").forms] == [
+        "yasnac",
+        "circle_mill",
+        "bore",
+        "thread",
+        "frame",
+    ]
     assert len(page("lathe_mm").forms) == 5
 
 
@@ -68,6 +74,24 @@ def test_a_pocket_is_drawn_to_its_wall(page):
     assert (sketch.state, sketch.view, sketch.radius) == (READY, PLAN, 6.0)
     cut = np.concatenate([line.points for line in sketch.lines if not line.is_rapid])
     assert np.hypot(*(cut - (3, 0)).T).max() + sketch.radius == pytest.approx(30, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "texts", "said"),
+    [
+        (
+            "haas",
+            {"i": "8", "q": "13"},
+            "G13: Q13 is greater than the tool diameter 12: material is left",
+        ),
+        ("haas", {"i": "20", "k": "40"}, "G13: I20 is greater than 1.5 x the tool diameter 12: a"),
+        ("circle_mill", {"j": "30"}, "circle_mill: the roughing width 16.85 is greater than"),
+    ],
+)
+def test_material_left_is_a_refusal_of_a_form(page, name, texts, said):
+    shown = page("mill_mm")
+    sketch = shown.show(name, tool="5", **texts)
+    assert (sketch.state, sketch.text[: len(said)]) == (REFUSED, said)
 
 
 @pytest.mark.parametrize(("name", "view"), [("polygon", FACE), ("side_holes", UNROLLED)])
@@ -103,7 +127,8 @@ def test_travel_is_judged_with_the_work_offset(page):
 
 
 def test_the_default_tool_is_the_loaded_one_else_the_first_with_a_diameter(page):
-    assert page("mill_mm").texts["tool"] == "1"
+    first = page("mill_mm")
+    assert (first.texts["tool"], first.texts["q"], first.wait().state) == ("1", "4.44", READY)
     loaded = page("mill_mm", state=NOWHERE._replace(tool=4))
     assert (loaded.texts["tool"], loaded.tool()) == ("4", (10.0, "10 mm end mill"))
 

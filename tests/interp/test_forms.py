@@ -22,7 +22,8 @@ WIDEST, HIGHEST = 319, 239  # dots of a picture that ngcgui does not halve
 LONGEST = 18  # letters beside an entry, for two columns on a screen 1024 dots wide
 TOOLS = {1: 10.0, 2: 4.0}  # mm; on inch machines the same in inches
 MILLS = {"haas": "mill_mm", "circle_mill": "mill_mm", "yasnac": "mill_yasnac_mm",
-         "mitsubishi": "mill_mitsubishi_mm"}  # fmt: skip
+         "mitsubishi": "mill_mitsubishi_mm", "bore": "mill_mm", "thread": "mill_mm",
+         "frame": "mill_mm"}  # fmt: skip
 NUMBERS = (  # entries that are no lengths
     *("tool", "speed", "code", "event", "levels", "circles", "d", "c"),
     *("sides", "angle", "on", "off", "count", "first_angle", "step"),
@@ -199,6 +200,10 @@ REFUSED = [
     ("mitsubishi", {"code": 1}, "form: G must be 12 or 13, not 1"),
     ("circle_mill", {"event": 1}, "form: G must be 0 or 7, not 1"),
     ("circle_mill", {"o": 1}, "form: the retract height 1.000000 must be above 2.000000"),
+    ("bore", {"code": 13}, "form: G must be 12.5 or 13.5, not 13"),
+    ("bore", {"i": 4}, "G13.5 line 30 of form_bore_mm.ngc: I4 must exceed the tool radius 5"),
+    ("thread", {"i": 5}, "the tool diameter 10 (D1) must be less than the smaller diameter"),
+    ("frame", {"r": 4}, "R4 must not be below the tool radius 5 (D1)"),
     ("polygon", {"tool": 0}, "form: the tool number must be 1 or more, not 0"),
     ("polygon", {"speed": 0}, "form: the tool's speed must be above zero, not 0"),
     ("polygon", {"coolant": 1}, "form: coolant must be 7, 8 or 9, not 1"),

@@ -20,6 +20,9 @@ MACHINES = {
     "ngc/yasnac.md": "mill_yasnac_mm",
     "ngc/mitsubishi.md": "mill_mitsubishi_mm",
     "ngc/circle_mill.md": "mill_mm",
+    "ngc/bore.md": "mill_mm",
+    "ngc/thread.md": "mill_mm",
+    "ngc/frame.md": "mill_mm",
     "ngc/polar.md": "lathe_mm",
     "ngc/compensation.md": "lathe_mm",
     "ngc/polar_shapes.md": "lathe_mm",
@@ -31,6 +34,9 @@ CUTS = {  # of the first program of a page
     "ngc/yasnac.md": 2,
     "ngc/mitsubishi.md": 2,
     "ngc/circle_mill.md": 2,
+    "ngc/bore.md": 2,
+    "ngc/thread.md": 2,
+    "ngc/frame.md": 2,
     "ngc/polar.md": 1,
     "ngc/polar_shapes.md": 3,
     "ngc/cylinder.md": 1,
@@ -95,6 +101,7 @@ def test_further_programs_of_polar_cut_their_flats(tmp_path):
 
 MILL = "T1 M6 G43\nG20 G17 G90 G54 G64 P.001 S3000 M3\nG0 X0 Y0\nZ.1\nF20\n"
 MILL_MM = "T10 M6 G43\nG21 G17 G90 G54 G64 P.02 S3000 M3\nG0 X0 Y0\nZ-4\nF300\n"
+HOLE = MILL_MM.replace("T10", "T3").replace("Z-4", "Z5")
 EVENT = MILL_MM.replace("T10", "T5")
 LATHE = "G21 G18 G7 G40 G90 G94\nT3 M6\nS2000 M3\nF500\nG0 X60 Z5 C0\n"
 POCKET = "o<polar_pocket> call [800] [9] [7] [2] [-9999] [-9999] [800] [400]"
@@ -140,6 +147,37 @@ MESSAGES = {
         "G13.2 X0 Y0 I2 R40 H2 Z-2 D4",
         "G13.2 X0 Y0 I2 R40 H2 Z-2 J30",
         "o<circle_mill> call [7] [0] [0] [-6] [2] [10] [40] [2] [2] [3] [-9999] [.3] [150]",
+    ),
+    "ngc/bore.md": (
+        HOLE,
+        "G13.5 Z-5 R0 I3 P.2 D3",
+        "G13.5 Z-5 R0 I5 D3",
+        "G13.5 Z1 R0 I5 P.2 D3",
+        "G13.5 Z-5 R9 I5 P.2 D3",
+        "G13.5 Z-5 R0 I5 K5 P.2 D3",
+        "G13.5 Z-5 R0 I5 P1 D3",
+        "G13.5 Z-5 R0 I8 P.2 D3",
+        "G13.5 Z-5 R0 I20 P.2 Q7 D3",
+    ),
+    "ngc/thread.md": (
+        HOLE,
+        "G13.6 Z-5 R0 I5 D3",
+        "G13.6 Z-5 R0 I5 P0 D3",
+        "G13.6 Z-5 R0 I3.5 P1 D3",
+        "G13.6 Z-5 R0 I5 K5 P1.5 D3",
+        "G13.6 Z-1 R0 I5 P1.5 D3",
+        "G13.6 Z-12 R0 I5 P1.5 E1 D3",
+        "G13.6 Z-12 R0 I5 P1.5 H2 D3",
+    ),
+    "ngc/frame.md": (
+        HOLE,
+        "G13.7 Z-4 I40 J30 R2 D3",
+        "G13.7 Z-4 I40 J30 D3",
+        "G13.7 Z-4 I40 J30 R16 D3",
+        "G13.7 Z9 I40 J30 R5 D3",
+        "G13.7 Z-4 I40 J6 R3 D3",
+        "G13.7 Z-4 I40 J30 R5 H1 Q4 D3",
+        "G13.7 Z-4 I40 J20.6 R5 Q4.6 D3",
     ),
     "ngc/polar.md": (
         LATHE,

@@ -45,7 +45,7 @@ def test_every_pocket_is_found_and_comes_out_as_printed(name):
 
 SAID = [  # a machine, its blocks, its stock, a part of the report
     ("mill_mm", [*MILL, "G13 I20.2 Z-4 D4", "G0 Z9"], "",
-     "line 5: a core of 114.434 mm² remains in its middle, and the lead-in goes through it [core]"),
+     "line 5: a core of 114.434 mm² remains in its middle, which the tool enters"),
     ("mill_mm", [*MILL, "G10 L2 P1 X2 Y3 R90", "G0 X0 Y0", P[0], "G0 X40", "Z9"], "",
      "line 8: a rapid goes through 238.538 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
     ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),

@@ -21,7 +21,7 @@ window.show_all()
 def step():
     if not view.page.sketch.lines:
         return True
-    view.widgets["i"].set_text("7,5")
+    view.widgets["i"].set_text("5,5")
     GLib.timeout_add(500, add)
     return False
 

@@ -100,6 +100,11 @@ def programs(name, modes, fails):
             "pocket": [f"G13 I{5 * size:.5f} K{40 * size:.5f} Q{q} {deep} D3", *failing],
             "event": [f"G13.2 {place} {depth} I{2 * size:.5f} E{9 * size:.5f} R{20 * size:.5f} "
                       f"D3 H1 J{4 * size:.5f} F{modes.feed}", *failing],
+            "bore": [f"G13.5 I{20 * size:.5f} P{0.3 * size:.5f} Q{q} {deep} D3", *failing],
+            "thread": [f"G12.6 I{20 * size:.5f} P{0.5 * size:.5f} Q{0.1 * size:.5f} L2 {deep} D3",
+                       *failing],
+            "frame": [f"G13.7 I{60 * size:.5f} J{40 * size:.5f} R{5 * size:.5f} K{size:.5f} "
+                      f"{deep} D3", *failing],
         }  # fmt: skip
     contour = modes.moves("XC", POLYGON, (30, 0))
     around = modes.moves("Zc", SLOT_AROUND, (2, 0))

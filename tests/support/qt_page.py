@@ -33,8 +33,8 @@ def wait(until):
 
 
 wait(lambda: view.page.sketch.lines)
-view.findChild(QLineEdit, "i").setText("7,5")
-wait(lambda: view.page.texts["i"] == "7,5" and view.page.sketch.lines)
+view.findChild(QLineEdit, "i").setText("5,5")
+wait(lambda: view.page.texts["i"] == "5,5" and view.page.sketch.lines)
 view._add()
 assert view.steps.count() == 1
 wait(lambda: view.drawing.sketch is view.page.sketch)

@@ -51,13 +51,19 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
         assert before.end == pytest.approx(after.start)
 
 
+@pytest.mark.parametrize("feed", [1000.0, 3000.0])
+def test_along_a_radius_one_segment_is_as_quick_as_the_face(feed):
+    slot = [line((18, 0), (0, 0), feed=feed), line((0, 0), (-18, 0), feed=feed)]
+    assert shares_of(quickest(slot, [True, True], QUICK)) == [0.0, 0.0]
+
+
 FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
 MARK, PLUNGE = Action(2, "M8", None), Plunge(3, 500.0, 0.0, -1.0)
 
 
-@pytest.mark.parametrize(("length", "worth"), [(7, False), (10, True)])
-def test_a_line_that_is_long_enough_is_worth_the_way_to_the_face(length, worth):
-    far = line((40, 0), (40, length), feed=3000.0)
+@pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
+def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
+    far = line((40, 0), (40, 10 * seconds), feed=600.0)
     shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
     assert [*map(bool, shares)] == [False, worth, worth, False]
 

@@ -26,14 +26,13 @@ from g12.host.interp import (
     kept,
     millimetres_per_unit,
 )
-from g12.host.program_lines import without_line
 from g12.section.block_rules import NO_CODE, GGroup
 from g12.section.effects import SectionModes, decimal
 
 PATH_ACTIVE = 11  # index into active_g_codes
 G64 = 640
 TOLERANCE, MERGING = 3, 4  # indices into active_settings: P and Q of G64
-ADAPTIVE_FEED = 52  # active_m_codes
+ADAPTIVE_ACTIVE, ADAPTIVE_FEED = 7, 52  # index into active_m_codes, and M52 there
 # Seconds: where the machine is off, by an emergency stop, a limit switch or a command, LinuxCNC
 # aborts once more, in one of the next cycles, and drops what the first abort has queued.
 ABORTED_AGAIN = 0.5
@@ -94,7 +93,7 @@ def modes_in_force(interp: Interp) -> Saved:
         feed=interp.feed_rate,
         path=f"G{active[PATH_ACTIVE] / 10:g}",
         blending=(settings[TOLERANCE], settings[MERGING]),
-        adaptive=ADAPTIVE_FEED in without_line(interp.active_m_codes),
+        adaptive=interp.active_m_codes[ADAPTIVE_ACTIVE] == ADAPTIVE_FEED,
         spindle=interp.active_spindle,
         wrapped=interp.c_axis_wrapped,
         accelerations=kinematics_switch.accelerations(interp),

@@ -7,7 +7,7 @@ from typing import ClassVar, NamedTuple
 
 from g12.compensation.contour import Contour
 from g12.errors import number
-from g12.lengths import ROUNDING_MM, converts, is_inch
+from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.steps import FaceMove, SectionPlan, Segments, Step
 from g12.section.line import SectionWords
@@ -133,11 +133,10 @@ class Beyond(NamedTuple):
 
     def text(self, diameters: bool) -> str:
         """Return the rule for the message; ``diameters``: the program's X words are diameters."""
-        active = f" (G{20 if self.unit == 'mm' else 21} is active)" if self.converted else ""
-        radius = " (radius)" if self.axis == "X" and diameters else ""
-        return (
-            f"the {self.axis} axis would go to {number(self.position)} {self.unit}{radius}, beyond"
-            f" its limit {number(self.limit)} {self.unit}{active}"
+        return beyond_limit(
+            *(self.axis, self.position, self.limit, self.unit),
+            converted=self.converted,
+            radius=self.axis == "X" and diameters,
         )
 
 

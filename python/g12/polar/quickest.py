@@ -85,12 +85,11 @@ def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimi
     ``stopping``, given and returned, holds for each element whether it ends in a stop.
     """
     elements = [_element(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
-    best, chosen = [_Span(element, 0.0, 1.0, 0.0) for element in elements], 0.0
-    least = _seconds(best, limits, chosen)  # in segments, all of it
+    best, least, chosen = list[_Span](), 0.0, 0.0
     for share in ACCELERATION_SHARES:
         spans = _worth_it([span for one in elements for span in _spans(one, share)])
-        seconds = _seconds(spans, limits, share)
-        if seconds < least - GAIN:
+        seconds = _seconds(spans, share * limits.round_acceleration)
+        if not best or seconds < least - GAIN:
             best, least, chosen = spans, seconds, share
         if len(spans) == len(path) and all(span.feed for span in spans):
             break  # all of it at the programmed feed: a lower acceleration is slower
@@ -213,22 +212,17 @@ def _highest(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceSt
     return FaceStretch(share, max(1.0, min(limits.override, *overrides)))
 
 
-def _seconds(spans: list[_Span], limits: FaceLimits, share: float) -> float:
-    """Return the approximate time of spans in seconds, on the face with a share of acceleration."""
-    total, acceleration = 0.0, PLANNED * share * limits.round_acceleration
+def _seconds(spans: list[_Span], acceleration: float) -> float:
+    """Return the approximate time of spans in seconds, those on the face with an acceleration."""
+    total = 0.0
     for on_face, run in _stretches(spans):
-        smooth = list(_smooth([span for span in run if span.length]))
-        if on_face and smooth:
-            total += SWITCHING + sum(_trapezoid(each, acceleration) for each in smooth)
-        else:
-            total += sum(_even_and_ramps(each, limits.round_acceleration) for each in smooth)
+        moves = [span for span in run if span.length]
+        if not on_face:
+            total += sum(map(_in_segments, moves))
+        elif moves:
+            smooth = (_trapezoid(each, PLANNED * acceleration) for each in _smooth(moves))
+            total += SWITCHING + sum(smooth)
     return total
-
-
-def _even_and_ramps(spans: list[_Span], acceleration: float) -> float:
-    """Return the approximate seconds of moves in segments from one stop to the next."""
-    even = sum(map(_in_segments, spans))
-    return even + sum(span.length for span in spans) / even / acceleration
 
 
 def _in_segments(span: _Span) -> float:

@@ -5,8 +5,7 @@ from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from typing import NamedTuple
 
-from g12.errors import number
-from g12.lengths import ROUNDING_MM, converts, is_inch
+from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
 from g12.request.context import XY, XZ, YZ
 from g12.request.words import Words
 
@@ -19,13 +18,15 @@ DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
 class CycleExtent(NamedTuple):
     """The largest circle that a cycle's tool centre follows, in program coordinates and units.
 
-    ``heights`` are the other Z levels of the cycle.
+    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
+    whose centres are as far as ``corners`` from its own.
     """
 
     plane: str
     centre: SpacePoint
     radius: float
     heights: tuple[float, ...] = ()
+    corners: tuple[float, float] = (0.0, 0.0)
 
     def points(self) -> list[SpacePoint]:
         x, y, z = self.centre
@@ -51,9 +52,13 @@ class MachineFrame(NamedTuple):
         return x, y, z
 
     def half_widths(self, extent: CycleExtent) -> list[float]:
-        """Return the circle's extent from its centre along each axis, in machine units."""
-        first, second = (self._turned(*along) for along in DIRECTIONS[extent.plane])
-        return [self.unit * extent.radius * hypot(*pair) for pair in zip(first, second)]
+        """Return the path's extent from its centre along each axis, in machine units."""
+        first, second = (self._turned(*axis) for axis in DIRECTIONS[extent.plane])
+        along, across = extent.corners
+        return [
+            self.unit * (extent.radius * hypot(one, two) + abs(one * along) + abs(two * across))
+            for one, two in zip(first, second)
+        ]
 
     def _turned(self, x: float, y: float, z: float) -> SpacePoint:
         turn = radians(self.rotation)
@@ -83,8 +88,4 @@ def check_travel(
 
 def _beyond(letter: str, position: float, limit: float, frame: MachineFrame) -> str:
     name = "in" if is_inch(frame.millimetres) else "mm"
-    other = f" (G{20 if name == 'mm' else 21} is active)" if converts(frame.unit) else ""
-    return (
-        f"the {letter} axis would go to {number(position)} {name}, beyond its limit"
-        f" {number(limit)} {name}{other}"
-    )
+    return beyond_limit(letter, position, limit, name, converted=converts(frame.unit))

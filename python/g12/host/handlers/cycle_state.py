@@ -52,6 +52,7 @@ READING_WORDS = (  # codes that read words of a cycle's block
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 
 # every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
+STRICT = "_g12_strict"
 CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
 
 
@@ -184,6 +185,17 @@ def other_unit(interp: Interp) -> str:
     if not converts(program_units_per_machine_unit(interp)):
         return ""
     return "in" if interp.length_units == INCH_UNITS else "mm"
+
+
+def is_strict(interp: Interp) -> bool:
+    """Return whether a form has set ``#<_g12_strict>`` before this block, for it alone."""
+    try:
+        strict = bool(interp.params[STRICT])
+    except RuntimeError:  # no program has named it
+        return False
+    if strict:
+        interp.params[STRICT] = 0.0
+    return strict
 
 
 def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:

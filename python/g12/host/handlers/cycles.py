@@ -8,9 +8,12 @@ from collections.abc import Callable
 from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
+from g12.cycles.bore import plan_bore
 from g12.cycles.entry import PocketEntry
+from g12.cycles.frame import plan_frame
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import CyclePlan
+from g12.cycles.thread import plan_thread
 from g12.host import borrowed, messages, reported
 from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
@@ -30,8 +33,11 @@ def check_at_start() -> None:
 def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> int:
     """Set the locals of a plan that stays in the travel; show the operator its messages.
 
-    That of another cutter is shown once for each program and tool.
+    That of another cutter is shown once for each program and tool. A form has the block refused
+    where a program would be told.
     """
+    if cycle_state.is_strict(interp) and plan.message:
+        raise words.refuse(plan.message.removeprefix(f"{words.code}: "))
     cycle_state.stay_within_limits(interp, words, plan.extent)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     borrowed.begin(interp)
@@ -50,10 +56,14 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     return INTERP_OK
 
 
+def entry_of_machine() -> PocketEntry:
+    settings = MACHINE.settings
+    return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
+
+
 def prepare_haas(interp: Interp, arc: int) -> int:
-    words, settings = cycle_state.words_of_block(interp), MACHINE.settings
-    entry = PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
-    plan = plan_pocket(words, settings.clearing, entry)
+    words = cycle_state.words_of_block(interp)
+    plan = plan_pocket(words, MACHINE.settings.clearing, entry_of_machine())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     return hand_over(interp, words, plan, arc=arc, hand=hand)
 
@@ -91,6 +101,21 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     return status
 
 
+def prepare_bore(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_bore(words, arc, MACHINE.settings.entry_angle))
+
+
+def prepare_thread(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_thread(words, arc))
+
+
+def prepare_frame(interp: Interp, arc: int) -> int:
+    words = cycle_state.words_of_block(interp)
+    return hand_over(interp, words, plan_frame(words, arc, entry_of_machine()))
+
+
 def prolog(prepare: Callable[..., int], which: int) -> Callable[..., int]:
     """Return the prolog of a code: it prepares the arc or the event that the code stands for."""
 
@@ -108,6 +133,12 @@ g12_yasnac = prolog(prepare_yasnac, CLOCKWISE)
 g13_yasnac = prolog(prepare_yasnac, COUNTERCLOCKWISE)
 g12_mitsubishi = prolog(prepare_mitsubishi, CLOCKWISE)
 g13_mitsubishi = prolog(prepare_mitsubishi, COUNTERCLOCKWISE)
+g12_bore = prolog(prepare_bore, CLOCKWISE)
+g13_bore = prolog(prepare_bore, COUNTERCLOCKWISE)
+g12_thread = prolog(prepare_thread, CLOCKWISE)
+g13_thread = prolog(prepare_thread, COUNTERCLOCKWISE)
+g12_frame = prolog(prepare_frame, CLOCKWISE)
+g13_frame = prolog(prepare_frame, COUNTERCLOCKWISE)
 circle_mill_perimeter = prolog(prepare_circle_mill, PERIMETER)  # G12.2, o<circle_mill> call
 circle_mill_pocket = prolog(prepare_circle_mill, POCKET)  # G13.2
 

@@ -33,6 +33,9 @@ HANDLERS = {  # of a REMAP line: the feature whose forms it makes possible
     "g12_yasnac": "yasnac",
     "g12_mitsubishi": "mitsubishi",
     "circle_mill_pocket": "circle-mill",
+    "g12_bore": "bore",
+    "g12_thread": "thread",
+    "g12_frame": "frame",
     "polar_shape": "polar-shapes",
 }
 KEPT = "g12/cycles-page.json"  # below XDG_STATE_HOME
@@ -89,6 +92,9 @@ class Page:
         """Return the text that an entry begins with on this machine."""
         if entry.kind == TOOL:
             return number_text(self._default_tool())
+        tool = self.tools.get(self._default_tool())
+        if entry.of_tool and tool and tool.diameter > 0:
+            return f"{entry.of_tool * tool.diameter:.3g}"
         live = (self.ini.get(INI_SECTION, LIVE_TOOL) or "").upper().replace("M", " ").split()
         if entry.name in ("on", "off") and len(live) == 2:
             return live[("on", "off").index(entry.name)]

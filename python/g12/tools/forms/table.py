@@ -25,6 +25,7 @@ class Entry(NamedTuple):
     choices: tuple[tuple[float, str], ...] = ()  # of CHOICE: value and words
     zero: str = ""  # what 0 leaves out; empty where 0 is a value like another
     omitted: bool = False  # 0 becomes -9999 in the call
+    of_tool: float = 0.0  # the page proposes this share of the tool's diameter
 
     def default(self, unit: str) -> float:
         """Return the default of a form of ``unit``, mm or inch."""
@@ -134,9 +135,9 @@ CIRCLE_FORMS = (
             length("z", "Z depth", "depth, Z", -4, -0.25),
             levels("levels", "L levels", "levels", 2),
             CODE,
-            length("i", "I first radius", "first radius I", 10, 0.4),
+            length("i", "I first radius", "first radius I", 10, 0.4)._replace(of_tool=0.8),
             length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle"),
-            length("q", "Q ring to ring", "stepover Q", 8, 0.35),
+            length("q", "Q ring to ring", "stepover Q", 8, 0.35)._replace(of_tool=0.7),
         ),
         "x y retract top z",
         NO_CODE + whole("levels", "L") + """\
@@ -243,6 +244,121 @@ o<circle_mill> call ENTRIES
     ),
 )  # fmt: skip
 
+
+def hole_code(number: int) -> Entry:
+    """Return the choice of direction of G12.5 to G13.7."""
+    ways = [(13 + number / 10, "counterclockwise"), (12 + number / 10, "clockwise")]
+    return Entry(
+        "code", f"G 12.{number} or 13.{number}", "direction", CHOICE, ways[0][0],
+        choices=tuple((code, f"G{code:g}, {way}") for code, way in ways),
+    )  # fmt: skip
+
+
+def no_hole_code(number: int) -> str:
+    return f"""\
+o<no_code> if [#<code> NE 12.{number} AND #<code> NE 13.{number}]
+  (ABORT,form: G must be 12.{number} or 13.{number}, not #<code>)
+o<no_code> endif
+"""
+
+
+def with_or_without(letter: str, block: str) -> str:
+    """Return a block with a word, or without it where its entry is 0."""
+    name = letter.lower()
+    return f"""\
+o<with_{name}> if [#<{name}>]
+  {block} {letter}#<{name}>
+o<with_{name}> else
+  {block}
+o<with_{name}> endif
+"""
+
+
+THREAD_BLOCK = "G#<code> Z#<z> R#<top> I#<i> K#<k> P#<pitch> H#<side> J#<teeth> E#<taper> D#<tool>"
+HOLE_FORMS = (
+    Form(
+        "bore", "bore", "Bore along a helix",
+        "Bore along a helix, G12.5/G13.5. Lengths are {lengths}, radii are those of the hole",
+        "one bore; the words of ngc/bore.md", MILL,
+        (
+            *mill(3, 1),
+            length("top", "Z top, R", "top of the hole R", 0, 0),
+            length("z", "Z depth", "depth, Z", -8, -0.3),
+            hole_code(5),
+            length("i", "I radius", "radius I", 5, 0.2),
+            length("p", "P down per turn", "descent a turn P", 0.3, 0.01),
+            length("k", "K open, 0: none", "open radius K", 0, 0, "cut into the full"),
+            length("q", "Q step, 0: one", "stepover Q", 0, 0, "one helix"),
+            Entry("circles", "L spring circles", "spring circles L", COUNT, 0),
+        ),
+        "x y retract top z",
+        no_hole_code(5) + """\
+START
+F#<feed>
+#<_g12_strict> = 1
+""" + with_or_without("Q", "G#<code> Z#<z> R#<top> I#<i> P#<p> K#<k> L#<circles> D#<tool>"),
+        "retract",
+    ),
+    Form(
+        "thread", "thread", "Thread milling",
+        "Thread milling, G12.6/G13.6. Lengths are {lengths}, radii are those of the thread",
+        "one thread; the words of ngc/thread.md", MILL,
+        (
+            *mill(3, 1),
+            length("top", "Z top, R", "top of the thread R", 0, 0),
+            length("z", "Z end", "end of the thread Z", -10, -0.4),
+            hole_code(6),
+            Entry("side", "H 0 in, 1 outside", "side", CHOICE, 0,
+                  choices=((0, "inside"), (1, "outside"))),
+            length("i", "I larger radius", "larger radius I", 5, 0.1875),
+            length("k", "K smaller radius", "smaller radius K", 4.188, 0.153),
+            Entry("pitch", "P pitch, < 0 left", "pitch P, below 0 left-hand", LENGTH, 1.5, 0.0625),
+            length("q", "Q infeed, 0: one", "infeed a pass Q", 0, 0, "one pass"),
+            levels("teeth", "J teeth", "teeth of the cutter J", 1),
+            Entry("taper", "E taper", "taper E", COUNT, 0),
+        ),
+        "x y retract top z",
+        no_hole_code(6) + """\
+START
+F#<feed>
+#<_g12_strict> = 1
+""" + with_or_without("Q", THREAD_BLOCK),
+        "retract",
+    ),
+    Form(
+        "frame", "frame", "Frame, pocket or wall",
+        "Frame, G12.7/G13.7. Lengths are {lengths}, those of the finished rectangle",
+        "one frame; the words of ngc/frame.md", MILL,
+        (
+            *mill(3, 1),
+            length("top", "Z top", "top of the part", 0, 0),
+            length("z", "Z depth", "depth, Z", -4, -0.2),
+            hole_code(7),
+            Entry("side", "H 0 to 2", "cut", CHOICE, 0,
+                  choices=((0, "pocket"), (1, "along its inside"), (2, "along its outside"))),
+            length("i", "I along X", "length along X, I", 40, 1.5),
+            length("j", "J along Y", "length along Y, J", 30, 1),
+            length("r", "R corner radius", "corner radius R", 5, 0.2),
+            length("k", "K level, 0: one", "depth per level K", 2, 0.1, "at once"),
+            length("q", "Q stepover", "stepover Q", 2, 0.1),
+            length("e", "E finish", "finish allowance E", 0.2, 0.01, "none"),
+            feed(150, 6, "p", "P plunge feed", "plunge feed P"),
+        ),
+        "x y retract top z",
+        no_hole_code(7) + """\
+START
+G1 Z#<top> F#<feed>
+#<_g12_strict> = 1
+#<k> = [#<k> + [#<k> EQ 0] * [#<top> - #<z>]]
+o<pocket> if [#<side> EQ 0]
+  G#<code> Z#<z> I#<i> J#<j> R#<r> K#<k> Q#<q> E#<e> P#<p> H#<side> D#<tool>
+o<pocket> else
+  G#<code> Z#<z> I#<i> J#<j> R#<r> K#<k> E#<e> P#<p> H#<side> D#<tool>
+o<pocket> endif
+""", "retract",
+    ),
+)  # fmt: skip
+
 ON_AND_OFF = (
     Entry("on", "M tool on", "M code, tool on", COUNT, 3),
     Entry("off", "M tool off", "M code, tool off", COUNT, 5),
@@ -313,7 +429,7 @@ o<polar_polygon> call ENTRIES
         "a slot; its entries as in ngc/polar_shapes.md", FACE,
         (
             *on_a_face(3),
-            length("width", "width", "width", 8, 0.3125),
+            length("width", "width", "width", 8, 0.3125)._replace(of_tool=1.3),
             length("length", "length over all", "length over all", 30, 1.2),
             length("depth", "depth", "depth", 4, 0.15),
             PER_PASS, ALLOWANCE, feed(400, 15), PLUNGE,
@@ -389,4 +505,4 @@ o<side_holes> call ENTRIES
     ),
 )  # fmt: skip
 
-FORMS = (*CIRCLE_FORMS, *FACE_FORMS)
+FORMS = (*CIRCLE_FORMS, *HOLE_FORMS, *FACE_FORMS)

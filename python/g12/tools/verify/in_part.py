@@ -4,7 +4,7 @@
 import math
 from collections.abc import Iterator
 
-from g12.tools.path.part import Z, disc
+from g12.tools.path.part import disc
 from g12.tools.preview.moves import Event
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram, straight_down
@@ -88,30 +88,35 @@ def between_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 
 def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield feed moves straight down into the material, of tools that cut more than holes.
+    """Yield feed moves straight into the material.
 
-    Without a given stock only those that are too fast for any tool.
+    Of a drill, and without a given stock, only those that are too fast for any tool; no tap.
     """
-    cutters = {
-        program.moves[cut.at].tool for cut in program.cuts if not cut.places and cut.at < cut.end
-    }
+    made = [cut for cut in program.cuts if cut.at < cut.end]
+    tools = {program.moves[cut.at].tool for cut in made}
+    cutters = {program.moves[cut.at].tool for cut in made if not cut.places}
     for index, move in enumerate(program.moves):
-        down = move.kind == "feed" and move.end[Z] < move.start[Z]
-        if down and move.tool in cutters and program.sides[index] == {FACE}:
-            yield from _plunge(index, program, solids)
+        sides, own = program.sides[index] or (), program.cut_at(index)
+        straight = move.kind == "feed" and not (own and own.is_tap)
+        if straight and len(sides) == 1 and move.tool in tools:
+            yield from _plunge(index, program, solids, warned=move.tool in cutters)
 
 
-def _plunge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    move, points = program.moves[index], program.tip(index, FACE)
+def _plunge(
+    index: int, program: TracedProgram, solids: Solids, *, warned: bool
+) -> Iterator[Finding]:
+    (side,) = program.sides[index]
+    move, points = program.moves[index], program.tip(index, side)
     speed, radius = program.state(index).speed, program.cutter(index)
     per_turn = move.feed if move.feed_mode == "G95" else move.feed / speed if speed else 0.0
     fast = per_turn > PER_TURN
-    if radius <= 0 or not straight_down(points) or points[:, 2].min() >= solids.top(FACE) - LEAST:
+    down = straight_down(points) and points[-1, 2] < points[0, 2]
+    if radius <= 0 or not down or points[-1, 2] >= solids.top(side) - LEAST:
         return
     at = points[points[:, 2].argmin()]
-    if (fast or solids.stock) and program.is_known(index):
+    if (fast or (warned and solids.stock)) and program.is_known(index):
         middle = disc(at[:2], CENTRE * radius)
-        standing = solids.standing(middle, at[2], FACE, before=index)
+        standing = solids.standing(middle, at[2], side, before=index)
         if standing.area > 0.5 * math.pi * (CENTRE * radius) ** 2:
             line, file = program.where(index)
             feed = per_turn * speed if move.feed_mode == "G95" else move.feed

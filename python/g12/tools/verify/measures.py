@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from g12.cut_report import CutElement, EventCut, HolesCut, PocketCut
+from g12.cut_report import CutElement, HolesCut
 from g12.geometry.curve import Arc, Line
 from g12.machine_ini import remap_lines
 from g12.tools.machine.ini import Ini
@@ -83,7 +83,7 @@ def _pace(cut: Cut, program: TracedProgram) -> dict[str, Any]:
 def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     third = THIRD[getattr(cut.plan, "plane", "G17")]
     rings = circles_of(cut, program)
-    levels = cut.plan.levels if isinstance(cut.plan, (PocketCut, EventCut)) else ()
+    levels = cut.plan.levels
     return {
         "dialect": dialect_of(cut.code, program.ini),
         "centre": [value * cut.mm for value in cut.plan.centre[:2]],

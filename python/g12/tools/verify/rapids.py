@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from g12.tools.material.material import ALLOWED, Touch
-from g12.tools.path.part import X, Y, Z
+from g12.tools.path.part import C, X, Y, Z
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, Finding, kind
 from g12.tools.verify.model.program import TracedProgram, straight_down
 from g12.tools.verify.model.solid import FACE, Solids
@@ -24,7 +24,13 @@ ROTARY = kind(
 NO_DIAMETER = kind(
     "rapid-no-diameter", NOT_JUDGED, "rapids below the top, of a tool without a diameter"
 )
-IDLE = kind("rapid-idle-tool", NOT_JUDGED, "rapids below Z0 of tools that turn, or cut nothing")
+IDLE = kind(
+    "rapid-idle-tool", NOT_JUDGED, "rapids below Z0 of turning tools, or of tools that cut nothing"
+)
+OUTSIDE = kind(
+    "c-outside", NOT_JUDGED, "what the tool cuts where C turns at feed outside of a section"
+)
+ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
 TURNED = kind(
     "rapid-turned", NOT_JUDGED, "rapids of a tool between cuts on the face and in the side"
 )
@@ -34,10 +40,28 @@ BORED = "; was it bored before? (--stock 'bore DIAMETER')"
 def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Yield every rapid through solid material, and those that cannot be judged."""
     if program.turned_at is not None:
-        yield Finding(ROTARY, program.where(program.turned_at)[0])
+        line, file = program.where(program.turned_at)
+        yield Finding(ROTARY, line, file=file)
+        before = program.tip(program.turned_at, FACE)[0]
+        known = program.known_before[program.turned_at]
+        if known and solids.surrounds(before, program.turned_at, FACE):
+            yield Finding(ROTARY_IN_PART, line, {}, before, file)
     for index, move in enumerate(program.moves):
         if move.kind == "rapid" and program.is_known(index):
             yield from _judge(index, program, solids)
+        elif move.kind == "feed" and _turns_in_bar(index, program, solids):
+            line, file = program.where(index)
+            yield Finding(OUTSIDE, line, file=file)
+
+
+def _turns_in_bar(index: int, program: TracedProgram, solids: Solids) -> bool:
+    """Return whether C turns at feed, outside of a section, with the tool in the bar."""
+    move = program.moves[index]
+    if not program.turning or move.start[C] == move.end[C] or move.remap:
+        return False
+    slide = min(move.start[X], move.end[X]) - program.zero[X] - program.cutter(index)
+    reaches = not solids.bar or slide < solids.bar
+    return reaches and min(move.start[Z], move.end[Z]) < program.z0
 
 
 def _judge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Finding]:

@@ -24,7 +24,7 @@ OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
 BOSS = kind("boss", FINDING, "nothing of its boss remains")
 MEETS = kind("meets", WARNING, "it and the cut of line {other} go into each other's walls")
-LEAD = ", and the lead-in goes through it"
+LEAD = ", which the tool enters to reach the circle"
 
 
 def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:

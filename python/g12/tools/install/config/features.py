@@ -19,6 +19,9 @@ REMAP_FILES = {
     "yasnac": "g12_yasnac.inc",
     "mitsubishi": "g12_mitsubishi.inc",
     "circle-mill": "circle_mill.inc",
+    "bore": "bore.inc",
+    "thread": "thread.inc",
+    "frame": "frame.inc",
     "polar": "polar.inc",
     "polar-g12.3": "polar_g12_3.inc",
     "cylinder": "cylinder.inc",
@@ -41,6 +44,9 @@ MEANING = {
     "yasnac": "G12/G13 circle cutting, Yasnac words",
     "mitsubishi": "G12/G13 circular cutting, Mitsubishi words",
     "circle-mill": "G12.2/G13.2 circle mill event, perimeter and pocket",
+    "bore": "G12.5/G13.5 bore along a helix",
+    "thread": "G12.6/G13.6 thread milling",
+    "frame": "G12.7/G13.7 frame: a rectangle as pocket or wall",
     "polar": "G12.1/G13.1 polar coordinate interpolation on and off",
     "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
@@ -67,6 +73,7 @@ SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
 CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
     "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
+    "frame": ("g12_frame_ring",),
     **dict.fromkeys(AXES_NEEDED, ("g12_skipped_over",)),
     POLAR_SHAPES: (
         "polar_polygon",

@@ -30,6 +30,9 @@ FORMS_OF = {  # the forms of a feature
     "yasnac": ("form_yasnac",),
     "mitsubishi": ("form_mitsubishi",),
     "circle-mill": ("form_circle_mill",),
+    "bore": ("form_bore",),
+    "thread": ("form_thread",),
+    "frame": ("form_frame",),
     "polar-shapes": (
         "form_polygon",
         "form_slot",

@@ -21,12 +21,14 @@ from shapely.ops import unary_union
 from g12.cut_report import (
     CutElement,
     EventCut,
+    FrameCut,
     HolesCut,
     PocketCut,
     PolygonCut,
     RoundPocketCut,
     SectionCut,
     SlotCut,
+    ThreadCut,
     UsedCutter,
 )
 from g12.tools.path.part import arc_segments, disc
@@ -39,7 +41,8 @@ LEAST_CORE = 0.05  # mm: the radius of a core that remains
 NOTHING = Polygon()
 NO_CUTTER = UsedCutter(0.0, "")
 TAPS = (1, 2)  # kinds of holes
-SHAPES = (PolygonCut, SlotCut, RoundPocketCut)
+SHAPES = (PolygonCut, SlotCut, RoundPocketCut, FrameCut)
+CIRCLES = (PocketCut, EventCut, ThreadCut)
 
 
 @dataclass(frozen=True)
@@ -138,7 +141,7 @@ class Cut:
 
     @property
     def is_circle(self) -> bool:
-        return isinstance(self.plan, (PocketCut, EventCut))
+        return isinstance(self.plan, CIRCLES)
 
     @property
     def is_shape(self) -> bool:
@@ -192,6 +195,8 @@ class Cut:
     @cached_property
     def wall(self) -> float:
         """The radius that a circle clears; without a cutter its words are those of its centre."""
+        if isinstance(self.plan, ThreadCut):
+            return self.plan.large * self.mm
         return self.plan.wall * self.mm + self._unknown_cutter if self.is_circle else 0.0
 
     @cached_property
@@ -199,10 +204,14 @@ class Cut:
         """The radius of what a circle leaves in its middle, 0 if nothing."""
         if isinstance(self.plan, PocketCut):
             return max(self.plan.inner * self.mm - self._unknown_cutter, 0.0)
+        if isinstance(self.plan, ThreadCut):
+            return self.plan.small * self.mm if self.plan.outside else 0.0
         return self.plan.boss * self.mm if isinstance(self.plan, EventCut) else 0.0
 
     @property
     def has_boss(self) -> bool:
+        if isinstance(self.plan, ThreadCut):
+            return self.plan.outside
         return isinstance(self.plan, EventCut) and self.plan.side > 0
 
     @property
@@ -237,7 +246,7 @@ class Cut:
         if isinstance(plan, HolesCut):
             place = plan.places[0]
             return [self._level((place[0] if plan.surface else place[1]) - plan.depth)]
-        levels = plan.levels if self.is_circle else plan.passes.levels
+        levels = getattr(plan, "passes", plan).levels
         return [self._level(level) for level in levels]
 
     @cached_property
@@ -251,7 +260,9 @@ class Cut:
 
     @cached_property
     def goes(self) -> BaseGeometry:
-        """What its words say is to go, at its floor."""
+        """What its words say is to go, at its floor; at a thread's nothing is gone all round."""
+        if isinstance(self.plan, ThreadCut):
+            return NOTHING
         if self.is_circle and not self.upright:
             return disc(self.centre, self.wall).difference(self._middle)
         if self.is_shape:
@@ -281,7 +292,7 @@ class Cut:
     @cached_property
     def island(self) -> BaseGeometry:
         """The part that it goes round on the outside, as far as that is closed."""
-        if self.has_boss or isinstance(self.plan, PolygonCut):
+        if self.has_boss or isinstance(self.plan, PolygonCut) or self._is_frame_outside:
             return self.stays[0][0]
         return unary_union([o.polygon for o in self.outlines if o.is_closed and not o.tool_inside])
 
@@ -291,9 +302,28 @@ class Cut:
         leads = {outline.lines[0] for outline in self.outlines}
         return leads | {each.line for each in self.elements if not each.side}
 
+    @property
+    def _is_frame_outside(self) -> bool:
+        return isinstance(self.plan, FrameCut) and self.plan.side > 0
+
+    @cached_property
+    def _frame(self) -> tuple[BaseGeometry, BaseGeometry]:
+        """What goes and what stays of a rectangle on a mill."""
+        plan, mm = self.plan, self.mm
+        (x, y), corner = self.centre, plan.corner * mm
+        across, along = (length * mm / 2 - corner for length in plan.lengths)
+        whole = box(x - across, y - along, x + across, y + along).buffer(corner, 64)
+        whole = rotate(whole, self.rotation, origin=(x, y))
+        if plan.side > 0:
+            return NOTHING, whole
+        beside = whole.buffer(-2 * self.cutter) if plan.middle else NOTHING
+        return whole.difference(beside), whole.buffer(1.0).difference(whole)
+
     @cached_property
     def _shape(self) -> tuple[BaseGeometry, BaseGeometry]:
-        """What goes and what stays of a shape on the face."""
+        """What goes and what stays of a shape."""
+        if isinstance(self.plan, FrameCut):
+            return self._frame
         plan, mm = self.plan, self.mm
         if isinstance(plan, PolygonCut):
             stays = bar = disc((0, 0), plan.stock_diameter * mm / 2)

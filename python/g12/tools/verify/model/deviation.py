@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import MultiLineString
 
-from g12.cut_report import CutElement
+from g12.cut_report import CutElement, ThreadCut
 from g12.geometry.curve import Arc, Curve, Line
 from g12.tools.path.nearest import on_segments
 from g12.tools.verify.model.cut import Cut, curve_points
@@ -97,6 +97,8 @@ def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
         return Deviation()
     if cut.is_section:
         return _of_section(cut, program)
+    if isinstance(cut.plan, ThreadCut):
+        return _of_thread(cut, cut.plan, program)
     if cut.is_circle:
         return _of_circle(cut, program)
     return _of_holes(cut, program) if cut.places else _of_shape(cut, program)
@@ -228,6 +230,36 @@ def _of_circle(cut: Cut, program: TracedProgram) -> Deviation:
         index, innermost = min(rings.items(), key=lambda ring: ring[1])
         reached = abs(innermost - cut.cutter - cut.inner)
     return max(Deviation(reached, program.tip(index, 0.0)[0], index), off, key=lambda d: d.size)
+
+
+def _of_thread(cut: Cut, thread: ThreadCut, program: TracedProgram) -> Deviation:
+    """Return how far a thread is off its radius, its groove, or its ends.
+
+    The half circles belong to the groove as well, as far as they are at its radius.
+    """
+    moves = list(_sideways(cut, program))
+    if not moves or not cut.cutter:
+        return Deviation()
+    points = np.concatenate([points for _, points in moves])
+    own = np.repeat([index for index, _ in moves], [len(points) for _, points in moves])
+    at = points[:, 0] + 1j * points[:, 1] - complex(*cut.centre)
+    z, side = points[:, 2] - cut.zero[2], 1 if thread.outside else -1
+    finished = thread.small if thread.outside else thread.large
+    wall = finished * cut.mm + thread.taper * (z - thread.top * cut.mm)
+    beside = side * (np.abs(at) - wall) - cut.cutter
+    nearest = int(beside.argmin())
+    pitch = thread.pitch * cut.mm
+    cutting = np.flatnonzero(beside < beside[nearest] + WALL)
+    at, z = at[cutting], z[cutting]
+    groove = np.exp(2j * np.pi * z / pitch) * at.conj()
+    along = np.abs(np.angle(groove * groove[0].conj())) * abs(pitch) / (2 * np.pi)
+    top, bottom = thread.top * cut.mm, thread.levels[0] * cut.mm
+    beyond = (thread.teeth - 1) * abs(pitch)
+    short = max(z.min() - bottom - abs(pitch), top - z.max() - beyond, 0.0)
+    worst = cutting[along.argmax()]
+    found = (abs(beside[nearest]), nearest), (float(along.max()), worst), (short, nearest)
+    size, place = max(found, key=lambda each: each[0])
+    return Deviation(float(size), points[place], int(own[place]))
 
 
 def _of_shape(cut: Cut, program: TracedProgram) -> Deviation:

@@ -176,6 +176,7 @@ def other_surface(site: Site) -> Values:
 def beyond_axis(site: Site) -> Values:
     cut: Cut = site.own
     lowest = min((min(each.z0, each.z1) for each in cut.elements), default=0.0) * cut.mm
+    lowest = min(lowest, cut.floor) if cut.places else lowest
     return {"size": -lowest} if cut.surface and lowest < -SIZE else None
 
 

@@ -38,11 +38,23 @@ def feed_per_minute(site: Site) -> Values:
     return {"feed": least} if least < LEAST_PER_MINUTE else None
 
 
-@rule("feed-cut-down", WARNING, "a feed of {feed:feed}, the machine's limits allow {most:feed}")
+@rule(
+    "feed-cut-down",
+    WARNING,
+    "a feed of {feed:feed}, the machine's limits allow {most:feed}",
+    plain=True,
+)
 def feed_cut_down(site: Site) -> Values:
-    limits, feeds = site.program.limits, _planned_feeds(site)
-    most = 60.0 * min(limits.path, *limits.axes[X : Z + 1])
+    feeds = _planned_feeds(site)
+    most = 60.0 * min(site.program.limits.path, *_speeds(site))
     return {"feed": max(feeds), "most": most} if most < CUT_DOWN * max(feeds, default=0.0) else None
+
+
+def _speeds(site: Site) -> list[float]:
+    """Return the speeds of the axes that move, mm/s."""
+    axes, moves = site.program.limits.axes, [site.program.moves[index] for index in site.moves]
+    moved = (n for n in range(X, Z + 1) if site.cut or any(m.start[n] != m.end[n] for m in moves))
+    return [axes[axis] for axis in moved]
 
 
 def _planned_feeds(site: Site) -> list[float]:

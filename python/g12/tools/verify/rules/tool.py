@@ -5,7 +5,7 @@ LinuxCNC believes G43's H as the cycles believe D. A program that never commands
 touched off Z with its tool; any other works with the lengths of the table.
 """
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, FrameCut, PocketCut, ThreadCut
 from g12.tools.path.part import X, Z
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR, TracedProgram
@@ -48,7 +48,7 @@ def _other_diameter(site: Site) -> dict | None:
     used, loaded = 2 * site.own.cutter, site.loaded
     d = site.own.used.number
     if (
-        not site.own.is_circle
+        not (site.own.is_circle or isinstance(site.own.plan, FrameCut))
         or not used
         or not loaded
         or abs(used - loaded) <= SIZE
@@ -82,7 +82,8 @@ def stale_d(site: Site) -> Values:
 )
 def unset_d(site: Site) -> Values:
     cut = site.own
-    return {} if isinstance(cut.plan, PocketCut) and cut.used.source == LOADED else None
+    by_d = isinstance(cut.plan, (PocketCut, ThreadCut, FrameCut))
+    return {} if by_d and cut.used.source == LOADED else None
 
 
 @rule(
