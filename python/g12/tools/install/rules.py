@@ -20,6 +20,7 @@ from g12.tools.install.config.filters import filter_findings, installed_programs
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.config.screen import screen_findings
 from g12.tools.install.lathe.hal_pins import pins_missing
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
@@ -467,6 +468,7 @@ CONFIG_RULES: tuple[Rule, ...] = (
     changed_copy,
     stopped_command,
     form_findings,
+    screen_findings,
     kinematics_findings,
     lathe_findings,
     spindle_c_findings,
