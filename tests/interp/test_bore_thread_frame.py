@@ -57,7 +57,7 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "I0": "greater", "I-4": "greater", "I6": "half", "I": "missing", "J": "missing",
         "R": "missing", "R-1": "least", "R2": "tool radius", "R16": "half", "Z": "missing",
         "Z5": "below", "K0": "greater", "Q0": "greater", "Q-1": "greater", "P0": "greater",
-        "H3": "most", "E-1": "least", "E13": "tool radius", "E3.1": "tool radius",
+        "Q.001": "least", "H3": "most", "E-1": "least", "E13": "tool radius", "E3.1": "tool radius",
         "L1": "not a word", "D99": "table",
     },
 }  # fmt: skip

@@ -7,7 +7,7 @@ frame that is narrower in X, on a half circle from the ring before.
 
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
 the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
-Q, P above 0, Q in a pocket only; E from 0; the cutter; inside R from its radius, I and J greater
+Q, P above 0, Q in a pocket only, not below the least arc; E from 0; the cutter; inside R from its radius, I and J greater
 than its diameter; room for the finish, which is at most its radius; not too many rings; a helix of
 not too many turns.
 """
@@ -70,6 +70,9 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
     stepover = words.take_positive("Q")
     if stepover and frame.kind != POCKET:
         raise words.refuse_word("Q", stepover, "is the stepover of a pocket (H0)")
+    if stepover and stepover < 2 * context.smallest_ring:
+        rule = f"must be at least {number(2 * context.smallest_ring)}"
+        raise words.refuse_word("Q", stepover, rule)
     plunge_feed = words.take_positive("P") or context.feed * entry.feed / 100
     cutter = chosen_cutter(words)
     check_room(words, frame, cutter)
