@@ -138,6 +138,11 @@ def test_a_frame_along_the_limits_of_a_turned_system_fits():
     assert fits.error is None and max(move.end[0] for move in fits.moves) == pytest.approx(447)
 
 
+def test_a_frame_hardly_wider_than_its_first_ring_has_one(metric):
+    traced = metric.trace_text([*BEFORE.splitlines(), "G13.7 Z-4 I40 J11.402 R5 D1", "M2"])
+    assert traced.error is None
+
+
 # ---------------------------------------------------------------- the page's tables
 
 ROW = re.compile(r"^\| (\S+?)(?: (UNC|UNF|NPT))? \| ([\d. |]+) \|$", re.MULTILINE)

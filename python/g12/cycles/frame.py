@@ -7,7 +7,7 @@ frame that is narrower in X, on a half circle from the ring before.
 
 Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
 the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
-Q, P above 0, Q in a pocket only, not below the least arc; E from 0; the cutter; inside R from its radius, I and J greater
+Q, P above 0, Q in a pocket only; E from 0; the cutter; inside R from its radius, I and J greater
 than its diameter; room for the finish, which is at most its radius; not too many rings; a helix of
 not too many turns.
 """
@@ -177,8 +177,10 @@ def rings_of(words: Words, frame: Frame, cutter: Chosen, stepover: float) -> Rin
         return Rings(a, b, corner, 0.0, 1)
     narrow = min(a, b)
     first = CLEARED * cutter.radius or stepover
-    steps = steps_between(min(first, narrow), narrow, stepover, words.context.rounding)
-    inward = max(0.0, narrow - first)
+    inward = narrow - first
+    if inward < 2 * words.context.smallest_ring:  # the half circle to the next ring is no arc
+        inward = 0.0
+    steps = steps_between(0.0, inward, stepover, words.context.rounding)
     step = inward / max(steps, 1)
     return Rings(a - inward, b - inward, corner - inward, step, steps + 1)
 
