@@ -22,7 +22,7 @@ from g12.tools.install.plan import Refused, make_plan, refuse_problems
 from g12.tools.install.rules import findings_of, installed_programs
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
-from support.small_configs import files_of_package
+from support.small_configs import FILES_OF_PAGES, files_of_package
 
 SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
 MILL = ["haas", "circle-mill"]
@@ -31,7 +31,7 @@ HANDLERS = {name: "g12.remap" for feature in features.REMAP_FILES
             for name in features.functions_of(feature)} | {"g12_on_abort": "g12.remap"}  # fmt: skip
 MODULES = [f"python/{name}.py" for name in ("toplevel", "remap", "g12/__init__")]
 PACKAGE = {
-    **files_of_package(*MODULES, forms.GLADE_FILE),
+    **files_of_package(*MODULES, *FILES_OF_PAGES),
     **{f"ngc/{file.name}": b"" for file in features.ROOT.glob("ngc/*.ngc")},
     "python/g12/__main__.py": b"",
 }

@@ -84,6 +84,14 @@ HAAS = """\
 REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done
 REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done
 """
+FILES_OF_PAGES = (  # what the lines of a screen name
+    "configs/include/forms.ui",
+    "configs/include/cycles.ui",
+    "configs/include/face_view.ui",
+    "configs/include/axis_face.py",
+    "configs/include/probe_basic/cycles/cycles.py",
+    "python/g12/tools/cycles_page/gtk_view.py",
+)
 TOOLS = "T1 P1 D6.0 ;end mill\nT2 P2 D10\n"
 
 

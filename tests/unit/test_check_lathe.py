@@ -6,7 +6,6 @@ import pytest
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, WARNING
 from g12.tools.install.lathe.rules import lathe_findings
-from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.plan import make_plan
 from support.small_configs import (
     LATHE,
@@ -79,30 +78,3 @@ def test_install_leaves_the_geometry_and_uninstall_takes_the_lines_out(tmp_path)
     assert make_plan(config_of(ini, **own), ["polar"]).changes() == {}
     take_out(ini)
     assert ini.read_bytes() == before
-
-
-AXES = "".join(
-    f"[AXIS_{letter}]\nMAX_VELOCITY = {speed}\nMAX_ACCELERATION = {acceleration}\n"
-    for letter, speed, acceleration in (("X", 150, 1000), ("C", 360, 3600))
-)
-KINS = "[KINS]\nKINEMATICS = polar_xzc coordinates=XZC\n"
-
-
-def gained(folder, text, names=("polar",)):
-    """Return the texts of what a lathe is said to gain from kinematics."""
-    config = config_of(write_config(folder, with_codes(text, names)))
-    return [finding.text for finding in gained_by_kinematics(config)]
-
-
-def test_what_a_lathe_in_segments_would_gain(tmp_path):
-    text = LATHE.replace("[AXIS_C]\nWRAPPED_ROTARY = 1\n", AXES)
-    (said,) = gained(tmp_path, text)
-    assert "hexagon of 27 mm 7.9 and 5.9 s, with kinematics 7.9 and 4.0 s" in said
-    page = " ".join((features.ROOT / "ngc" / "polar.md").read_text().split())
-    assert "the hexagon 7.9 and 5.9 s, with kinematics 7.9 and 4.0 s" in page
-    (slower,) = gained(tmp_path, text.replace("3600", "360"))
-    assert slower != said
-    for other in (LATHE, text + KINS, f"{text}[G12]\nPOLAR_TOOL_OFFSET = 3\n"):
-        assert gained(tmp_path, other) == []
-    assert gained(tmp_path, text, ["cylinder"]) == []
-    assert gained(tmp_path, text.replace("150", "0")) == []  # another rule's

@@ -14,6 +14,7 @@ from g12.cut_report import (
     CutElement,
     CutReport,
     EventCut,
+    FrameCut,
     HolesCut,
     PocketCut,
     PolygonCut,
@@ -22,6 +23,7 @@ from g12.cut_report import (
     SectionCut,
     ShapePasses,
     SlotCut,
+    ThreadCut,
     UsedCutter,
     more_text,
     read_report,
@@ -201,6 +203,8 @@ ELEMENTS = (
 CUTS = [
     *(cut for _, cut in EVENTS.values()),
     PocketCut("G18", (1.0, 2.0, 3.0), 20.0, 8.0, 3.0, 1.0, (1.0, 0.0), BY_D1),
+    ThreadCut((1.0, 2.0), 6.0, 5.0, -1.0, True, 0.0625, 2, 0.0, (-10.0,), BY_D1),
+    FrameCut((0.0, 0.0), (40.0, 30.0), 5.0, -1, True, (-2.0, -4.0), BY_D1),
     PolygonCut(6, 20.0, 1.0, 30.0, 10.0, PASSES),
     SlotCut(12.0, 30.0, -40.0, PASSES),
     RoundPocketCut((8.0, 5.0), 20.0, PASSES),
@@ -231,7 +235,7 @@ def test_further_elements_continue_a_section():
     assert read_report(*texts) == whole
 
 
-@pytest.mark.parametrize("other", [('"schema": 1', '"schema": 2'), ('"section"', '"thread"')])
+@pytest.mark.parametrize("other", [('"schema": 1', '"schema": 2'), ('"section"', '"keyway"')])
 def test_a_report_of_another_schema_is_refused(other):
     text = report_text(report(CUTS[-1])).replace(*other)
     with pytest.raises(ValueError, match="reports its cuts by schema"):

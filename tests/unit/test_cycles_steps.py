@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.tools.cycles_page.steps import Step, number_text, program_text, read_entry, read_program
+from g12.tools.cycles_page.view import pressed
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, COUNT, FORMS, TOOL
 from support.sim_machines import ROOT
@@ -41,6 +42,13 @@ def test_a_number_may_have_a_comma(text, value):
 def test_what_is_no_number_is_refused_by_the_entry_s_label(name, text, why):
     with pytest.raises(UsageError, match="^" + why.replace("[", r"\[") + "$"):
         read_entry(ENTRIES[name], text)
+
+
+def test_the_keypad_writes_a_number():
+    text = ""
+    for key in ("1", "2", ".", "5", "-", "7", "⌫"):
+        text = pressed(text, key)
+    assert (text, pressed(text, "-"), pressed(text, "C")) == ("-12.5", "12.5", "")
 
 
 def entry_values(entry):

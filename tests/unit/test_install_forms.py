@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""``install --with forms``: the lines of [DISPLAY], what `check` says of them, taking them out."""
+"""The lines of a screen: forms, Cycles page, face; what `check` says of them, taking them out."""
 
 import pytest
 
 from g12.tools.install.checking import check_report, lines_of_check
-from g12.tools.install.config import forms
 from g12.tools.install.plan import Refused, make_plan
 from g12.tools.install.rules import findings_of
 from support.small_configs import (
+    FILES_OF_PAGES,
     HAAS,
+    LATHE,
     MILL,
     config_of,
     files_of_package,
@@ -34,16 +35,24 @@ SUBS = {
 
 
 small_package = package_of(
-    {"python/g12/__init__.py": b"", **files_of_package(forms.GLADE_FILE)}
+    {"python/g12/__init__.py": b"", **files_of_package(*FILES_OF_PAGES)}
     | {name.removeprefix("g12/"): content for name, content in SUBS.items()}
 )
 
 
 def reported(ini):
     """Return what `check` finds about forms."""
-    return [finding.text for finding in findings_of(config_of(ini)) if finding.kind == "form"]
+    return texts_of("form", ini)
 
 
+def texts_of(kind, ini):
+    return [finding.text for finding in findings_of(config_of(ini)) if finding.kind == kind]
+
+
+PROBE_BASIC = AXIS.replace("axis", "probe_basic")
+QTDRAGON_TAB = "EMBED_TAB_NAME = Cycles\nEMBED_TAB_LOCATION = tabWidget_utilities\n"
+CYCLES = "-u g12/python/g12/tools/cycles_page/gtk_view.py g12/configs/include/cycles.ui\n"
+CYCLES_WINDOW = f"HALCMD = loadusr gladevcp -c cycles {CYCLES}"
 GLADE = "EMBED_TAB_COMMAND = gladevcp -x {XID} "
 TAB = f"{GLADE}g12/configs/include/forms.ui\n{PAGES}"
 OWN_TAB = with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMMAND = mine\n")
@@ -130,7 +139,8 @@ TKPKG = "TKPKG = Ngcgui 1.0\n"
 )
 def test_what_keeps_forms_from_being_shown_is_found(tmp_path, screen, lines, remaps, finding):
     if "PROGRAM_PREFIX" in lines:
-        screen = with_lines(f"[HAL]\n\n{screen}", "HAL", f"HALCMD = {forms.OWN_WINDOW}forms.ui\n")
+        window = "HALCMD = loadusr gladevcp -c forms forms.ui\n"
+        screen = with_lines(f"[HAL]\n\n{screen}", "HAL", window)
         (tmp_path / "forms.ui").write_text("PyNgcGui")
     (found,) = shown_in(tmp_path, screen, lines + HAAS_PAGE, remaps)
     assert finding in found
@@ -145,3 +155,93 @@ def test_a_form_in_order_is_reported_and_no_finding(tmp_path):
     assert shown_in(tmp_path, AXIS, f"{TKPKG}{HAAS_PAGE}NGCGUI_SUBFILE = simp.ngc\n") == []
     config = config_of(tmp_path / "mill.ini")
     assert "         form         form_haas_mm" in lines_of_check(check_report(config, []))
+
+
+CYCLES_TAB = f"{GLADE}{CYCLES}"
+
+
+@pytest.mark.parametrize(
+    ("screen", "lines"),
+    [
+        (AXIS, f"EMBED_TAB_NAME = Cycles\n{CYCLES_TAB}"),
+        (TOUCHY, f"EMBED_TAB_NAME = Cycles\n{CYCLES_TAB}"),
+        (GMOCCAPY, f"EMBED_TAB_NAME = Cycles\nEMBED_TAB_LOCATION = ntb_user_tabs\n{CYCLES_TAB}"),
+        (OWN_TAB, f"EMBED_TAB_NAME = Cycles\n{CYCLES_TAB}"),
+        (QTVCP, f"{QTDRAGON_TAB}{CYCLES_TAB}"),
+        (QTAXIS, f"EMBED_TAB_NAME = Cycles\nEMBED_TAB_LOCATION = rightTab\n{CYCLES_TAB}"),
+        (OWN_TAB.replace("gmoccapy", "qtvcp qtdragon"), CYCLES_WINDOW),
+        (QTAXIS.replace("qtaxis", "qtlathe"), CYCLES_WINDOW),
+        (TK, CYCLES_WINDOW),
+        (PROBE_BASIC, "USER_TABS_PATH = g12/configs/include/probe_basic/\n"),
+    ],
+)
+def test_each_screen_gets_the_cycles_page(tmp_path, screen, lines):
+    ini = write_config(tmp_path, screen)
+    with restored(ini):
+        put_in(ini, "haas", "forms")
+        assert lines in ini.read_text()
+        assert texts_of("screen", ini) == []
+        installed = ini.read_text()
+        put_in(ini, "forms")
+        assert ini.read_text() == installed
+
+
+ON_LATHE = with_lines(f"[DISPLAY]\nDISPLAY = axis\n\n{LATHE}", "DISPLAY", "LATHE = 1\n")
+GMOCCAPY_LATHE = ON_LATHE.replace("axis", "gmoccapy")
+AXIS_FACE = "USER_COMMAND_FILE = g12/configs/include/axis_face.py\n"
+FACE_TAB = f"{GLADE}g12/configs/include/face_view.ui\n"
+
+
+@pytest.mark.parametrize(
+    ("screen", "lines"),
+    [
+        (ON_LATHE, AXIS_FACE),
+        (GMOCCAPY_LATHE, f"EMBED_TAB_NAME = Face\nEMBED_TAB_LOCATION = ntb_user_tabs\n{FACE_TAB}"),
+        (ON_LATHE.replace("axis", "touchy"), f"EMBED_TAB_NAME = Face\n{FACE_TAB}"),
+    ],
+)
+@pytest.mark.parametrize("names", [("polar",), ("cylinder",), ("polar", "polar-shapes")])
+def test_a_lathes_screen_shows_the_face(tmp_path, screen, lines, names):
+    ini = write_config(tmp_path, screen)
+    with restored(ini):
+        put_in(ini, *names)
+        assert ini.read_text().count(lines) == 1
+        assert texts_of("screen", ini) == []
+
+
+@pytest.mark.parametrize("screen", [ON_LATHE.replace("LATHE = 1\n", ""), QTVCP + LATHE])
+def test_other_screens_show_the_face_already(tmp_path, screen):
+    ini = write_config(tmp_path, screen)
+    put_in(ini, "polar")
+    assert "face" not in ini.read_text()
+
+
+@pytest.mark.parametrize(
+    ("screen", "names", "line", "shows"),
+    [
+        (ON_LATHE, ("polar",), "USER_COMMAND_FILE = own.py\n", "axis_face.py"),
+        (PROBE_BASIC, ("haas", "forms"), "USER_TABS_PATH = own_py/\n", ""),
+    ],
+)
+def test_a_file_of_the_users_own_stays_and_is_named(tmp_path, screen, names, line, shows):
+    ini = write_config(tmp_path, with_lines(screen, "DISPLAY", line), own_py="print()\n")
+    with restored(ini):
+        put_in(ini, *names)
+        assert ini.read_text().count(line.split()[0]) == 1
+        (said,) = texts_of("screen", ini)
+        assert line.strip() in said and "is yours and stays" in said
+    if shows:
+        (tmp_path / "own.py").write_text(f"# {shows}\n")
+    else:
+        (tmp_path / "own_py" / "cycles").mkdir(parents=True)
+    put_in(ini, *names)
+    assert texts_of("screen", ini) == []
+
+
+@pytest.mark.parametrize("screen", [AXIS, TK, PROBE_BASIC])
+def test_a_page_that_is_not_there_is_found(tmp_path, screen):
+    ini = write_config(tmp_path, screen)
+    put_in(ini, "haas", "forms")
+    ini.write_text(ini.read_text().replace("configs/include/", "configs/included/include/"))
+    missing = [text for text in texts_of("screen", ini) if "is not there" in text]
+    assert len(missing) == 1

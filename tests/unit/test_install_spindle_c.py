@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """install --with spindle-c, and what check finds of it; without LinuxCNC."""
 
+import re
+
 import pytest
 
 from g12.tools.errors import UsageError
@@ -27,6 +29,7 @@ position = "drive.position"
 holds = "drive.mode"
 brake = "drive.brake"
 """
+TURNS_ONLY = HAL.replace("net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb\n", "")
 REFUSED = [  # what is changed of the INI or the HAL file, what is said
     ("trivkins coordinates=xzc", "trivkins coordinates=xza", "no joint is C alone"),
     ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
@@ -190,6 +193,52 @@ def test_refused_for_what_the_machine_has(tmp_path, old, new, said):
     with pytest.raises(Refused) as refused:
         installed(tmp_path, LATHE.replace(old, new), HAL.replace(old, new))
     assert said in "".join(finding.text for finding in refused.value.args)
+
+
+def without_c(text=LATHE):
+    """Return a lathe's INI without C."""
+    for old, new in (("xzc", "xz"), ("X Z C", "X Z"), ("JOINTS = 3", "JOINTS = 2")):
+        text = text.replace(old, new)
+    return text[: text.index("[AXIS_C]")]
+
+
+def said_to(folder, text):
+    """Return what install tells the owner of a lathe without C to write."""
+    with pytest.raises(Refused) as refused:
+        installed(folder, text, TURNS_ONLY)
+    (finding,) = refused.value.args
+    return finding.cure
+
+
+def test_a_lathe_without_c_is_told_its_lines_and_with_them_it_is_installed(tmp_path):
+    text = without_c()
+    first, *lines = said_to(tmp_path, text).splitlines()
+    assert "configs/spindle_c.md" in first
+    blank = lines.index("")
+    for line in lines[:blank]:
+        section, key, value = re.fullmatch(r"(\[\w+\]) (\w+) = (.*)", line).groups()
+        head, tail = text.split(section, 1)
+        text = head + section + re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", tail, count=1)
+    assert "KINEMATICS = trivkins coordinates=XZC kinstype=B\nJOINTS = 3\n" in text
+    assert "COORDINATES = X Z C\n" in text
+    ini = installed(tmp_path, "\n".join((text, *lines[blank:], "")), TURNS_ONLY)
+    assert list(spindle_c_findings(config_of(ini))) == []
+    simulated = (features.ROOT / "configs" / "sim" / "lathe_spindle_c_mm.ini").read_text()
+    assert "\n".join(lines[blank:]) in simulated  # that machine runs with these sections
+
+
+def test_a_section_that_is_there_is_not_written_again(tmp_path):
+    cure = said_to(tmp_path, f"{without_c()}\n[JOINT_2]\nTYPE = ANGULAR\n")
+    assert "[AXIS_C]" in cure
+    assert "[JOINT_2]" not in cure
+
+
+@pytest.mark.parametrize("module", ["mykins", "trivkins", "trivkins coordinates=xzcc"])
+def test_a_lathe_of_other_joints_is_told_the_page_alone(tmp_path, module):
+    text = LATHE.replace("trivkins coordinates=xzc kinstype=B", module)
+    assert said_to(tmp_path, text) == (
+        "make C a joint of its own, as the steps in configs/spindle_c.md say"
+    )
 
 
 @pytest.mark.parametrize(

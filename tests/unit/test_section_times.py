@@ -7,15 +7,26 @@ import math
 import pytest
 
 from g12.geometry.curve import Arc, Line
-from g12.tools.install.lathe.segments_rules import hexagon
 from g12.tools.machine.ini import read_machine_ini
 from g12.tools.path.lathe_axes import Rates, lathe_axes
 from g12.tools.path.section_times import Leg, section_times
 from support.sim_machines import SIM
 
+FLAT, CUTTER = 13.5, 6.0  # mm, radii
 CIRCLE = [Arc(30 + 0j, 20 + 0j, math.tau)]
 LATHE, INCH = "lathe_mm", "lathe_inch"
 SLOW = "lathe_slow_c_mm_kinematics"
+
+
+def hexagon():
+    """Return the path of the cutter around a hexagon."""
+    path = []
+    for side in range(6):
+        turn = cmath.rect(1, -side * math.pi / 3)
+        corner = FLAT * complex(1, -1 / math.sqrt(3))
+        first, last = corner.conjugate() + CUTTER, corner + CUTTER
+        path += [Line(first * turn, last * turn), Arc(last * turn, corner * turn, -math.pi / 3)]
+    return path
 
 
 def times_of(path, feed, lathe=LATHE):

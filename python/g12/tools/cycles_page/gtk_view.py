@@ -21,7 +21,15 @@ from g12.tools.cycles_page.opening import open_in_linuxcnc
 from g12.tools.cycles_page.page import Page, choice_of
 from g12.tools.cycles_page.sketch import MESSAGE, REFUSED, fitted
 from g12.tools.cycles_page.steps import number_text
-from g12.tools.cycles_page.view import COLOURS, hint_of, label_of, picture_of, tool_text
+from g12.tools.cycles_page.view import (
+    COLOURS,
+    KEYS,
+    hint_of,
+    label_of,
+    picture_of,
+    pressed,
+    tool_text,
+)
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
@@ -148,8 +156,23 @@ class CyclesView(Gtk.Box):
             return box
         line = Gtk.Entry(text=text, width_chars=7, max_width_chars=7, xalign=1)
         line.set_tooltip_text(hint_of(entry))
+        line.set_icon_from_icon_name(Gtk.EntryIconPosition.PRIMARY, "input-dialpad-symbolic")
+        line.connect("icon-press", lambda widget, *_: self._keypad(widget))
         line.connect("changed", lambda widget: self.page.type(entry.name, widget.get_text()))
         return line
+
+    def _keypad(self, line: Gtk.Entry) -> None:
+        """Open a keypad at an entry, for a screen without a keyboard."""
+        popover, keys = Gtk.Popover(relative_to=line), Gtk.Grid()
+        for row, named in enumerate(KEYS):
+            for column, key in enumerate(named):
+                button = Gtk.Button(label=key)
+                button.connect(
+                    "clicked", lambda _, key: line.set_text(pressed(line.get_text(), key)), key
+                )
+                keys.attach(button, column, row, 1, 1)
+        popover.add(keys)
+        popover.show_all()
 
     def _chosen(self, entry: Entry, box: Gtk.ComboBoxText) -> None:
         self.page.type(entry.name, number_text(entry.choices[box.get_active()][0]))

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from qtpy.QtCore import QPointF, QSize, Qt, Signal
-from qtpy.QtGui import QColor, QIcon, QPainter, QPen, QPolygonF
+from qtpy.QtCore import QPoint, QPointF, QSize, Qt, Signal
+from qtpy.QtGui import QColor, QIcon, QPainter, QPen, QPixmap, QPolygonF
 from qtpy.QtWidgets import (
     QComboBox,
     QFileDialog,
@@ -15,16 +15,26 @@ from qtpy.QtWidgets import (
     QLabel,
     QLineEdit,
     QListWidget,
+    QMenu,
     QPushButton,
     QScrollArea,
     QVBoxLayout,
     QWidget,
+    QWidgetAction,
 )
 
 from g12.tools.cycles_page.page import Page, choice_of
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch, fitted
 from g12.tools.cycles_page.steps import number_text
-from g12.tools.cycles_page.view import COLOURS, hint_of, label_of, picture_of, tool_text
+from g12.tools.cycles_page.view import (
+    COLOURS,
+    KEYS,
+    hint_of,
+    label_of,
+    picture_of,
+    pressed,
+    tool_text,
+)
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
@@ -142,8 +152,39 @@ class CyclesView(QWidget):
         line = QLineEdit(text)
         line.setObjectName(entry.name)
         line.setToolTip(hint_of(entry))
+        opening = line.addAction(self._dots(), QLineEdit.LeadingPosition)
+        opening.triggered.connect(partial(self._keypad, line))
         line.textChanged.connect(partial(self.page.type, entry.name))
         return line
+
+    @staticmethod
+    def _dots() -> QIcon:
+        """Return the sign of a keypad."""
+        pixmap = QPixmap(16, 16)
+        pixmap.fill(Qt.transparent)
+        painter = QPainter(pixmap)
+        painter.setPen(QPen(QColor("#667"), 3))
+        painter.drawPoints([QPoint(x, y) for x in (3, 8, 13) for y in (3, 8, 13)])
+        painter.end()
+        return QIcon(pixmap)
+
+    def _keypad(self, line: QLineEdit, *_pressed) -> None:
+        """Open a keypad at an entry, for a screen without a keyboard."""
+        menu, keys, grid = QMenu(line), QWidget(), QGridLayout()
+        for row, named in enumerate(KEYS):
+            for column, key in enumerate(named):
+                button = QPushButton(key)
+                button.clicked.connect(partial(self._press, line, key))
+                grid.addWidget(button, row, column)
+        keys.setLayout(grid)
+        holder = QWidgetAction(menu)
+        holder.setDefaultWidget(keys)
+        menu.addAction(holder)
+        menu.popup(line.mapToGlobal(QPoint(0, line.height())))
+
+    @staticmethod
+    def _press(line: QLineEdit, key: str, *_clicked) -> None:
+        line.setText(pressed(line.text(), key))
 
     def _show_sketch(self) -> None:
         self._say(self.page.sketch.state, self.page.sketch.text)

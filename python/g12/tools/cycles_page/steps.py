@@ -46,7 +46,7 @@ def read_entry(entry: Entry, text: str) -> float:
         shown = f"{text.strip()} is no number" if written else "a number is missing"
         raise UsageError(f"{entry.label}: {shown}")
     value = float(written)
-    if entry.kind in (COUNT, TOOL, CHOICE) and value != int(value):
+    if entry.kind in (COUNT, TOOL) and value != int(value):
         raise UsageError(f"{entry.label}: {written} must be a whole number")
     if entry.kind == CHOICE and value not in dict(entry.choices):
         raise UsageError(f"{entry.label}: {written} is none of its choices")

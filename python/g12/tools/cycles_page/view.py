@@ -17,6 +17,7 @@ COLOURS = {
     "path": "#ffffff",
     "rapid": "#d9534f",
 }
+KEYS = ("7", "8", "9"), ("4", "5", "6"), ("1", "2", "3"), ("-", "0", "."), ("⌫", "C")  # of a keypad
 UNITS = {
     LENGTH: {"mm": "mm", "inch": "in"},
     FEED: {"mm": "mm/min", "inch": "in/min"},
@@ -24,6 +25,17 @@ UNITS = {
     SPEED: {"mm": "1/min", "inch": "1/min"},
     SECONDS: {"mm": "s", "inch": "s"},
 }
+
+
+def pressed(text: str, key: str) -> str:
+    """Return the text of an entry after a key of the keypad."""
+    if key == "⌫":
+        return text[:-1]
+    if key == "C":
+        return ""
+    if key == "-":
+        return text[1:] if text.startswith("-") else f"-{text}"
+    return text + key
 
 
 def label_of(entry: Entry, unit: str) -> str:

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from g12.settings import INI_SECTION as SETTINGS
 from g12.tools.install import package_copy
-from g12.tools.install.config import features, filters, forms
+from g12.tools.install.config import features, filters, forms, screen
 from g12.tools.install.config.findings import PROBLEM, ConfigFinding, problem
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
@@ -129,6 +129,7 @@ def make_plan(
     add_kinematics(plan)
     add_spindle(plan, pins)
     add_forms(plan)
+    add_face_view(plan)
     add_geometry(plan)
     noted = {line.text for block in plan.text.blocks() for line in block}
     plan.added["RS274NGC"][:0] = [note for note in plan.notes if note not in noted]
@@ -299,7 +300,7 @@ def add_forms(plan: InstallPlan) -> None:
     """Add the lines that show the forms of present and new codes."""
     if features.FORMS not in plan.requested:
         return
-    if not forms.screen_of(plan.config):
+    if not screen.screen_of(plan.config):
         text = "[DISPLAY] DISPLAY is missing: no screen could show a form"
         raise refuse("forms", text, "name the screen")
     codes = [*dict.fromkeys([*plan.config.features, *plan.requested])]
@@ -307,6 +308,13 @@ def add_forms(plan: InstallPlan) -> None:
         cure = "install a code with them: --with haas forms"
         raise refuse("forms", "no code here has a form", cure)
     plan.add(forms.lines_for(plan.config, codes, plan.prefix))
+    plan.add(screen.page_lines(plan.config, screen.CYCLES, plan.prefix))
+
+
+def add_face_view(plan: InstallPlan) -> None:
+    """Add the lines that show the face where the screen shows the XZ plane alone."""
+    if not set(ON_A_LATHE).isdisjoint(plan.requested) and screen.is_for_face(plan.config):
+        plan.add(screen.page_lines(plan.config, screen.FACE, plan.prefix))
 
 
 def add_geometry(plan: InstallPlan) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from g12.ini_sections import key_and_value
 from g12.machine_ini import remap_from_value
 from g12.tools.install import package_copy, placing
-from g12.tools.install.config import features, forms
+from g12.tools.install.config import features, forms, screen
 from g12.tools.install.config.filters import FILTER_LINE
 from g12.tools.install.config.ini_edit import (
     BEGIN_MARK,
@@ -44,6 +44,7 @@ OWN_LINES = (
     FILTER_LINE,
     GEOMETRY_LINE,
     forms.FORM_LINE,
+    screen.SCREEN_LINE,
     kinematics_lines.KINEMATICS_LINE,
     spindle_c.SPINDLE_C_LINE,
 )

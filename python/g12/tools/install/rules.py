@@ -20,10 +20,10 @@ from g12.tools.install.config.filters import filter_findings, installed_programs
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.forms import form_findings
 from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.config.screen import screen_findings
 from g12.tools.install.lathe.hal_pins import pins_missing
 from g12.tools.install.lathe.kinematics_rules import kinematics_findings
 from g12.tools.install.lathe.rules import lathe_findings
-from g12.tools.install.lathe.segments_rules import gained_by_kinematics
 from g12.tools.install.lathe.spindle_c import live_spindle_missing, spindle_c_findings
 from g12.tools.machine.ini import IniError
 from g12.tools.path.track import limits_of
@@ -468,9 +468,9 @@ CONFIG_RULES: tuple[Rule, ...] = (
     changed_copy,
     stopped_command,
     form_findings,
+    screen_findings,
     kinematics_findings,
     lathe_findings,
-    gained_by_kinematics,
     spindle_c_findings,
     live_spindle_missing,
     pins_missing,

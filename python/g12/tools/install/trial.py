@@ -17,7 +17,7 @@ from g12.tools.install.plan import InstallPlan, refuse_problems
 from g12.tools.machine.ini import Ini, broken_line
 
 OTHERS_LINES = {"filter", "hal-pin", "live-spindle"}  # kinds: of lines that no plan writes
-SHOWN_ONLY = {"form", "no-codes"}  # kinds of findings that do not affect a machine's codes
+SHOWN_ONLY = {"form", "screen", "no-codes"}  # kinds that do not affect a machine's codes
 
 
 def try_out(plan: InstallPlan) -> list[ConfigFinding]:

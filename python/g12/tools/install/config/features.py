@@ -63,7 +63,7 @@ MEANING = {
 FIRST_STEPS = {  # what to try of a feature, besides a code
     POLAR_SHAPES: "o<polar_polygon> call is refused, its entries are missing: it works",
     SPINDLE_AS_C: "home, M254: the spindle turns to its index and to C; M255 gives it back",
-    KINEMATICS: "home, G0 X20 C0, G12.1 in MDI: the screen shows the face; G13.1 goes back",
+    KINEMATICS: "home, a program with G12.1: the screen shows the face until its G13.1",
     FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
 }
 ON_ABORT = "ON_ABORT_COMMAND"  # of [RS274NGC], and of [G12] for the user's own command

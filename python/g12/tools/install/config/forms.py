@@ -14,6 +14,16 @@ from pathlib import Path
 from g12.lengths import is_inch
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
+from g12.tools.install.config.screen import (
+    AXIS,
+    FORMS,
+    QTVCP,
+    glade_files,
+    screen_of,
+    tab_or_window,
+    window_line,
+    words_of,
+)
 
 FORMS_OF = {  # the forms of a feature
     "haas": ("form_haas",),
@@ -35,30 +45,18 @@ UNIT_NAMES = ("inch", "mm")
 FORM_SUBS = ("form_start", "form_end")  # subs that forms call
 FACE_FORM_SUBS = ("form_face_start", "form_face_end")  # and those of a lathe's face
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
-GLADE_FILE = "configs/include/forms.ui"
-TAB = "gladevcp -x {XID} "
-OWN_WINDOW = "loadusr gladevcp -c forms "  # HAL ends it with LinuxCNC
-TABS = {"gmoccapy": "ntb_user_tabs", "touchy": ""}  # screens with tabs, and the tabs' location
 QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
 HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
 FORM_LINE = re.compile(
     r"TKPKG = Ngcgui 1\.0|NGCGUI_SUBFILE = (\S+/ngc/)?form_\w+\.ngc|NGCGUI_SUBFILE_PATH = \S+/ngc"
-    r"|EMBED_TAB_NAME = Forms|EMBED_TAB_LOCATION = ntb_user_tabs"
-    r"|EMBED_TAB_COMMAND = gladevcp -x \{XID\} \S+/forms\.ui"
-    r"|HALCMD = loadusr gladevcp -c forms \S+/forms\.ui"
 )
-AXIS, QTVCP, GLADEVCP = "axis", "qtvcp", "gladevcp"  # the program whose ngcgui shows the forms
-
-
-def screen_of(config: Config) -> str:
-    """Return the program that a config's screen is, "" if it names none."""
-    return Path("".join((config.ini.get("DISPLAY", "DISPLAY") or "").split()[:1])).name
+GLADEVCP = "gladevcp"  # beside AXIS and QTVCP, a program whose ngcgui shows the forms
 
 
 def ngcgui_of(config: Config) -> str:
     """Return the program whose ngcgui shows the forms on a config's screen."""
-    screen, words = screen_of(config), (config.ini.get("DISPLAY", "DISPLAY") or "").split()
-    own_page = any(word.startswith(QTVCP_WITH_NGCGUI) for word in words[1:])
+    screen = screen_of(config)
+    own_page = any(word.startswith(QTVCP_WITH_NGCGUI) for word in words_of(config)[1:])
     return screen if screen == AXIS or (screen == QTVCP and own_page) else GLADEVCP
 
 
@@ -91,7 +89,7 @@ def folder_of_pages(config: Config, prefix: str) -> str:
 
 def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
     """Return the lines, by section, that make a screen show ngcgui; none where it does already."""
-    kind, screen = ngcgui_of(config), screen_of(config)
+    kind = ngcgui_of(config)
     if kind == AXIS:
         return {} if NGCGUI in packages(config) else {"DISPLAY": [f"TKPKG = {NGCGUI} 1.0"]}
     if kind == QTVCP:
@@ -99,14 +97,14 @@ def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
         return {} if present else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
     if pages_of_gladevcp(config):
         return {}
-    if screen not in TABS:
-        return {"HAL": [f"HALCMD = {OWN_WINDOW}{prefix}/{GLADE_FILE}"]}
-    ini = config.ini
-    locations, tabs = (ini.all("DISPLAY", f"EMBED_TAB_{key}") for key in ("LOCATION", "NAME"))
-    # Screens pair names and locations by number: if a tab of the user has none, this one has none.
-    location = [f"EMBED_TAB_LOCATION = {TABS[screen]}"] if len(locations) == len(tabs) else []
-    command = f"EMBED_TAB_COMMAND = {TAB}{prefix}/{GLADE_FILE}"
-    return {"DISPLAY": ["EMBED_TAB_NAME = Forms", *(location if TABS[screen] else []), command]}
+    return ngcgui_page(config, prefix)
+
+
+def ngcgui_page(config: Config, prefix: str) -> dict[str, list[str]]:
+    """Return the lines, by section, of the page that contains GladeVCP's ngcgui."""
+    if screen_of(config) == QTVCP:
+        return window_line(FORMS, prefix)
+    return tab_or_window(config, FORMS, prefix)
 
 
 def packages(config: Config) -> list[str]:
@@ -117,9 +115,7 @@ def packages(config: Config) -> list[str]:
 
 def pages_of_gladevcp(config: Config) -> list[Path]:
     """Return the GladeVCP files of a config that contain ngcgui or are missing."""
-    commands = [*config.ini.all("DISPLAY", "EMBED_TAB_COMMAND"), *config.ini.all("HAL", "HALCMD")]
-    names = (word for command in commands for word in command.split() if word.endswith(".ui"))
-    files = [folder_from_ini(config.ini, name) for name in names]
+    files = [folder_from_ini(config.ini, name) for name in glade_files(config)]
     return [file for file in files if not file.is_file() or b"PyNgcGui" in file.read_bytes()]
 
 
@@ -173,13 +169,12 @@ def axis_findings(config: Config) -> Iterator[ConfigFinding]:
 def gladevcp_findings(config: Config) -> Iterator[ConfigFinding]:
     screen = screen_of(config)
     if not any(file.is_file() for file in pages_of_gladevcp(config)):
-        tab = f"[DISPLAY] EMBED_TAB_NAME = Forms, EMBED_TAB_COMMAND = {TAB}"
-        line = tab if screen in TABS else f"[HAL] HALCMD = {OWN_WINDOW}"
+        ((section, lines),) = ngcgui_page(config, "g12").items()
         yield problem(
             "form",
             "no EMBED_TAB_COMMAND of [DISPLAY] and no HALCMD of [HAL] names a file with ngcgui: "
             f"{screen} shows no forms",
-            f"have: {line}g12/{GLADE_FILE}",
+            f"have: [{section}] {', '.join(lines)}",
         )
     prefix = config.ini.get("DISPLAY", "PROGRAM_PREFIX")
     if prefix and not folder_from_ini(config.ini, prefix).is_dir():

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from g12.lengths import DEGREES_PER_TURN
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, note, warning
-from g12.tools.install.config.forms import screen_of
 from g12.tools.install.config.loaded import Config
+from g12.tools.install.config.screen import screen_of
 from g12.tools.install.lathe.kinematics_rules import uses_face_kinematics
 from g12.tools.machine.stored_positions import unset_positions
 

@@ -103,6 +103,19 @@ position = "…"     input of the drive for C, revolutions times position_scale 
 holds = "…"        input of the drive that makes it obey its position
 clamp_open, brake  outputs, if there are any"""
 
+AXIS_C = """\
+MIN_LIMIT = -99999
+MAX_LIMIT = 99999
+MAX_VELOCITY = 360
+MAX_ACCELERATION = 3600"""
+JOINT_C = f"""\
+TYPE = ANGULAR
+{AXIS_C}
+FERROR = 10
+MIN_FERROR = 1
+HOME = 0
+HOME_SEQUENCE = 0"""
+
 
 class Pins(NamedTuple):
     """The owner's data of the drive: pins by their names in `DRIVE`, numbers by their key."""
@@ -144,13 +157,34 @@ def spindle_obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFindi
             f"({SPINDLE_C_PAGE}):\n{PINS_EXAMPLE}",
         )
     if letters_of_joints(config).count("C") != 1:
-        yield problem("spindle-c", "no joint is C alone", "[KINS] KINEMATICS = trivkins "
-                      f"coordinates=XZC, or by hand: {SPINDLE_C_PAGE}")  # fmt: skip
+        yield problem("spindle-c", "no joint is C alone", lines_of_c(config))
     lines = all_hal(config)
     yield from encoder_unconnected(config, signals(config, lines))
     yield from drive_missing(config, pins, lines)
     if not config.ini.get("SPINDLE_C", "JOINT"):  # a file of the user's may have our file's name
         yield from in_the_way(lines)
+
+
+def lines_of_c(config: Config) -> str:
+    """Return what to write so that a lathe gets a joint C, or the page if its joints are unknown.
+
+    C comes after the other joints, whose numbers stay. A section that is there already is the
+    owner's: LinuxCNC reads the first of two.
+    """
+    letters, ini = joints(config), config.ini
+    if not letters or "C" in letters:
+        return f"make C a joint of its own, as the steps in {SPINDLE_C_PAGE} say"
+    module = (ini.get("KINS", "KINEMATICS") or "").split()
+    parameters = (word for word in module[1:] if not word.startswith("coordinates="))
+    changed = [
+        f"[KINS] KINEMATICS = {' '.join((module[0], f'coordinates={letters}C', *parameters))}",
+        f"[KINS] JOINTS = {len(letters) + 1}",
+        f"[TRAJ] COORDINATES = {' '.join(f'{letters}C')}",
+    ]
+    new = {"AXIS_C": AXIS_C, f"JOINT_{len(letters)}": JOINT_C}
+    missing = (name for name in new if not config.text.headers(name))
+    blocks = (f"\n[{name}]\n{new[name]}" for name in missing)
+    return "\n".join((f"change these lines ({SPINDLE_C_PAGE}):", *changed, *blocks))
 
 
 def encoder_unconnected(config: Config, found: dict[str, str]) -> Iterator[ConfigFinding]:

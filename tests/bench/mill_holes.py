@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Bore, thread and frame: motion time against the same toolpath written by hand, planning time."""
+
+import tempfile
+import time
+from pathlib import Path
+
+from bench import Figure
+from g12.cycles.bore import plan_bore
+from g12.cycles.entry import STRAIGHT_DOWN
+from g12.cycles.frame import plan_frame
+from g12.cycles.thread import plan_thread
+from g12.request.common import COUNTERCLOCKWISE
+from g12.request.context import Tool
+from g12.request.words import Words
+from g12.tools.headless.run import run_program
+from g12.tools.preview.tracer import Tracer
+from support.planner_context import MM, words_of
+from support.sim_machines import SIM
+
+INI, TOOLS, PLANS = SIM / "mill_mm_headless.ini", {1: 6.0}, 200
+STANDING = MM._replace(tool_in_table={1: Tool(1, 3.0)}.get)
+FIRST = ["G21 G17 G40 G49 G90 G91.1 G94 G64 P.01 F900", "T1 M6", "S3000 M3", "G0 X0 Y0 Z5"]
+BLOCKS = {
+    "bore": "G13.5 Z-1 R0 I8 P.3 Q2 D1",
+    "thread": "G13.6 Z-8 R0 I6 P1.5 Q.3 D1",
+    "frame": "G13.7 Z-1 I30 J20 R5 Q3 E.2 D1",
+}
+PLANNERS = {
+    "bore": lambda words: plan_bore(words, COUNTERCLOCKWISE, 3.0),
+    "thread": lambda words: plan_thread(words, COUNTERCLOCKWISE),
+    "frame": lambda words: plan_frame(words, COUNTERCLOCKWISE, STRAIGHT_DOWN),
+}
+
+
+def figures():
+    """Yield two rows for each code."""
+    for name, block in BLOCKS.items():
+        by_code, by_hand = motion_time([block]), motion_time(list(written_out(block)))
+        what = f"{name}: motion time of {block}, against the same toolpath written by hand"
+        yield Figure(what, by_code / by_hand, 1.01, f"{by_code:.2f} s against {by_hand:.2f} s")
+        yield Figure(f"{name}: planning a block", planning(name, block), 2.0, "the mean", " ms")
+
+
+def motion_time(lines):
+    """Return the seconds of a real run in which the tool moves."""
+    with tempfile.TemporaryDirectory() as folder:
+        program = Path(folder) / "program.ngc"
+        program.write_text("\n".join([*FIRST, *lines, "M2", ""]))
+        samples = run_program(program, INI, TOOLS).samples
+    moving = samples.only(samples.moving()).time
+    return float(moving[-1] - moving[0])
+
+
+def written_out(block):
+    """Yield the moves of a block as plain G-code."""
+    with Tracer(INI, tools=TOOLS) as tracer:
+        moves = tracer.trace_text([*FIRST, block, "M2"]).moves[1:]
+    for move in moves:
+        end = " ".join(f"{axis}{value:.6f}" for axis, value in zip("XYZ", move.end))
+        if move.kind == "arc":
+            i, j = (move.centre[axis] - move.start[axis] for axis in (0, 1))
+            code = "G3" if move.turns > 0 else "G2"
+            yield f"{code} {end} I{i:.6f} J{j:.6f} P{abs(move.turns)}"
+        else:
+            yield f"{'G0' if move.kind == 'rapid' else 'G1'} {end}"
+
+
+def planning(name, block):
+    """Return the milliseconds of planning a block."""
+    code, text = block.split(maxsplit=1)
+    begun = time.perf_counter()
+    for _ in range(PLANS):
+        PLANNERS[name](Words(code, words_of(text), STANDING))
+    return (time.perf_counter() - begun) / PLANS * 1000
