@@ -16,7 +16,7 @@ HEAD = "G21 G17 G40 G49 G54 G80 G90 G94 F600\nT4 M6 G43 S3000 M3\nG0 X0 Y0 Z1\n"
 UP = "G0 Z30\nM2\n"
 GOOD = HEAD + f"G12 I7 K20 Q6 Z-3 D4\n{UP}"
 WIDE = HEAD + f"G12 I7 K40 Q15 Z-3 D4\n{UP}"
-RING = HEAD + f"G12 I20 Z-3 D4\n{UP}"
+CORED = HEAD + f"G12 I18 K20 Q2 Z-3 D4\n{UP}"
 PLAIN = HEAD + f"G1 X50 Y20 F300\n{UP}"
 WRONG = HEAD + "G12 I4 Z-3 D4\nM2\n"
 STILL = "G21\nM2\n"
@@ -77,10 +77,15 @@ def test_a_finding_ends_with_1_and_is_reported(verify):
     assert out.endswith("verdict: 1 finding\n")
 
 
+def test_the_core_of_a_ring_is_said_in_its_line(verify):
+    code, out, _ = verify(CORED.replace("I18 K20 Q2", "I20"), "--strict")
+    assert code == 0 and ", a core of ⌀ 20 stays  0 mm off" in out
+
+
 def test_warnings_count_on_demand(verify):
-    code, out, _ = verify(RING)
+    code, out, _ = verify(CORED)
     assert code == 0 and out.endswith("verdict: no finding, 1 warning\n")
-    assert verify(RING, "--strict")[0] == 1
+    assert verify(CORED, "--strict")[0] == 1
 
 
 def test_what_is_not_judged_is_in_the_verdict_and_counts_on_demand(verify):
@@ -91,7 +96,7 @@ def test_what_is_not_judged_is_in_the_verdict_and_counts_on_demand(verify):
 
 
 def test_a_warning_is_accepted_in_the_program_or_by_an_argument(verify, as_json):
-    for text, *words in (RING.replace("D4", "D4 (g12: expect core)"),), (RING, "--accept", "core"):
+    for text, *words in (CORED.replace("D4", "D4 (g12: expect core)"),), (CORED, "--accept", "core"):
         code, out, _ = verify(text, "--strict", *words)
         assert code == 0 and out.endswith("verdict: no finding\n")
         assert "accepted\n  line 4: a core of " in out

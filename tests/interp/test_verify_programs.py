@@ -44,8 +44,8 @@ def test_every_pocket_is_found_and_comes_out_as_printed(name):
 
 
 SAID = [  # a machine, its blocks, its stock, a part of the report
-    ("mill_mm", [*MILL, "G13 I20.2 Z-4 D4", "G0 Z9"], "",
-     "line 5: a core of 114.434 mm² remains in its middle, which the tool enters"),
+    ("mill_mm", [*MILL, "G13 I18 K20.2 Q3 Z-4 D4", "G0 Z9"], "",
+     "line 5: a core of 48.357 mm² remains in its middle [core]"),
     ("mill_mm", [*MILL, "G10 L2 P1 X2 Y3 R90", "G0 X0 Y0", P[0], "G0 X40", "Z9"], "",
      "line 8: a rapid goes through 238.538 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
     ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),
@@ -111,7 +111,7 @@ def test_a_run_beside_its_path_is_found(machine, blocks, axis, found, tmp_path):
 
 
 def test_a_run_that_rounds_the_corner_of_a_retract_is_found_if_it_cuts(tmp_path):
-    blocks = [*MILL, "G13 I17 Z-3 D4", "G0 Z2", "X100"]
+    blocks = [*MILL, "G13 I17 K17.5 Q1 Z-3 D4", "G0 Z2", "X100"]
     program = prove_lines(tmp_path, blocks, "mill_mm").program
     samples = samples_of(program.path, 8000)
     leaving = samples.time > program.path.time[program.path.vertices(len(program.moves) - 1).start]

@@ -20,6 +20,7 @@ EMPTY = kind("empty", WARNING, "{code} moves nothing")
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
 OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 AIR_CONTOUR = kind("air-contour", WARNING, "its contour stays above the part, others are below")
+AIR_LEVELS = kind("air-levels", WARNING, "{n} of its {of} levels cut nothing, above the part")
 ABOVE_ZERO = kind("above-zero", WARNING, "nothing of it is below Z0: is that the part's face?")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 THROUGH_STOCK = kind("through-stock", WARNING, "it goes {below:length} below the block")
@@ -56,6 +57,9 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     above = [outline for outline in cut.outlines if outline.level > top - LEVEL]
     if above and lowest < top - LEVEL:
         yield Finding(AIR_CONTOUR, above[0].lines[0], file=cut.file)
+    high = sum(level > top - LEVEL for level in cut.levels)
+    if 0 < high < len(cut.levels):
+        yield Finding(AIR_LEVELS, cut.line, {"n": high, "of": len(cut.levels)}, place, cut.file)
     below = solids.bottom - cut.floor
     if below > LEVEL:
         kind_of = BELOW if below > THROUGH else THROUGH_STOCK

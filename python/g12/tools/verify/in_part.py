@@ -3,12 +3,14 @@
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from g12.tools.path.part import disc
 from g12.tools.preview.moves import Event
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram, straight_down
 from g12.tools.verify.model.solid import FACE, Solids
+from g12.tools.verify.model.spindles import LIVE
 
 CENTRE = 0.2  # of a cutter's radius: where an end mill may have no edge
 LEAST = 1e-3  # mm
@@ -35,7 +37,7 @@ PLUNGE_FAST = kind(
 
 def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     at_rest = len(program.moves) - 1
-    for event in program.trace.events:
+    for event in [*program.trace.events, *_live_tool(program)]:
         if 0 < event.at <= at_rest + (event.text != "M5"):
             yield from _event(event, program, solids)
     for side in (
@@ -64,6 +66,15 @@ def _event(event: Event, program: TracedProgram, solids: Solids) -> Iterator[Fin
             yield Finding(of, event.line, {"code": code}, tip)
         elif code == "tool" and tip[2] < solids.top(side) - LEAST:
             yield Finding(CHANGE_LOW, event.line, {}, tip)
+
+
+def _live_tool(program: TracedProgram) -> Iterator[Event]:
+    """Yield where the lines start and stop the live tool, as events."""
+    for line, (before, after) in enumerate(pairwise(program.spindles or ()), 1):
+        if before.turns(LIVE) != after.turns(LIVE):
+            blocks = (move.block for move in program.moves)
+            at = next((index for index, block in enumerate(blocks) if block > line), -1)
+            yield Event(at, line, "M3" if after.turns(LIVE) else "M5")
 
 
 def _is_followed(event: Event, program: TracedProgram) -> bool:

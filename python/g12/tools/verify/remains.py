@@ -19,12 +19,11 @@ LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should 
 LIFT = 0.01  # mm beside a contour
 UNCUT = kind("uncut", FINDING, "{area:mm2} of material remain uncut at Z{level:mm}")
 BAR = kind("bar-remains", FINDING, "{area:mm2} of the bar remain beyond the contour at Z{level:mm}")
-CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle{lead}")
+CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
 BOSS = kind("boss", FINDING, "nothing of its boss remains")
 MEETS = kind("meets", WARNING, "it and the cut of line {other} go into each other's walls")
-LEAD = ", which the tool enters to reach the circle"
 
 
 def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -54,7 +53,8 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         place = (*_middle_of(cut, left), cut.floor)
         yield Finding(UNCUT, cut.line, values, place, cut.file)
     yield from _bar(cut, solids, radius)
-    yield from _core(cut, left_of(cut.core, cut, solids))
+    if not cut.is_ring:  # whose core is meant
+        yield from _core(cut, left_of(cut.core, cut, solids))
 
 
 def _middle_of(cut: Cut, left: BaseGeometry) -> tuple[float, float]:
@@ -72,8 +72,7 @@ def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
 
 def _core(cut: Cut, core: BaseGeometry) -> Iterator[Finding]:
     if core.area > LEAST_GONE:
-        values = {"area": core.area, "lead": LEAD if cut.is_ring else ""}
-        yield Finding(CORE, cut.line, values, file=cut.file)
+        yield Finding(CORE, cut.line, {"area": core.area}, file=cut.file)
 
 
 def _bar(cut: Cut, solids: Solids, radius: float) -> Iterator[Finding]:

@@ -36,6 +36,7 @@ LINES = {  # what the line of a cut has
     "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
     "shapes": "cutter ⌀ {cutter_or_0:mm}, to Z{lowest:mm}",
 }
+CORE = ", a core of ⌀ {core:twice} stays"
 # Of rows with one name the first one counts whose measures are all known.
 ROWS: tuple[Row, ...] = (
     ("centre", "X{centre[0]:mm} Y{centre[1]:mm}"),
@@ -201,7 +202,8 @@ def _cut_lines(judgement: Judgement, unit: Unit) -> Iterator[tuple[str, ...]]:
     """Yield the columns of each cut: where, which code, what, how far off, how long."""
     for cut in judgement.program.cuts:
         values = _shown(measures(cut, judgement))
-        what = in_words(LINES[kind_of(cut)], values, unit)
+        core = CORE if cut.is_ring and cut.inner > cut.cutter else ""
+        what = in_words(LINES[kind_of(cut)] + core, values, unit)
         allowed, off = (unit.fine(values[name]) for name in ("allowed", "deviation"))
         time = "" if values.get("seconds") is None else f"{plain(values['seconds'], 1)} s"
         off = f"{off} {unit.name} off ({allowed} allowed)"

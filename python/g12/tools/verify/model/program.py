@@ -24,6 +24,7 @@ from g12.tools.path.track import Limits, Track, limits_of, track
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.units import plain
 from g12.tools.verify.model.cut import Cut, cuts_of
+from g12.tools.verify.model.spindles import Spindles, spindles_of
 
 WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
@@ -83,6 +84,11 @@ class TracedProgram:
     @cached_property
     def several_spindles(self) -> bool:
         return self.ini.number("TRAJ", "SPINDLES", 1) > 1
+
+    @cached_property
+    def spindles(self) -> list[Spindles] | None:
+        """The spindles after each line, None where the lines do not tell."""
+        return None if self.calls_files else spindles_of(self.texts, self.ini)
 
     # ------------------------------------------------------------ the part
 

@@ -3,15 +3,17 @@
 
 import math
 import re
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
-from shapely.geometry import Point
+from shapely.geometry import Point, Polygon
 
 from g12.cut_report import CutElement, PocketCut
-from g12.tools.verify.model.cut import Cut, Outline
+from g12.tools.verify.model.cut import MOST_OF_A_TURN, Cut, Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
-from g12.tools.verify.model.program import SIZE
+from g12.tools.verify.model.program import SIZE, joined
+from g12.tools.verify.model.solid import FACE
 from g12.tools.verify.rules.table import Site, Values, rule
 
 ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
@@ -20,6 +22,7 @@ STAYED = 1e-6
 AT_EDGE = 0.01  # mm
 LEVELS_MEANT = 3  # L2 is a spring pass
 STRAIGHT_BACK = -0.999999  # cosine of the angle between two directions, at most
+SIDE_CODE = re.compile(r"G4([0-2])(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
 
 
@@ -62,10 +65,15 @@ def zero_line_unknown(site: Site) -> Values:
 
 
 @rule(
-    "side", FINDING, "the tool comes from the other side of the contour: {instead} in line {lead}?"
+    "side",
+    FINDING,
+    "the tool comes from the other side of the contour: {instead} in line {lead}?",
+    plain=True,
 )
 def wrong_side(site: Site) -> Values:
-    for outline in site.own.outlines:
+    if not site.cut:
+        return _wrong_plain_side(site)
+    for outline in site.cut.outlines:
         if _is_crossed(outline, site):
             instead = "G42" if outline.left else "G41"
             lead = outline.lines[0]
@@ -84,6 +92,51 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     beside = ((outline.lead - outline.points[0]) * np.conj(along)).imag / abs(along)
     low = max(outline.level, outline.lead_level) < site.solids.top(site.own.surface)
     return low and (beside if outline.left else -beside) < -AT_EDGE
+
+
+def _wrong_plain_side(site: Site) -> Values:
+    """Judge LinuxCNC's own compensation where the tool goes round at depth."""
+    program = site.program
+    for left, lead, end in _compensated(site):
+        start = program.tip(lead, FACE)[0]
+        path = [program.tip(index, FACE) for index in range(lead + 1, end)]
+        around = Closed(joined(path)) if path else None
+        if start[2] > site.solids.top(FACE) - SIZE or not around or not around.is_closed:
+            continue
+        radius, at = program.cutter(lead), Point(start[:2])
+        inside = around.is_left == left
+        reached = around.polygon.buffer(radius if inside else -radius)
+        if reached.contains(at) != inside:
+            line = program.moves[lead].block
+            return {"instead": "G42" if left else "G41", "lead": line, "at_line": line}
+    return None
+
+
+def _compensated(site: Site) -> Iterator[tuple[bool, int, int]]:
+    """Yield G41 or G42 of plain moves: is it G41, the move that leads in, the move of G40."""
+    program, code, lead = site.program, "", site.at
+    line = program.moves[site.at].block - 1
+    for index in site.moves:
+        block = program.moves[index].block
+        codes = SIDE_CODE.findall("\n".join(program.texts[min(line, block - 1) : block]))
+        line = block
+        if codes and codes[-1] != code:
+            if code in ("1", "2"):
+                yield code == "1", lead, index
+            code, lead = codes[-1], index
+
+
+class Closed:
+    """A path that goes round: its area, and whether that is on its left."""
+
+    def __init__(self, points: np.ndarray) -> None:
+        path = points[:, 0] + 1j * points[:, 1]
+        self.polygon = Polygon(points[:, :2] if len(path) > 3 else ()).buffer(0)
+        middle = self.polygon.centroid if self.polygon.area else Point(points[0, :2])
+        away = path - complex(middle.x, middle.y)
+        turned = np.angle(away[1:] * np.conj(away[:-1])).sum()
+        self.is_closed = abs(turned) > MOST_OF_A_TURN
+        self.is_left = turned > 0
 
 
 @rule(

@@ -46,7 +46,7 @@ def feed_per_minute(site: Site) -> Values:
 )
 def feed_cut_down(site: Site) -> Values:
     feeds = _planned_feeds(site)
-    most = 60.0 * min(site.program.limits.path, *_speeds(site))
+    most = 60.0 * min([site.program.limits.path, *_speeds(site)])
     return {"feed": max(feeds), "most": most} if most < CUT_DOWN * max(feeds, default=0.0) else None
 
 

@@ -7,27 +7,44 @@ import re
 from g12.machine_ini import remap_lines
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.spindles import MAIN, switching_codes
 from g12.tools.verify.rules.table import Site, Values, rule
 
 RUNS = ("M3", "M4")
+MAIN_SPINDLE, LIVE_TOOL = "the spindle", "the live tool"
+C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
+NO_MOVE = re.compile(r"G0*(10|92|52|7\.1)(?![.\d])")
 USER_CODE = re.compile(r"(M1\d\d) P")
 
 
 @rule(
     "spindle",
     FINDING,
-    "the spindle does not turn: S and M3 are missing after the last M5 or M6",
+    "{which} does not turn: S and {code} are missing after the last M5 or M6",
     plain=True,
 )
 def spindle_off(site: Site) -> Values:
     """Look at the whole cut: an M5 in a section is found at the move after it."""
-    if site.program.several_spindles:
-        return None
     for index in site.moves:
-        state = site.program.state(index)
-        if not state.user_code and (state.spindle not in RUNS or not state.speed):
-            return {} if index == site.at else {"at_line": site.program.where(index)[0]}
+        which = _standing(index, site)
+        if which:
+            own = {"which": which, "code": "M3 $1" if which == LIVE_TOOL else "M3"}
+            return own if index == site.at else {**own, "at_line": site.program.where(index)[0]}
     return None
+
+
+def _standing(index: int, site: Site) -> str:
+    """Return which spindle should turn at a move and does not, "" if none is known."""
+    program, state = site.program, site.program.state(index)
+    if not program.several_spindles:
+        turns = state.user_code or (state.spindle in RUNS and state.speed)
+        return "" if turns else MAIN_SPINDLE
+    if not program.spindles:
+        return ""
+    is_c, turning = program.spindles[program.moves[index].block]
+    if turning is None or (turning if is_c or site.cut else MAIN in turning):
+        return ""
+    return LIVE_TOOL if is_c or site.cut else MAIN_SPINDLE
 
 
 @rule(
@@ -46,18 +63,27 @@ def spindle_reversed(site: Site) -> Values:
 
 
 @rule(
-    "spindle-unseen", NOT_JUDGED, "whether the tool turns: the preview shows one spindle", once=True
+    "spindle-unseen", NOT_JUDGED, "whether the tool turns: no preview shows its spindle", once=True
 )
 def spindle_unseen(site: Site) -> Values:
-    return {} if site.program.several_spindles else None
-
-
-@rule("main-spindle", WARNING, "the main spindle turns: C cannot hold a part that turns")
-def main_spindle_turns(site: Site) -> Values:
-    if not (site.program.several_spindles and site.program.turning):
+    if not site.program.several_spindles:
         return None
-    state = site.program.state(site.at)
-    return {} if state.spindle in RUNS and state.speed else None
+    states, line = site.program.spindles, site.program.moves[site.at].block
+    return None if states and states[line].turning is not None else {}
+
+
+@rule(
+    "main-spindle",
+    FINDING,
+    "M3 or M4 of the spindle that is C: it does not turn. {off} is missing before it, or $1",
+    program=True,
+)
+def main_spindle_turns(program: TracedProgram) -> Values:
+    for line, state in enumerate(program.spindles or ()):
+        if state.is_c and state.turns(MAIN):
+            off = min(switching_codes(program.ini)[1], default="the code that ends C")
+            return {"off": off, "at_line": line}
+    return None
 
 
 @rule(
@@ -125,17 +151,17 @@ def clamp_unseen(site: Site) -> Values:
     return {} if unseen and site.own.places else None
 
 
-@rule("c-axis", FINDING, "the spindle is no C axis here: {code} does not come before it", once=True)
-def spindle_is_c(site: Site) -> Values:
+@rule(
+    "c-axis",
+    FINDING,
+    "the spindle is no C axis here: {code} does not come before it",
+    program=True,
+)
+def spindle_is_c(program: TracedProgram) -> Values:
     """Look in the program's lines: a preview does not show the codes that switch the spindle."""
-    program, cut = site.program, site.own
-    remaps = [str(remap) for remap in program.ini.all("RS274NGC", "REMAP")]
-    on, off = (
-        [r.split()[0] for r in remaps if f"prolog=spindle_c_{state}" in r]
-        for state in ("on", "off")
-    )
-    codes = re.compile(rf"({'|'.join([*on, *off])})(?!\d)") if on else None
-    if not codes or cut.file or program.calls_files:
-        return None
-    before = codes.findall("\n".join(program.texts[: cut.line]))
-    return None if before and before[-1] in on else {"code": on[0]}
+    needs_c = {cut.line for cut in program.cuts if not cut.file}
+    for line, (state, text) in enumerate(zip(program.spindles or (), ["", *program.texts])):
+        turns_c = C_WORD.search(text) and not NO_MOVE.search(text)
+        if not state.is_c and (turns_c or line in needs_c):
+            return {"code": min(switching_codes(program.ini)[0]), "at_line": line}
+    return None

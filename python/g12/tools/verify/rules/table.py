@@ -66,8 +66,8 @@ def rule(
 ) -> Callable[[Callable[[Any], Values]], Callable[[Any], Values]]:
     """Add a rule to the table: of each cut, or of the whole ``program``.
 
-    ``once``: only the first cut is reported. ``plain``: also of moves that belong to no cut, on a
-    mill; the first of each tool is reported.
+    ``once``: only the first cut is reported. ``plain``: also of moves that belong to no cut;
+    the first of each tool is reported.
     """
 
     def add(judge: Callable[[Any], Values]) -> Callable[[Any], Values]:
@@ -105,9 +105,9 @@ def found(of: Kind, values: Mapping[str, Any], line: int, file: str) -> Finding:
 
 
 def sites(program: TracedProgram, solids: Solids) -> Iterator[Site]:
-    """Yield the cuts, and on a mill the other stretches at feed below the top, in order."""
+    """Yield the cuts, and the other stretches at feed below the top, in order."""
     every = [Site(program, solids, cut.moves, cut) for cut in program.cuts if cut.at < cut.end]
-    for rapid, run in [] if program.turning else program.runs():
+    for rapid, run in program.runs():
         if not rapid and not program.cut_at(run[0]):
             levels = (program.tip(index, FACE)[:, 2].min() for index in run)
             if min(levels) < solids.top(FACE):

@@ -131,6 +131,26 @@ def length_not_used(site: Site) -> Values:
 
 
 @rule(
+    "length-mixed",
+    FINDING,
+    "T{tool} is {off:fine} {how} than T{first} in the table, and no tool length is in force: one "
+    "Z0 cannot fit both (G43)",
+    plain=True,
+)
+def length_mixed(site: Site) -> Values:
+    program, moves = site.program, site.program.moves
+    if program.turning or program.uses_lengths or site.tool <= 0:
+        return None
+    first = next(i for i, move in enumerate(moves) if move.kind != "rapid" and move.tool > 0)
+    cuts = program.cut_near(first), program.cut_near(site.at)
+    off = program.missing_length(site.at) - program.missing_length(first)
+    if abs(off) <= SIZE or (cuts[0] and cuts[1] and cuts[0].zero[Z] != cuts[1].zero[Z]):
+        return None
+    how = "longer" if off > 0 else "shorter"
+    return {"tool": site.tool, "off": abs(off), "how": how, "first": moves[first].tool}
+
+
+@rule(
     "offset-beside",
     FINDING,
     "the tool offset in X is not that of T{tool}: it cuts {off:fine} beside its words",
