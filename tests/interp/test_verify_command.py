@@ -96,7 +96,8 @@ def test_what_is_not_judged_is_in_the_verdict_and_counts_on_demand(verify):
 
 
 def test_a_warning_is_accepted_in_the_program_or_by_an_argument(verify, as_json):
-    for text, *words in (CORED.replace("D4", "D4 (g12: expect core)"),), (CORED, "--accept", "core"):
+    expected = CORED.replace("D4", "D4 (g12: expect core)")
+    for text, *words in (expected,), (CORED, "--accept", "core"):
         code, out, _ = verify(text, "--strict", *words)
         assert code == 0 and out.endswith("verdict: no finding\n")
         assert "accepted\n  line 4: a core of " in out
