@@ -79,7 +79,7 @@ def pocket_program(chance, unit, count, add_pocket):
         if loaded is None or chance.random() < 0.1:
             loaded = chance.choice(list(CUTTERS[unit]))
             text.add("G90 G0", f"Z{text.n(20)}")  # a larger tool would not come out of the pocket
-            text.add(f"T{loaded} M6")
+            text.add(f"T{loaded} M6 G43")
             text.add("S2000 M3")
             text.add("F" + text.n(text.between(100, 900)))
         x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
@@ -245,7 +245,7 @@ def polar_program(chance, unit, count, kind=""):
     for k in range(count):
         if loaded is None or chance.random() < 0.2:
             loaded = chance.choice(list(AXIAL[unit]))
-            text.add(f"T{loaded} M6")
+            text.add(f"T{loaded} M6 G43")
             text.add(f"S{SPEED} M3")
         in_sub, times = chance.random() < 0.3, chance.choice([1, 1, 2, 3])
         if chance.random() < 0.15:
@@ -391,7 +391,7 @@ def cylinder_program(chance, unit, count, kind=""):
         z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
         if chance.random() < 0.15:
             text.shift(("X", -3, 3), ("Z", -9, 9))
-        text.add(f"T{loaded} M6")
+        text.add(f"T{loaded} M6 G43")
         text.add(f"S{SPEED} M3")
         text.add(f"G0 X{_x(text, 90)}")
         text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
@@ -464,7 +464,7 @@ def shapes_program(chance, unit, count, _kind=""):
         if not k or chance.random() < 0.2:
             loaded = chance.choice(list(AXIAL[unit]))
             text.add(f"G0 X{_x(text, 60)} Z{text.n(9)}")
-            text.add(f"T{loaded} M6")
+            text.add(f"T{loaded} M6 G43")
             text.add(f"S{SPEED} M3")
         if chance.random() < 0.15:
             text.shift(("X", 0, 8), ("Z", -3, 3), ("C", 0, 1))
