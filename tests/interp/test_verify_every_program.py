@@ -25,20 +25,20 @@ WRONG = {
     # words without a part
     "haas-mill/homes": ["length", "rapid", "rapid"],
     "haas-mill/tool_offsets": ["length"],
-    # what a planner does there is the point, not a part
-    "circle_mill/every": ["rapid"],
-    "mitsubishi/every": ["rapid", "rapid"],
-    "yasnac/every": ["rapid", "rapid", "rapid", "rapid"],
-    "yasnac_traverse/circles": ["rapid"],
-    "lathe_coarse/loop": ["air"],
-    "lathe_coarse/shifted": ["air"],
-    "lathe_inch/two_lines": ["no-stock-met"],
-    "lathe_mm/exact": ["air"],
 }
 BEFORE = {"flange": "T2 M6\nG0 Z1\n"}
 SUBS = ("clamp", "subs")
+PLANNERS = ("lathe_", "yasnac_", "mill_helix", "mill_spiral", "haas_mm")  # folders, as they begin
+
+
+def is_part(path):
+    """Return whether a program makes a part; others are recorded for what a planner does there."""
+    folder = path.parent.name
+    return folder not in SUBS and path.stem != "every" and not folder.startswith(PLANNERS)
+
+
 EVERY = [
-    *sorted(path for path in PROGRAMS.rglob("*.ngc") if path.parent.name not in SUBS),
+    *sorted(path for path in PROGRAMS.rglob("*.ngc") if is_part(path)),
     *sorted((SIM / "samples").glob("*.ngc")),
 ]
 
