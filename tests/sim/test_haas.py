@@ -165,3 +165,14 @@ def test_d_with_a_random_tool_changer():
             machine.mdi(f"G12 I9 Z-1 {offset}")
             assert machine.samples().axes["X"].max() == pytest.approx(reach, abs=0.002)
         assert machine.errors() == []
+
+
+def test_what_a_refused_form_asked_for_ends_with_it(machine):
+    """A form has refused what a program is told of, also after a form that was refused."""
+    entries = "[1] [3000] [9] [400] [0] [0] [10] [0] [-4] [2] [13] [1] [30] [4]"
+    assert (
+        "I1 must be greater" in machine.run_text(f"o<form_haas_mm> call {entries}\nM2\n").error.text
+    )
+    machine.reset()
+    told = machine.run_text("G21 G90 F8000\nT1 M6 S3000 M3\nG0 Z5\nG13 I4 K18 Q7 Z-1 D1\nM2\n")
+    assert told.error is None

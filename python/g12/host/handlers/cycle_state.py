@@ -52,7 +52,7 @@ READING_WORDS = (  # codes that read words of a cycle's block
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 
 # every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
-STRICT = "_g12_strict"
+FORM = "form_"  # begins the name of a form's sub
 CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
 
 
@@ -188,14 +188,9 @@ def other_unit(interp: Interp) -> str:
 
 
 def is_strict(interp: Interp) -> bool:
-    """Return whether a form has set ``#<_g12_strict>`` before this block, for it alone."""
-    try:
-        strict = bool(interp.params[STRICT])
-    except RuntimeError:  # no program has named it
-        return False
-    if strict:
-        interp.params[STRICT] = 0.0
-    return strict
+    """Return whether a form makes the block: its messages would be read too late."""
+    frames = (interp.sub_context[level] for level in range(interp.call_level + 1))
+    return any((frame.subname or "").startswith(FORM) for frame in frames)
 
 
 def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:

@@ -143,7 +143,6 @@ CIRCLE_FORMS = (
         NO_CODE + whole("levels", "L") + """\
 START
 G1 Z#<top> F#<feed>
-#<_g12_strict> = 1
 o<clearing> if [#<k>]
   G91 G#<code> I#<i> K#<k> Q#<q> Z[[#<z> - #<top>] / #<levels>] L#<levels> D#<tool>
 o<clearing> else
@@ -172,7 +171,6 @@ o<clearing> endif
 START
 G0 Z#<top>
 G1 Z#<z> F#<feed>
-#<_g12_strict> = 1
 o<words> if [#<r> AND #<k>]
   G#<code> I#<i> R#<r> K#<k> Q#<q> L#<circles> D#<tool>
 o<words> elseif [#<k>]
@@ -201,7 +199,6 @@ o<words> endif
 START
 G0 Z#<top>
 G1 Z#<z> F#<feed>
-#<_g12_strict> = 1
 G#<code> I#<i> D#<tool>
 """, "retract",
     ),
@@ -237,7 +234,6 @@ o<no_event> if [#<event> NE 0 AND #<event> NE 7]
 o<no_event> endif
 START
 OMITTED
-#<_g12_strict> = 1
 o<circle_mill> call ENTRIES
 """, "o",
         "event x y z w o r d c k j l p f v",
@@ -295,7 +291,6 @@ HOLE_FORMS = (
         no_hole_code(5) + """\
 START
 F#<feed>
-#<_g12_strict> = 1
 """ + with_or_without("Q", "G#<code> Z#<z> R#<top> I#<i> P#<p> K#<k> L#<circles> D#<tool>"),
         "retract",
     ),
@@ -321,7 +316,6 @@ F#<feed>
         no_hole_code(6) + """\
 START
 F#<feed>
-#<_g12_strict> = 1
 """ + with_or_without("Q", THREAD_BLOCK),
         "retract",
     ),
@@ -348,7 +342,6 @@ F#<feed>
         no_hole_code(7) + """\
 START
 G1 Z#<top> F#<feed>
-#<_g12_strict> = 1
 #<k> = [#<k> + [#<k> EQ 0] * [#<top> - #<z>]]
 o<pocket> if [#<side> EQ 0]
   G#<code> Z#<z> I#<i> J#<j> R#<r> K#<k> Q#<q> E#<e> P#<p> H#<side> D#<tool>
