@@ -19,18 +19,18 @@ from gi.repository import Gdk, GdkPixbuf, GLib, Gtk, Pango
 
 from g12.tools.cycles_page.opening import open_in_linuxcnc
 from g12.tools.cycles_page.page import Page, choice_of
-from g12.tools.cycles_page.sketch import MESSAGE, REFUSED, fitted
+from g12.tools.cycles_page.sketch import fitted
 from g12.tools.cycles_page.steps import number_text
 from g12.tools.cycles_page.view import (
     COLOURS,
     KEYS,
+    StepButtons,
     hint_of,
     label_of,
     picture_of,
     pressed,
     tool_text,
 )
-from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
 THUMBNAIL, FORM_WIDTH, DRAWING = 80, 200, (120, 150)  # pixels; the last two at least
@@ -44,13 +44,12 @@ def rgb(name: str) -> tuple[float, float, float]:
     return colour.red, colour.green, colour.blue
 
 
-class CyclesView(Gtk.Box):
+class CyclesView(StepButtons, Gtk.Box):
     """The page; ``opened`` is called with the path of a program to open."""
 
     def __init__(self, ini: str, opened: Callable[[str], None]) -> None:
         super().__init__(spacing=6)
         self.opened = opened
-        self.edited: int | None = None  # the step that is shown
         self.widgets: dict[str, Gtk.Widget] = {}
         self.page = Page(ini, lambda: GLib.idle_add(self._show_sketch))
         self.connect("destroy", lambda *_: self.page.close())
@@ -217,24 +216,6 @@ class CyclesView(Gtk.Box):
 
     # The steps.
 
-    def _try(self, action: Callable[[], None], *_clicked) -> None:
-        """Do what a button says; show why it cannot be."""
-        try:
-            action()
-        except (UsageError, OSError) as problem:
-            self._say(REFUSED, str(problem))
-
-    def _add(self) -> None:
-        self.page.add()
-        self._show_steps(len(self.page.steps) - 1)
-
-    def _replace(self) -> None:
-        if self.edited is None:
-            self._say(MESSAGE, "select a step first")
-            return
-        self.page.add(self.edited)
-        self._show_steps(self.edited)
-
     def _show_steps(self, row: int) -> None:
         for child in self.steps.get_children():
             self.steps.remove(child)
@@ -250,15 +231,6 @@ class CyclesView(Gtk.Box):
         self.page.select(self.page.steps[row].form, self.page.steps[row])
         self._show_form()
 
-    def _move(self, by: int) -> None:
-        if self.edited is not None:
-            self._show_steps(self.page.move(self.edited, by))
-
-    def _delete(self) -> None:
-        if self.edited is not None:
-            self.page.delete(self.edited)
-            self._show_steps(min(self.edited, len(self.page.steps) - 1))
-
     def _load(self) -> None:
         name = self._ask_file(Gtk.FileChooserAction.OPEN)
         if name:
@@ -269,9 +241,6 @@ class CyclesView(Gtk.Box):
         name = self._ask_file(Gtk.FileChooserAction.SAVE)
         if name:
             self.page.save(Path(name))
-
-    def _open(self) -> None:
-        self.opened(str(self.page.save(self.page.program_path())))
 
     def _ask_file(self, action: Gtk.FileChooserAction) -> str | None:
         chooser = Gtk.FileChooserNative(action=action, transient_for=self.get_toplevel())

@@ -24,18 +24,18 @@ from qtpy.QtWidgets import (
 )
 
 from g12.tools.cycles_page.page import Page, choice_of
-from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch, fitted
+from g12.tools.cycles_page.sketch import READY, Sketch, fitted
 from g12.tools.cycles_page.steps import number_text
 from g12.tools.cycles_page.view import (
     COLOURS,
     KEYS,
+    StepButtons,
     hint_of,
     label_of,
     picture_of,
     pressed,
     tool_text,
 )
-from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, Entry
 
 THUMBNAIL = 120, 90  # pixels
@@ -67,7 +67,7 @@ class Drawing(QWidget):
                     painter.drawPolyline(QPolygonF(points))
 
 
-class CyclesView(QWidget):
+class CyclesView(StepButtons, QWidget):
     """The page; ``opened`` is called with the path of a program to open."""
 
     arrived = Signal()
@@ -75,7 +75,6 @@ class CyclesView(QWidget):
     def __init__(self, ini: str, opened: Callable[[str], None], parent=None) -> None:
         super().__init__(parent)
         self.opened = opened
-        self.edited: int | None = None  # the step that is shown
         self.arrived.connect(self._show_sketch)
         self.page = Page(ini, self.arrived.emit)
         self._build()
@@ -200,24 +199,6 @@ class CyclesView(QWidget):
 
     # The steps.
 
-    def _try(self, action: Callable[[], None], *_clicked) -> None:
-        """Do what a button says; show why it cannot be."""
-        try:
-            action()
-        except (UsageError, OSError) as problem:
-            self._say(REFUSED, str(problem))
-
-    def _add(self) -> None:
-        self.page.add()
-        self._show_steps(len(self.page.steps) - 1)
-
-    def _replace(self) -> None:
-        if self.edited is None:
-            self._say(MESSAGE, "select a step first")
-            return
-        self.page.add(self.edited)
-        self._show_steps(self.edited)
-
     def _show_steps(self, row: int) -> None:
         self.steps.blockSignals(True)
         self.steps.clear()
@@ -233,15 +214,6 @@ class CyclesView(QWidget):
             self.page.select(self.page.steps[row].form, self.page.steps[row])
             self._show_form()
 
-    def _move(self, by: int) -> None:
-        if self.edited is not None:
-            self._show_steps(self.page.move(self.edited, by))
-
-    def _delete(self) -> None:
-        if self.edited is not None:
-            self.page.delete(self.edited)
-            self._show_steps(min(self.edited, len(self.page.steps) - 1))
-
     def _load(self) -> None:
         name, _ = QFileDialog.getOpenFileName(self, "Load", str(self.page.program_path().parent))
         if name:
@@ -252,6 +224,3 @@ class CyclesView(QWidget):
         name, _ = QFileDialog.getSaveFileName(self, "Save", str(self.page.program_path()))
         if name:
             self.page.save(Path(name))
-
-    def _open(self) -> None:
-        self.opened(str(self.page.save(self.page.program_path())))

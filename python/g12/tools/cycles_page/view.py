@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What both views show alike: colours, labels, pictures."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
+from g12.tools.errors import UsageError
 from g12.tools.forms.table import ANGLE, FEED, LENGTH, SECONDS, SPEED, Entry, Form
 
 NGC = Path(__file__).resolve().parents[4] / "ngc"
@@ -62,3 +64,47 @@ def tool_text(page: Page) -> str:
         return f"T{page.texts['tool']}: not in the tool table"
     named = f", {tool.remark}" if tool.remark else ""
     return f"T{page.texts['tool']}: ⌀ {tool.diameter:g} {UNITS[LENGTH][page.unit]}{named}"
+
+
+class StepButtons:
+    """What the buttons of a view do: it shows the steps and says a sentence itself."""
+
+    page: Page
+    opened: Callable[[str], None]  # called with the path of a program to open
+    edited: int | None = None  # the step that is shown
+
+    def _say(self, state: str, text: str) -> None:
+        raise NotImplementedError
+
+    def _show_steps(self, row: int) -> None:
+        raise NotImplementedError
+
+    def _try(self, action: Callable[[], None], *_clicked) -> None:
+        """Do what a button says; show why it cannot be."""
+        try:
+            action()
+        except (UsageError, OSError) as problem:
+            self._say(REFUSED, str(problem))
+
+    def _add(self) -> None:
+        self.page.add()
+        self._show_steps(len(self.page.steps) - 1)
+
+    def _replace(self) -> None:
+        if self.edited is None:
+            self._say(MESSAGE, "select a step first")
+            return
+        self.page.add(self.edited)
+        self._show_steps(self.edited)
+
+    def _move(self, by: int) -> None:
+        if self.edited is not None:
+            self._show_steps(self.page.move(self.edited, by))
+
+    def _delete(self) -> None:
+        if self.edited is not None:
+            self.page.delete(self.edited)
+            self._show_steps(min(self.edited, len(self.page.steps) - 1))
+
+    def _open(self) -> None:
+        self.opened(str(self.page.save(self.page.program_path())))
