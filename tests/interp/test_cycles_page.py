@@ -284,3 +284,14 @@ def test_a_pipe_thread_has_a_taper(page):
     inch = page("mill_inch")
     texts = {"tool": "1", "i": "0.654", "k": "0.585", "pitch": "0.08696", "taper": "0.0625"}
     assert inch.show("thread", **texts).state != REFUSED, inch.sketch.text
+
+
+def test_a_link_that_somebody_put_beside_the_program_is_not_written_to(page, tmp_path):
+    """A folder of programs may be everybody's."""
+    theirs, folder = tmp_path / "theirs", tmp_path / "programs"
+    folder.mkdir()
+    (folder / ".cycles.ngc.new").symlink_to(theirs)
+    made = page("mill_mm")
+    made.show("haas", tool="5", i="8", q="8")
+    made.save(folder / "cycles.ngc")
+    assert not theirs.exists()

@@ -26,6 +26,7 @@ from g12.tools.cycles_page.steps import (
 )
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import CHOICE, FORMS, TOOL, Entry, Form
+from g12.tools.machine.files import write
 from g12.tools.machine.ini import read_ini
 
 HANDLERS = {  # of a REMAP line: the feature whose forms it makes possible
@@ -162,9 +163,7 @@ class Page:
         """Write the program of the steps, of the form alone if there are none."""
         if not self.steps:
             self.add()
-        partial = path.with_name(f".{path.name}.new")
-        partial.write_text(program_text(self.steps), encoding="utf-8")
-        partial.replace(path)
+        write(path, program_text(self.steps).encode())
         return path
 
     def program_path(self) -> Path:
@@ -210,9 +209,7 @@ class Page:
         with contextlib.suppress(OSError):  # a home that cannot be written: kept until the end
             path = _kept_path()
             path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            partial = path.with_name(f".{path.name}.{os.getpid()}")
-            partial.write_text(json.dumps(self._kept, indent=1), encoding="utf-8")
-            partial.replace(path)
+            write(path, json.dumps(self._kept, indent=1).encode())
 
 
 def forms_of_machine(ini) -> Sequence[Form]:
