@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterator
+from itertools import pairwise
 
 from g12.cut_report import PolygonCut
 from g12.tools.verify.model.cut import Cut
@@ -12,6 +13,7 @@ from g12.tools.verify.model.solid import Solids
 from g12.tools.verify.remains import LEAST_GONE
 
 LEVEL = 1e-3  # mm
+DEEPEST = 3.0  # times a cutter's radius: few pockets are milled so deep at once
 THROUGH = 2.0  # mm below the block: more is no through hole
 AIR = kind("air", FINDING, "it cuts nothing: it stays {above:length} above the part{hint}")
 BESIDE = kind("no-stock-met", FINDING, "it meets nothing of the stock")
@@ -21,6 +23,7 @@ UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another p
 OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 AIR_CONTOUR = kind("air-contour", WARNING, "its contour stays above the part, others are below")
 AIR_LEVELS = kind("air-levels", WARNING, "{n} of its {of} levels cut nothing, above the part")
+DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
 ABOVE_ZERO = kind("above-zero", WARNING, "nothing of it is below Z0: is that the part's face?")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 THROUGH_STOCK = kind("through-stock", WARNING, "it goes {below:length} below the block")
@@ -60,10 +63,25 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     high = sum(level > top - LEVEL for level in cut.levels)
     if 0 < high < len(cut.levels):
         yield Finding(AIR_LEVELS, cut.line, {"n": high, "of": len(cut.levels)}, place, cut.file)
+    if cut.levels:
+        yield from _deep(cut, solids)
     below = solids.bottom - cut.floor
     if below > LEVEL:
         kind_of = BELOW if below > THROUGH else THROUGH_STOCK
         yield Finding(kind_of, cut.line, {"below": below}, place, cut.file)
+
+
+def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
+    """Yield a first level that is far below what stands, or a level far below the one before."""
+    radius, levels = solids.program.cutter(cut.at), cut.levels
+    steps = [upper - lower for upper, lower in pairwise(levels)]
+    high, top = levels[0] + DEEPEST * radius, solids.top(cut.surface)
+    if high < top:
+        standing = solids.standing(cut.goes, high, cut.surface, before=cut.at)
+        steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
+    if max(steps, default=0.0) > DEEPEST * radius:
+        values = {"deep": max(steps), "cutter": 2 * radius}
+        yield Finding(DEEP, cut.line, values, file=cut.file)
 
 
 def lowest_of(cut: Cut, solids: Solids) -> float:

@@ -36,6 +36,7 @@ CAUSES = {  # a finding of one code is the cause of those of others at the same 
     "no-stock-met": {"uncut", "bar-remains"},
     "surface": {"rapid"},
     "side": {"overcut", "bar-remains"},
+    "place-unknown": {"deep-pass"},
     "no-tool": {"no-diameter"},
     "offset-beside": {"off"},
 }

@@ -22,6 +22,8 @@ STAYED = 1e-6
 AT_EDGE = 0.01  # mm
 LEVELS_MEANT = 3  # L2 is a spring pass
 STRAIGHT_BACK = -0.999999  # cosine of the angle between two directions, at most
+BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
+SUB = re.compile(r"O.*SUB")
 SIDE_CODE = re.compile(r"G4([0-2])(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
 
@@ -62,6 +64,25 @@ def zero_line_unknown(site: Site) -> Values:
     cut = site.own
     unknown = cut.is_section and not cut.surface and not cut.index
     return {} if unknown and not cut.reported.c_commanded else None
+
+
+@rule(
+    "place-unknown",
+    WARNING,
+    "no line before it says {axes}: it is cut where the tool stands",
+    once=True,
+)
+def place_unknown(site: Site) -> Values:
+    cut, program = site.own, site.program
+    if cut.file or program.calls_files or not (cut.is_circle or cut.is_section):
+        return None
+    own = program.texts[cut.line - 1 : cut.line] if not cut.reported.report.incremental else []
+    text = "\n".join(t for t in [*program.texts[: cut.line - 1], *own] if not BY_MACHINE.search(t))
+    axes = "XZ" if program.turning else "XYZ"
+    if SUB.search(text):  # is called after lines that follow it
+        return None
+    unsaid = [axis for axis in axes if not re.search(rf"{axis}\s*[-+.\d\[#]", text)]
+    return {"axes": " and ".join(unsaid)} if unsaid else None
 
 
 @rule(

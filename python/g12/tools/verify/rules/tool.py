@@ -5,7 +5,7 @@ LinuxCNC believes G43's H as the cycles believe D. A program that never commands
 touched off Z with its tool; any other works with the lengths of the table.
 """
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, FrameCut, PocketCut, ThreadCut
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, NO_CUTTER, FrameCut, PocketCut, ThreadCut
 from g12.tools.path.part import X, Z
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR, TracedProgram
@@ -84,6 +84,17 @@ def unset_d(site: Site) -> Values:
     cut = site.own
     by_d = isinstance(cut.plan, (PocketCut, ThreadCut, FrameCut))
     return {} if by_d and cut.used.source == LOADED else None
+
+
+@rule(
+    "no-d",
+    WARNING,
+    "no D: the tool's centre runs on the programmed circles (D0 where that is meant)",
+)
+def no_d(site: Site) -> Values:
+    cut = site.own
+    known = cut.used.source != NO_CUTTER or "D" in cut.reported.report.words
+    return None if known or not cut.is_circle else {}
 
 
 @rule(
