@@ -89,6 +89,7 @@ class Recorders:
 
     def __init__(self, job: Job) -> None:
         self._job, self._own = job, threading.local()
+        self._linuxcnc = linuxcnc_version()
         self._tracers: list[Tracer] = []
 
     def result(self, name: str) -> Result:
@@ -109,7 +110,7 @@ class Recorders:
         facts = {
             "program": f"{name} {hash_of(program.read_bytes())}",
             "machine": f"{ini.path.name} {hash_of(ini.text.encode(errors='surrogateescape'))}",
-            "linuxcnc": linuxcnc_version(),
+            "linuxcnc": self._linuxcnc,
             "units": name_of_unit(ini.mm),
         }
         options: dict[str, Any] = {"parameters": job.parameters, "timeout": job.terms.timeout}
