@@ -22,7 +22,8 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
+from g12.cut_report import PocketCut
+from g12.cycles.cutter import Cutter, chosen_cutter
 from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
@@ -31,12 +32,9 @@ from g12.request.common import (
     check_count,
     check_modes,
     check_start,
-    commanded_tool,
-    other_cutter,
-    sound_tool,
     steps_between,
 )
-from g12.request.context import XY, Tool
+from g12.request.context import XY
 from g12.request.travel import CycleExtent
 from g12.request.words import Words
 
@@ -47,7 +45,7 @@ def plan_pocket(
     words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
-    context, other = words.context, other_cutter(words, words.context.last_cutter)
+    context = words.context
     check_modes(words)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
@@ -59,9 +57,8 @@ def plan_pocket(
     depth = words.take("Z")
     if not names_centre:
         check_start(words)
-    with_d = "D" in words
-    cutter, source = choose_cutter(words)
-    check_radii(words, first, outward, cutter, source)
+    cutter = chosen_cutter(words)
+    check_radii(words, first, outward, cutter)
 
     finished, stepover = outward or (first, first)
     links = links_outward(words, first, finished, stepover, clearing, levels)
@@ -85,7 +82,6 @@ def plan_pocket(
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
 
     def cut() -> PocketCut:
-        last = LOADED if context.last_cutter is None else BY_LAST_D
         return PocketCut(
             plane=XY,
             centre=(x, y, z),
@@ -94,35 +90,10 @@ def plan_pocket(
             step=stepover if outward else 0.0,
             inner=first_radius - cutter.radius,
             levels=tuple(z + z_step * level for level in range(levels)),
-            cutter=UsedCutter(cutter.radius, BY_D if with_d else last, cutter.number),
+            cutter=cutter.used,
         )
 
-    commanded = cutter if with_d else None
-    kept = None if with_d else kept_cutter(words, cutter)
-    numbers = numbers | links | down
-    return CyclePlan(numbers, extent, cut, message, other, commanded, kept_cutter=kept)
-
-
-def kept_cutter(words: Words, cutter: Tool) -> str | None:
-    """Return the operator message of a block without D whose cutter the program does not show.
-
-    It may be that of an older line of the tool table, or depend on what ran before.
-    """
-    context, before = words.context, "the D of what ran before"
-    size = context.tool_size(2 * cutter.radius)
-    named = context.tool_in_table(cutter.number) if cutter.number else None
-    if named and abs(named.radius - cutter.radius) > context.rounding:
-        now = context.tool_size(2 * named.radius)
-        return (
-            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
-            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
-        )
-    if not context.d_is_earlier():
-        return None
-    counts = f"{before} counts, diameter {size}"
-    if context.last_cutter is None:
-        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
-    return f"{words.code}: no D above this block in the program: {counts}. Give D"
+    return cutter.plan(numbers | links | down, extent, cut, message)
 
 
 def links_outward(
@@ -136,24 +107,8 @@ def links_outward(
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
 
 
-def choose_cutter(words: Words) -> tuple[Tool, str]:
-    """Return the cutter of the block and its source, for messages.
-
-    The source is D in the block, else the D last commanded, else the tool in the spindle.
-    """
-    context, tool = words.context, commanded_tool(words)
-    if tool is not None:
-        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
-    if context.last_cutter is not None:
-        return context.last_cutter, "the D last commanded"
-    if context.spindle_tool is None:
-        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    source = f"T{context.spindle_tool.number} in the spindle"
-    return sound_tool(words, context.spindle_tool, source), source
-
-
 def check_radii(
-    words: Words, first: float, outward: tuple[float, float] | None, cutter: Tool, source: str
+    words: Words, first: float, outward: tuple[float, float] | None, cutter: Cutter
 ) -> None:
     """Refuse circles that the cutter cannot mill, or that do not grow."""
     context, rounding = words.context, words.context.rounding
@@ -161,11 +116,11 @@ def check_radii(
         raise words.refuse_word("I", first, "must be greater than 0")
     size = context.tool_size(cutter.radius)
     if first <= cutter.radius + rounding:
-        rule = f"must be greater than the tool radius {size} ({source})"
+        rule = f"must be greater than the tool radius {size} ({cutter.source})"
         raise words.refuse_word("I", first, rule)
     if first - cutter.radius < context.smallest_ring - rounding:
         least = number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({source}) by at least {least}"
+        rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
         raise words.refuse_word("I", first, rule)
     if outward and outward[0] <= first + rounding:
         raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
@@ -184,7 +139,7 @@ def upward(words: Words, depth: float | None) -> str | None:
 
 
 def uncut_material(
-    words: Words, outward: tuple[float, float] | None, first: float, cutter: Tool, helix: float
+    words: Words, outward: tuple[float, float] | None, first: float, cutter: Cutter, helix: float
 ) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
 
