@@ -8,14 +8,10 @@ stay there.
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.cutter import Cutter
-from g12.cycles.hole import check_block, hole_of, sized_cutter, turns_of
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
 from g12.errors import number
-from g12.request.common import CLEARED, check_count, steps_between
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CLEARED, CycleExtent, check_count, steps_between
+from g12.request.words import XY, Words
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
 

@@ -23,20 +23,24 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 """
 
 from g12.cut_report import PocketCut
-from g12.cycles.cutter import Cutter, chosen_cutter
-from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import (
+    STRAIGHT_DOWN,
+    Cutter,
+    CyclePlan,
+    PocketEntry,
+    chosen_cutter,
+    pocket_descent,
+)
 from g12.errors import number
 from g12.request.common import (
     CLEARED,
+    CycleExtent,
     check_count,
     check_modes,
     check_start,
     steps_between,
 )
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.words import XY, Words
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 

@@ -10,14 +10,19 @@ from math import ceil, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.cutter import Cutter
-from g12.cycles.hole import CLEARANCE_MM, Hole, check_block, hole_of, sized_cutter, turns_of
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import (
+    CLEARANCE_MM,
+    Cutter,
+    CyclePlan,
+    Hole,
+    check_block,
+    hole_of,
+    sized_cutter,
+    turns_of,
+)
 from g12.errors import number
-from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, check_count, steps_between
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, check_count, steps_between
+from g12.request.words import XY, Words
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
 INSIDE, OUTSIDE = 0, 1  # H
