@@ -94,14 +94,12 @@ def _lines_of_row(
     lines: list[str] = []
     is_written = False
     for index in indices:
-        draft, jumps = followed.drafts[index], followed.structure.jumps
+        draft = followed.drafts[index]
         own = draft.lines if draft else _unreached(followed.structure.blocks[index])
         if own is None:
             own = [] if is_written else [_as_comment(row)]
             is_written = True
-        heads = 1 if draft and draft.head else 0
-        lines += [*own[:heads], *jumps.before.get(index, ()), *own[heads:]]
-        lines += jumps.after.get(index, ())
+        lines += own
         lines += [ends[index]] if index in ends else []
         if index in followed.falls_off:
             lines.append("M2")

@@ -32,15 +32,6 @@ def _closing(draft: Draft, structure: Structure) -> None:
     _labelled(draft, f"o<{kind}_{start}> end{kind}")
 
 
-def _goto(draft: Draft, structure: Structure) -> None:
-    lines = structure.jumps.at[draft.index]
-    if draft.block.expression:
-        head = f"o<if_{draft.index}> if {draft.block.expression.text}"
-        lines = [head, *lines, f"o<if_{draft.index}> endif"]
-    _labelled(draft, lines[0])
-    draft.after += lines[1:]
-
-
 def _stop(draft: Draft, structure: Structure) -> None:
     """Write #3000, an alarm, or #3006, a stop, with the comment as its text."""
     message = ", ".join(draft.comments) or "stopped by the program"
@@ -67,6 +58,5 @@ STATEMENTS = {
     "end": _closing,
     "if": _opening,
     "endif": _closing,
-    "goto": _goto,
     "stop": _stop,
 }

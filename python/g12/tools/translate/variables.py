@@ -2,15 +2,13 @@
 """Local variables of macros that may be empty.
 
 A local variable that no call gives and no line sets is empty on the control, and its word vanishes;
-LinuxCNC takes 0. Such a macro is refused. All programs that no G65 calls share their local
-variables: a word of one that nothing sets before it is refused.
+LinuxCNC takes 0. Such a macro is refused, and elsewhere a word whose variable nothing sets before it.
 """
 
-from collections import defaultdict
 from collections.abc import Iterator
 
 from g12.tools.translate.blocks.draft import Draft
-from g12.tools.translate.blocks.expressions import LOCAL_VARIABLES, SHARED
+from g12.tools.translate.blocks.expressions import LOCAL_VARIABLES
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.rules.subprograms import ARGUMENTS
 
@@ -23,22 +21,17 @@ def unset_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
         if draft:
             is_macro = followed.kinds.get(number) == "macro"
             yield from _unset_in_macro(draft, number) if is_macro else _never_set(draft)
-    yield from _shared_locals(followed)
 
 
 def _unset_in_macro(draft: Draft, number: int) -> Iterator[tuple[int, str]]:
     block = draft.block
     for variable in sorted(block.read.intersection(LOCAL_VARIABLES) - draft.start.given):
         yield block.line, _unset_sentence(number, variable)
-    for variable in sorted(block.compared - ARGUMENT_LETTERS.keys()):
-        yield block.line, f"#{variable} EQ #0: no letter of G65 gives #{variable} a value"
 
 
 def _never_set(draft: Draft) -> Iterator[tuple[int, str]]:
     """Yield the words outside macros that are a local variable which nothing sets before."""
     block = draft.block
-    if block.compared:
-        yield block.line, "#0, the empty variable, is translated in a program of G65 only"
     for word in block.words:
         for number in word.read.intersection(LOCAL_VARIABLES) - draft.start.touched:
             if word.value.lstrip("-") == f"#{number}":
@@ -50,13 +43,3 @@ def _unset_sentence(number: int, variable: int) -> str:
     letter = ARGUMENT_LETTERS.get(variable)
     name = f"#{variable} ({letter} of the call)" if letter else f"#{variable}"
     return f"O{number} reads {name}, which not every G65 P{number} gives: it would be 0 on LinuxCNC"
-
-
-def _shared_locals(followed: FollowedProgram) -> Iterator[tuple[int, str]]:
-    """Yield the blocks that use #31 to #33, where several programs do: LinuxCNC has them once."""
-    users: dict[int, set[int]] = defaultdict(set)
-    for index, block in enumerate(followed.structure.blocks):
-        for variable in SHARED & {*block.read, *block.compared, block.variable}:
-            users[variable].add(followed.structure.programs[index])
-            if len(users[variable]) > 1:
-                yield block.line, f"#{variable} is used in two programs: LinuxCNC has it once"

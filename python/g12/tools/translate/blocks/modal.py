@@ -11,6 +11,7 @@ from typing import NamedTuple, Self
 UNSURE = "?"  # different on different ways
 UNKNOWN = ""  # no value yet
 AS_PROGRAMMED = "="  # LinuxCNC is in the mode that the program is in
+IN_CYCLE = "cycle"  # and in the program's drilling cycle, with all of its words
 
 GROUPS = {
     "motion": ("G0", "G1", "G2", "G3"),

@@ -8,7 +8,7 @@ them, which saves most of the time.
 import re
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
@@ -68,7 +68,7 @@ def _bare_words(draft: Draft) -> None:
     if state.own_motion == AS_PROGRAMMED:
         return
     if state.motion == UNSURE:
-        raise NotSure("words without G0 or G1, which is not the same on every way here", "motion")
+        raise NotTranslated("words without G0 or G1, which is not the same on every way here")
     draft.put_first(state.motion)
     draft.change(own_motion=AS_PROGRAMMED)
 
