@@ -28,7 +28,7 @@ from g12.tools.translate.rules import (
     subprograms,
     tools,
 )
-from g12.tools.translate.turning import corners, cycles_of_turning, drilling, feed_of_c
+from g12.tools.translate.turning import cycles_of_turning, drilling, feed_of_c
 
 Rule = Callable[[Draft], None]
 
@@ -116,11 +116,10 @@ PHASES = (
     ),
     Phase(
         "cycles of lathes",
-        "cycles, corners by a word and increments of a lathe are moves in X, Z and C",
+        "cycles and increments of a lathe are moves in X, Z and C",
         (
             drilling.drilling_of_lathe,
             cycles_of_turning.turning_cycle,
-            corners.direct_drawing,
             reference.incremental_words,
         ),
     ),

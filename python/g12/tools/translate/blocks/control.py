@@ -33,7 +33,7 @@ MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
-        "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
+        "drilling cycle", "roughing along Z", "roughing along X", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
         "circle of holes", "arc of holes", "row of holes",

@@ -78,7 +78,6 @@ class ModalState(NamedTuple):
     known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way
-    corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
     at_x: float | str | None = None  # the program's point (`positions`)
     at_y: float | str | None = None
     at_z: float | str | None = None

@@ -29,7 +29,7 @@ def motion_mode(draft: Draft) -> None:
     if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
-    _refuse_rounding(draft, motion or draft.state.motion)
+    _refuse_corners(draft, motion or draft.state.motion)
     consumed = not CONSUMERS.isdisjoint(codes)
     if motion and consumed and (draft.axis_words() or not REFERENCES.isdisjoint(codes)):
         _take_motion(draft, motion)
@@ -39,11 +39,13 @@ def motion_mode(draft: Draft) -> None:
         _bare_words(draft)
 
 
-def _refuse_rounding(draft: Draft, motion: str) -> None:
-    """Refuse the R of a straight line, by which some controls round the corner."""
+def _refuse_corners(draft: Draft, motion: str) -> None:
+    """Refuse the words of a straight line by which some controls break or round its corner."""
     straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
-    if straight and "R" in draft.letters() and draft.axis_words():
-        raise NotTranslated(f"R beside {motion}: write the arc of the corner as a block")
+    words = "IKR" if draft.control.is_lathe else "R"
+    found = sorted(letter for letter in draft.letters() if letter[0] == "," or letter in words)
+    if straight and found and draft.axis_words():
+        raise NotTranslated(f"{found[0]} beside {motion}: write the corner's line or arc as a block")
 
 
 def _moves(draft: Draft) -> bool:

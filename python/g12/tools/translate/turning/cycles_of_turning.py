@@ -42,7 +42,6 @@ from g12.tools.translate.turning.moves import (
     finishing_cut,
     lines_of_moves,
     pecks,
-    repeated_cuts,
     turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
@@ -52,7 +51,6 @@ SHORTEST = 1e-5  # of a thread
 CODE_SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
-METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
 def no_pass_yet(draft: Draft) -> None:
@@ -169,7 +167,7 @@ def roughing(draft: Draft, meaning: str) -> None:
             f"{code} needs a depth of cut above 0: {depth_word} in its first block, or D"
         )
     segments, _ = read_contour(draft, indices, start)
-    given = RoughCuts(depth, retract, allowance, along_x, segments[0].motion)
+    given = RoughCuts(depth, retract, allowance, along_x, segments[0].block.motion)
     _write_uncompensated(draft, rough(start, segments, given), start)
     draft.follows = follows
 
@@ -194,24 +192,6 @@ def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: comple
     if on in COMPENSATION_ON:
         radius = (word.text for word in offsets_radius(draft))
         draft.after = ["G40", *draft.after, " ".join([on, *radius])]
-
-
-def _pattern_repeating(draft: Draft, meaning: str) -> None:
-    """G73: two blocks, or one with I, K and D."""
-    if draft.letters().isdisjoint("PQ"):
-        relief = {"x": take_number(draft, "U"), "z": take_number(draft, "W")}
-        keep(draft, meaning, **relief, passes=take_whole(draft, "R"))
-        return
-    start, (indices, follows) = start_point(draft), _contour_named(draft)
-    own = (take_number(draft, "I"), take_number(draft, "K"), take_whole(draft, "D"))
-    x, z, passes = (
-        _kept_value(draft, meaning, name) if value is None else value
-        for name, value in zip(("x", "z", "passes"), own)
-    )
-    segments, _ = read_contour(draft, indices, start)
-    moves = repeated_cuts(start, segments, complex(z, x), _take_allowance(draft), int(passes))
-    _write_uncompensated(draft, moves, start)
-    draft.follows = follows
 
 
 def finishing(draft: Draft, meaning: str) -> None:
@@ -348,14 +328,14 @@ def _fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
 
 
 def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return the same for Haas's K, D, A, P (method) and Q (start angle)."""
+    """Return the same for Haas's K, D, A and Q (start angle)."""
     height, first = take_number(draft, "K") or 0.0, take_increments(draft, "D") or 0.0
     angle, method = take_number(draft, "A") or 0.0, take_whole(draft, "P") or 1
-    if method not in METHODS:
-        raise NotTranslated(f"G76 P{method}: the methods of cutting are P1 to P4")
+    if method != 1:
+        raise NotTranslated(f"G76 P{method}: write P1: one flank, the same chip in each pass")
     turn = take_turn(draft)
     least, allowance = (stored_setting(draft, f"thread_{n}") for n in ("least", "allowance"))
-    infeed = Infeed(height, first, least, allowance, 1, angle, *METHODS[method])
+    infeed = Infeed(height, first, least, allowance, 1, angle)
     return infeed, _chamfer_of(draft), turn
 
 
@@ -386,7 +366,6 @@ def _thread_move(draft: Draft, meaning: str) -> None:
 CYCLES: dict[str, Callable[[Draft, str], None]] = {
     "roughing along Z": roughing,
     "roughing along X": roughing,
-    "pattern repeating": _pattern_repeating,
     "finishing": finishing,
     "pecking along Z": pecking,
     "pecking along X": pecking,
