@@ -24,11 +24,7 @@ from typing import Any, NamedTuple
 from g12.tools.translate.blocks.expressions import OWN
 
 CONTROL_FOLDER = Path(__file__).parents[1] / "controls"
-HOLE_MEANINGS = (  # cycles of a lathe
-    "hole", "bore", "face tap right", "face tap left",
-    *(f"{where} {what}" for where in ("face", "side")
-      for what in ("hole", "bore", "tap", "live tap right", "live tap left")),
-)  # fmt: skip
+HOLE_MEANINGS = ("face hole", "face bore", "side hole", "side bore")  # cycles of a lathe
 MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin",
@@ -107,8 +103,7 @@ TABLES: dict[str, Any] = {
            for name in ("depth", "retract", "thread_least", "thread_allowance")},
     },
     "holes": {
-        "r": ("from start", "level", "none"), "q": ("increments", "lengths"),
-        "peck_word": ("Q", "D"), "out": ("full", "chip"), "clamp": str, "spindle": int,
+        "r": ("from start", "level"), "q": ("increments", "lengths"), "clamp": str,
     },
     "words": TextRule("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
     "spindles": TextRule("main|live", "must be a P word, and main or live", "P[0-9]+"),

@@ -14,7 +14,7 @@ COUNTING = {  # words of turning cycles that count or name, or are read with the
     "threading": "PQA",
     **dict.fromkeys(("finishing", "pecking along Z", "pecking along X", "thread pass"), "PQ"),
     **dict.fromkeys(("roughing along Z", "roughing along X", "thread"), "PQ"),
-    **dict.fromkeys(HOLE_MEANINGS, "QD"),
+    **dict.fromkeys(HOLE_MEANINGS, "Q"),
 }
 UNIT = {"G20": "inch", "G21": "mm"}
 
