@@ -81,15 +81,14 @@ TABLES: dict[str, Any] = {
     },
     "tools": {
         "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO", listed=True),
-        "size": ("diameter", "radius"), "pocket": ("last", "own"),
+        "pocket": ("last", "own"),
     },
     "reference": {"cancels_length": bool},
     "polar": {
-        "x": ("diameter", "radius", "inherit", "say"), "c": ("radius", "diameter"),
-        "rapid": ("refuse", "keep", "feed"),
+        "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
         "rapid_feed_mm": float, "rapid_feed_inch": float,
     },
-    "cylinder": {"word": ("radius", "diameter", "mapped")},
+    "cylinder": {"word": ("radius", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
     "variables": TextRule(

@@ -61,7 +61,6 @@ class ModalState(NamedTuple):
     own_motion: str = AS_PROGRAMMED  # LinuxCNC's mode where it is not the program's
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
-    held: tuple = ()  # slides that LinuxCNC has not moved yet, each with its position
     turning_cycle: str = UNKNOWN  # the turning cycle that X and Z repeat
     kept: tuple = ()  # values of the first blocks of cycles
     pass_words: tuple = ()  # the words of ``turning_cycle``
@@ -74,7 +73,6 @@ class ModalState(NamedTuple):
     section: int | str = UNKNOWN  # the program in which a section on a lathe has begun
     tap_speed: str = UNKNOWN  # the speed of a rigid tap
     tap_top: float | str = UNKNOWN  # the Z level to which it returns
-    sizes: tuple = ()  # diameters that G10 L12 has set, by tool
     known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way

@@ -36,8 +36,7 @@ def _named_radius(draft: Draft, code: str) -> str:
         raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
     if word.is_zero:
         return ""
-    half = draft.control.value("cylinder", "word", "radius") == "diameter"
-    return f"[{word.value} / 2]" if half else word.value
+    return word.value
 
 
 def _mapped_radius(draft: Draft, code: str) -> str:

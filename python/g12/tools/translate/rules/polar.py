@@ -24,7 +24,6 @@ from g12.tools.translate.blocks.positions import (
     axis_of,
     is_unmoved,
     known_position,
-    value_text,
 )
 from g12.tools.translate.rules.decimals import UNIT
 
@@ -115,16 +114,10 @@ def inside_polar(draft: Draft) -> None:
             raise NotTranslated(f"{letter} and its other name in one block")
     _offset_number(draft)
     if is_polar:
-        if draft.control.value("polar", "c") == "diameter":
-            draft.words = [_halved(w) if w.letter in "CH" else w for w in draft.words]
         if draft.letters() & IN_PLANE and is_unmoved(draft, "Z"):
             draft.comment_out("Z")
         _delay_compensation(draft)
     rapid(draft)
-
-
-def _halved(word: ForeignWord) -> ForeignWord:
-    return ForeignWord(word.letter, f"[{word.value} / 2]", "expression")
 
 
 def _delay_compensation(draft: Draft) -> None:
@@ -199,13 +192,9 @@ def feed_again(draft: Draft) -> None:
     needless = draft.has_feed or draft.state.own_feed == AS_PROGRAMMED
     if needless or not draft.letters() & MOVING or _goes_by_rapid(draft):
         return
-    if draft.state.held:
-        draft.before += own_feed_ended(draft)
-        draft.change(own_motion="G1")
-    else:
-        own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
-        draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
-    draft.change(own_feed=AS_PROGRAMMED, held=())
+    own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
+    draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
+    draft.change(own_feed=AS_PROGRAMMED)
 
 
 def _goes_by_rapid(draft: Draft) -> bool:
@@ -213,7 +202,7 @@ def _goes_by_rapid(draft: Draft) -> bool:
 
     A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
     """
-    if draft.state.own_feed == "G93" or draft.state.held or "F" in draft.letters():
+    if draft.state.own_feed == "G93" or "F" in draft.letters():
         return False
     codes = set(draft.codes())
     if set(draft.meanings) - STAYING:
@@ -227,9 +216,8 @@ def own_feed_ended(draft: Draft) -> list[str]:
     """Return the line that gives LinuxCNC the control's feed, if it has another."""
     if draft.state.own_feed == AS_PROGRAMMED:
         return []
-    words = [*_held_slides(draft), *_programs_feed(draft)]
-    draft.change(own_feed=AS_PROGRAMMED, held=())
-    return [" ".join(words)]
+    draft.change(own_feed=AS_PROGRAMMED)
+    return [" ".join(_programs_feed(draft))]
 
 
 def _programs_feed(draft: Draft) -> list[str]:
@@ -238,18 +226,3 @@ def _programs_feed(draft: Draft) -> list[str]:
     if feed == UNKNOWN:
         raise NotTranslated(f"{why}: write F")
     return [f"F{feed}", *([mode] if mode else [])]
-
-
-def _held_slides(draft: Draft) -> list[str]:
-    """Return the words of slides that were held back (`turning/feed_of_c`)."""
-    why = "a slide of LinuxCNC's is behind the program's"
-    words = []
-    for axis, _ in draft.sure("held", why):
-        point = known_position(draft.start, axis)
-        if point is None:
-            raise NotTranslated(
-                f"{why}, and the position of {axis} is not known here: beside C let it move by at "
-                "least 0.001 mm, or not at all"
-            )
-        words.append(f"{axis}{value_text(point)}")
-    return ["G1", *words] if words else []

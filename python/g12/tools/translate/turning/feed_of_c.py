@@ -3,16 +3,16 @@
 
 On a Fanuc F is along the path of millimetres (X as a radius) and degrees together; LinuxCNC takes
 it along X, Y and Z alone. The control's ``feed_of_c`` is ``mm and degrees``, ``degrees`` (F is C's)
-or ``mm`` (as LinuxCNC). A slide that moves next to nothing is held back for a later block: LinuxCNC
-2.9.0~pre1 runs too fast then.
+or ``mm`` (as LinuxCNC). A slide that moves next to nothing is refused: LinuxCNC 2.9.0~pre1 runs too fast
+then.
 """
 
 from math import hypot
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
-from g12.tools.translate.blocks.positions import axis_of, known_position, value_text
+from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN
+from g12.tools.translate.blocks.positions import axis_of, known_position
 
 LEAST_SLIDE_MM = 0.001  # a slide moves by that or not at all
 SLIDES = "XYZ"
@@ -24,18 +24,15 @@ def feed_of_c(draft: Draft) -> None:
     axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
     if "C" not in axes or not axes & set(SLIDES) or not _is_feed(draft) or rule == "mm":
         return
-    moved = distances(draft, axes)
+    moved = _distances(draft, axes)
     turned, along = abs(moved["C"]), hypot(*(moved.get(axis, 0.0) for axis in SLIDES))
-    if (turned and along and state.feed_mode != "G93") or state.held:
+    if turned and along and state.feed_mode != "G93":
         _check_rule(draft, rule)
-        path = turned or along if rule == "degrees" else hypot(turned, along)
-        if not path:  # a slide stays held back
-            still = [word for word in draft.words if axis_of(word.letter) in axes]
-            draft.drop(still)
-            draft.comments += [word.text for word in still]
-            return
+        if along < _least_of(draft):
+            raise NotTranslated("a slide goes less than 0.001 mm beside C: leave its word out")
+        path = turned if rule == "degrees" else hypot(turned, along)
         missing = "C beside a slide at a feed: F must be a number here: write it"
-        _write_inverse_time(draft, axes, path / number_of_feed(draft, missing))
+        _write_inverse_time(draft, path / number_of_feed(draft, missing))
 
 
 def _is_feed(draft: Draft) -> bool:
@@ -44,7 +41,7 @@ def _is_feed(draft: Draft) -> bool:
     return draft.motion() not in ("G0", UNKNOWN) and not other and not codes
 
 
-def distances(draft: Draft, axes: set[str]) -> dict[str, float]:
+def _distances(draft: Draft, axes: set[str]) -> dict[str, float]:
     """Return how far each axis goes, in mm, inches or degrees; X as a radius."""
     moved = {}
     for axis in (axis for axis in AXIS_NUMBERS if axis in axes):
@@ -89,44 +86,14 @@ def number_of_feed(draft: Draft, missing: str) -> float:
     return feed
 
 
-def _write_inverse_time(draft: Draft, axes: set[str], minutes: float) -> None:
-    state = draft.state
-    if state.distance != "G90" and not state.held:
-        _keep_words(draft, axes)
-    else:
-        _absolute_words(draft, axes)
+def _write_inverse_time(draft: Draft, minutes: float) -> None:
     draft.take_codes({"G94"})
     draft.take("F")
-    if state.own_feed != "G93":
+    if draft.state.own_feed != "G93":
         draft.words.append(word_of("G93"))
     draft.words.append(word_of(f"F{1 / minutes:.10g}"))
     draft.has_feed = True
     draft.change(own_feed="G93")
-
-
-def _keep_words(draft: Draft, axes: set[str]) -> None:
-    """Keep increments; they cannot be held back."""
-    moved = distances(draft, axes & set(SLIDES))
-    if 0 < hypot(*moved.values()) < _least_of(draft):
-        raise NotTranslated("a slide goes less than 0.001 mm beside C: write the block under G90")
-
-
-def _absolute_words(draft: Draft, axes: set[str]) -> None:
-    """Write absolute words, or hold slides back that move less than 0.001 mm."""
-    state = draft.state
-    if state.held == UNSURE or state.distance != "G90":
-        raise NotTranslated(f"C beside a slide, and a slide is held back here: {INSTEAD}")
-    held = dict(state.held)
-    starts = {
-        axis: held.get(axis, known_position(draft.start, axis)) for axis in {*axes, *held} - {"C"}
-    }
-    ends = {axis: known_position(state, axis) for axis in starts}
-    goes = hypot(*((ends[a] - starts[a]) * _scale_of(draft, a) for a in starts))
-    holds = 0 < goes < _least_of(draft)
-    draft.words = [w for w in draft.words if axis_of(w.letter) not in {*starts, "C"}]
-    written = "C" if holds else [*sorted(starts), "C"]
-    draft.words += [word_of(f"{a}{value_text(known_position(state, a))}") for a in written]
-    draft.change(held=tuple(sorted(starts.items())) if holds else ())
 
 
 def _least_of(draft: Draft) -> float:
