@@ -13,7 +13,7 @@ from typing import NamedTuple
 from g12.tools.translate.blocks import positions
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.milling import drilling_cycles, rigid_tapping
+from g12.tools.translate.milling import drilling_cycles
 from g12.tools.translate.on_lathe import holes, sections
 from g12.tools.translate.rules import (
     codes,
@@ -112,7 +112,7 @@ PHASES = (
     Phase(
         "feed",
         "F and its mode are those that the control has for the block",
-        (feed_of_c.feed_of_c, polar.feed_again, of_meaning("exact stop", motion.exact_stop)),
+        (feed_of_c.refuse_feed_of_c, polar.feed_again, of_meaning("exact stop", motion.exact_stop)),
     ),
     Phase(
         "cycles of lathes",
@@ -125,10 +125,9 @@ PHASES = (
     ),
     Phase(
         "cycles of mills",
-        "drilling cycles are LinuxCNC's, taps G33.1, those on a lathe calls of its holes",
+        "drilling cycles are LinuxCNC's, those on a lathe calls of its holes",
         (
             drilling_cycles.hole_pattern,
-            rigid_tapping.rigid_tap,
             holes.whole_cycle,
             drilling_cycles.drilling_cycle,
             holes.hole_call,

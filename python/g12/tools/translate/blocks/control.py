@@ -37,7 +37,7 @@ MEANINGS = {
         "radius or diameter",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
-        "no thread chamfer", "rigid tapping", "tool change",
+        "no thread chamfer", "tool change",
     ),
 }  # fmt: skip
 PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `on_machine`
@@ -66,7 +66,7 @@ TOP = {
         "[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be extensions in small letters such as nc tap"
     ),
     "start": TextRule(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
-    "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
+    "decimals": ("least", "whole"), "feed_of_c": ("mm",),
     "at_zero": str, "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
 TABLES: dict[str, Any] = {
@@ -139,7 +139,7 @@ class Control:
     meanings: Mapping[str, str]  # by code
     start: tuple[str, ...] = ()  # codes that hold when a program begins
     decimals: str = ""  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
-    feed_of_c: str = "say"  # the path of F where C and a slide move together, ``say``: unknown
+    feed_of_c: str = ""  # ``mm``: F is along the slides alone where C moves beside them
     at_zero: str = ""  # axes that the machine lacks and whose words may be 0
     extensions: tuple[str, ...] = ("nc",)  # of its programs' files, the usual one first
     remarks: bool = False  # text after ``;`` is a remark

@@ -71,8 +71,6 @@ class ModalState(NamedTuple):
     spindle: str = UNKNOWN  # the M3 or M4 of the first spindle
     waiting: tuple | str = ()  # X and Y of a mill's program on a lathe at its next cut
     section: int | str = UNKNOWN  # the program in which a section on a lathe has begun
-    tap_speed: str = UNKNOWN  # the speed of a rigid tap
-    tap_top: float | str = UNKNOWN  # the Z level to which it returns
     known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way

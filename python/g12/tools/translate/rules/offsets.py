@@ -18,7 +18,6 @@ SLOT, SLOT_PARAMETER = "G59.3", 5381  # LinuxCNC's ninth system
 SYSTEMS = 99
 SYSTEM_CODES = range(110, 130)  # G codes of the first of them
 FIRST_PARAMETER = 4001
-G52_PARAMETER, G54_PARAMETER = 5211, 5221
 LENGTHS = "XYZ"
 SCALE = "#<machine_units>"
 SET_SCALE = f"{SCALE}=[[25.4 - 24.4 * #<_metric>] / [25.4 - 24.4 * #<_metric_machine>]]"
@@ -85,13 +84,14 @@ def _load_system(draft: Draft, number: int) -> str:
 def offset_by_program(draft: Draft, code: ForeignWord) -> None:
     kind = draft.take("L")
     number = int(kind.number) if kind and kind.kind == "number" else 0
-    incremental = draft.sure("distance", "G10 sets or adds") == "G91"
+    if draft.sure("distance", "G10 sets or adds") == "G91":
+        raise NotTranslated("G10 under G91 adds to the offset: write G90 and its new value")
     if draft.control.is_lathe:
         raise NotTranslated("G10 of a lathe is not translated: set the offset on the machine")
     if number == 2:
-        _work_offset(draft, incremental)
+        _work_offset(draft)
     elif number == 20:
-        _numbered_offset_values(draft, incremental)
+        _numbered_offset_values(draft)
     elif number in OF_TOOLS:
         raise NotTranslated(f"G10 {kind.text}: set the tool's length and diameter in the table")
     else:
@@ -113,34 +113,21 @@ def _axis_values(draft: Draft, code: str) -> list[ForeignWord]:
     return words
 
 
-def _scaled(by: str, letter: str) -> str:
-    return f" {by} {SCALE}" if letter in LENGTHS else ""
-
-
-def _work_offset(draft: Draft, incremental: bool) -> None:
+def _work_offset(draft: Draft) -> None:
     """G10 L2: G54 to G59, or G52."""
     number = _take_number(draft, range(7), "G10 L2")
-    words = _axis_values(draft, "G10 L2")
-    first = G54_PARAMETER + 20 * (number - 1) if number else G52_PARAMETER
-    draft.after += [SET_SCALE] if incremental else []
-    texts = [word.text for word in words]
-    if incremental:
-        parameters = [f"#{first + AXIS_NUMBERS[word.letter] - 1}" for word in words]
-        texts = [
-            f"{w.letter}[{p}{_scaled('/', w.letter)} + {w.value}]"
-            for w, p in zip(words, parameters)
-        ]
+    texts = [word.text for word in _axis_values(draft, "G10 L2")]
     draft.after.append(" ".join([f"G10 L2 P{number}" if number else "G52", *texts]))
 
 
-def _numbered_offset_values(draft: Draft, incremental: bool) -> None:
+def _numbered_offset_values(draft: Draft) -> None:
     number = _system_number(draft, "G10 L20")
     draft.after.append(SET_SCALE)
     values = []
     for word in _axis_values(draft, "G10 L20"):
         parameter = f"#{_parameter_of(draft, number, word.letter)}"
-        old = f"{parameter} + " if incremental else ""
-        values.append(f"{parameter}=[{old}{word.value}{_scaled('*', word.letter)}]")
+        scale = f" * {SCALE}" if word.letter in LENGTHS else ""
+        values.append(f"{parameter}=[{word.value}{scale}]")
     draft.after.append(" ".join(values))
     draft.change(known_offsets=draft.state.known_offsets | {number})
     if draft.sure("offset", "G10 L20 changes a work offset") == f"P{number}":

@@ -6,10 +6,8 @@ modal: blocks of X, Z, U and W alone repeat them from the same start.
 """
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any
 
-from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import (
@@ -23,7 +21,6 @@ from g12.tools.translate.blocks.positions import FIELDS
 from g12.tools.translate.rules.motion import in_absolute_words, needs_g90
 from g12.tools.translate.rules.polar import own_feed_ended
 from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
-from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
     named_blocks,
     read_contour,
@@ -48,7 +45,6 @@ from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
-CODE_SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
 
@@ -263,13 +259,11 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
 
 
-@cache
 def _other_meaning(code: str, meaning: str) -> str:
     """Return why a single pass is refused whose code is a mode in other G code systems."""
-    others = [name for name in CODE_SYSTEMS if read_control(name).meanings.get(code) == "same"]
-    mode = f": where it is a mode, the control is {' or '.join(others)}; else take it out"
     return (
-        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1{mode * bool(others)}"
+        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it is a mode, "
+        "the control is another of fanuc-lathe, fanuc-lathe-b and fanuc-lathe-c; else take it out"
     )
 
 
@@ -282,7 +276,14 @@ def _one_thread_pass(draft: Draft, meaning: str) -> None:
 
 
 def _lead_of(draft: Draft) -> float:
-    return number_of_feed(draft, "a thread needs F, its lead, as a number")
+    missing = "a thread needs F, its lead, as a number"
+    try:
+        lead = float(draft.sure("feed", missing))
+    except ValueError:
+        lead = 0.0
+    if lead <= 0:
+        raise NotTranslated(missing)
+    return lead
 
 
 def _chamfer_of(draft: Draft) -> float:
