@@ -16,11 +16,11 @@ from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.macros import STATEMENTS
 from g12.tools.translate.on_lathe.sections import before_loop
 from g12.tools.translate.phases import translate_words
 from g12.tools.translate.rules.modes import keep_modes
 from g12.tools.translate.rules.motion import is_plain
-from g12.tools.translate.statements import STATEMENTS
 from g12.tools.translate.structure import MAIN, OPENING, Structure, ways_from
 
 Progress = Callable[[int], None]
@@ -108,7 +108,9 @@ class FollowedProgram:
 
     def ends_of_macros(self) -> dict[int, str]:
         """Return the line that ends each macro, by the index of its last block."""
-        entries = {n: self.structure.entries[n] for n, kind in self.kinds.items() if kind == "macro"}
+        entries = {
+            n: self.structure.entries[n] for n, kind in self.kinds.items() if kind == "macro"
+        }
         end_of = self.structure.end_of
         return {end_of(at) - 1: f"o<macro_{n}> endsub" for n, at in entries.items()}
 

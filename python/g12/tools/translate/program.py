@@ -15,17 +15,16 @@ from g12.tools.translate.blocks.lexer import (
     source_lines,
 )
 from g12.tools.translate.follow import FollowedProgram
+from g12.tools.translate.macros import unset_variables
 from g12.tools.translate.native import (
     Construct,
     lacking_constructs,
     own_constructs,
     with_message,
 )
-from g12.tools.translate.order import written_order
-from g12.tools.translate.output import lines_of, output_lines
+from g12.tools.translate.output import lines_of, output_lines, written_order
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
-from g12.tools.translate.variables import unset_locals
 from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
@@ -120,8 +119,10 @@ def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
         sentence = _missing_end(followed, index)
         if sentence and not followed.drafts[index].refusal:
             yield RefusedBlock(followed.structure.blocks[index].line, sentence)
-    for line, sentence in unset_locals(followed):
-        yield RefusedBlock(line, sentence)
+    for number, draft in zip(followed.structure.programs, followed.drafts):
+        is_macro = followed.kinds.get(number) == "macro"
+        for sentence in unset_variables(draft, number if is_macro else 0) if draft else ():
+            yield RefusedBlock(draft.block.line, sentence)
 
 
 def _unwritable(draft: Draft) -> NotTranslated | None:

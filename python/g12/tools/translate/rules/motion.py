@@ -19,8 +19,9 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.positions import FIELDS, end_of_word
+from g12.tools.translate.blocks.positions import FIELDS, axis_of, end_of_word, is_unmoved
 
+SLIDES = frozenset("XYZ")
 INDIFFERENT = frozenset("NMSTFHD$")
 
 
@@ -45,7 +46,9 @@ def _refuse_corners(draft: Draft, motion: str) -> None:
     words = "IKR" if draft.control.is_lathe else "R"
     found = sorted(letter for letter in draft.letters() if letter[0] == "," or letter in words)
     if straight and found and draft.axis_words():
-        raise NotTranslated(f"{found[0]} beside {motion}: write the corner's line or arc as a block")
+        raise NotTranslated(
+            f"{found[0]} beside {motion}: write the corner's line or arc as a block"
+        )
 
 
 def _moves(draft: Draft) -> bool:
@@ -116,6 +119,28 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
     else:
         draft.comments.append(code.code)
         draft.after.append("G4 P0")
+
+
+def refuse_feed_of_c(draft: Draft) -> None:
+    """Refuse C beside a slide at a feed outside a section, but where F is the slides' alone.
+
+    On a Fanuc F is along the path of millimetres (X as a radius) and degrees together, on others
+    C's alone; LinuxCNC takes it along X, Y and Z and would turn C too fast.
+    """
+    axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
+    moved = {axis for axis in axes if not is_unmoved(draft, axis)}
+    as_here = draft.control.feed_of_c == "mm" or draft.state.feed_mode == "G93"
+    if "C" in moved and moved.intersection(SLIDES) and _is_feed(draft) and not as_here:
+        raise NotTranslated(
+            "C beside a slide at a feed: F has another path here: write G93 and F, 1 / minutes, "
+            "or say feed_of_c = \"mm\" in a control of your own, where F is X's and Z's alone"
+        )
+
+
+def _is_feed(draft: Draft) -> bool:
+    other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
+    codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
+    return draft.motion() not in ("G0", UNKNOWN) and not other and not codes
 
 
 PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point

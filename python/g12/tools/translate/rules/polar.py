@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
+"""Polar and cylindrical interpolation: G112, G137 as G12.1 and G13.1, G107, G132 as G7.1.
 
 X in polar mode is a diameter on most controls and a radius on some: where it is not as outside, G7
 or G8 is written before the section, and the other after it. Y is C and V is H. The control's file
 defines a rapid in polar mode.
+
+Most controls give a cylinder's radius as C (or H) and angles as C. Haas maps an axis of lengths
+onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the length along its surface.
 """
+
+from math import degrees
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -27,8 +32,8 @@ from g12.tools.translate.blocks.positions import (
 )
 from g12.tools.translate.rules.decimals import UNIT
 
+ANGLE_LETTERS = {"Y": "C", "V": "H"}
 IN_PLANE = frozenset("XCUH")
-MOVING = frozenset("XYZABCUVWHF")
 SECTION_NAMES = {
     "on": "in polar mode",
     "cylinder": "on a cylinder",
@@ -188,9 +193,10 @@ def feed_of_rapids(draft: Draft) -> float:
 
 
 def feed_again(draft: Draft) -> None:
-    """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
+    """Write the feed that holds on the control where LinuxCNC has a polar rapid's."""
     needless = draft.has_feed or draft.state.own_feed == AS_PROGRAMMED
-    if needless or not draft.letters() & MOVING or _goes_by_rapid(draft):
+    moves = draft.axis_words() or draft.increments() or draft.word("F")
+    if needless or not moves or _goes_by_rapid(draft):
         return
     own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
     draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
@@ -202,7 +208,7 @@ def _goes_by_rapid(draft: Draft) -> bool:
 
     A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
     """
-    if draft.state.own_feed == "G93" or "F" in draft.letters():
+    if "F" in draft.letters():
         return False
     codes = set(draft.codes())
     if set(draft.meanings) - STAYING:
@@ -226,3 +232,50 @@ def _programs_feed(draft: Draft) -> list[str]:
     if feed == UNKNOWN:
         raise NotTranslated(f"{why}: write F")
     return [f"F{feed}", *([mode] if mode else [])]
+
+
+def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
+    if draft.control.value("cylinder", "word") == "mapped":
+        radius = _mapped_radius(draft, code.code)
+        draft.change(mapped=radius)
+    else:
+        radius = _named_radius(draft, code.code)
+    name, word = draft.control.cylinder_code
+    value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
+    feed = own_feed_ended(draft) if radius else []
+    own_block(draft, code.code, [*feed, f"{name} C{value}"])
+    draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
+
+
+def _named_radius(draft: Draft, code: str) -> str:
+    """Return the radius that C or H says, "" for the end of the cylinder."""
+    word = draft.take("C") or draft.take("H")
+    if not word:
+        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
+    if word.is_zero:
+        return ""
+    return word.value
+
+
+def _mapped_radius(draft: Draft, code: str) -> str:
+    """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
+    sizes, axes = draft.take_each("RQ"), draft.take_each("YC")
+    if not sizes and not axes:
+        return ""
+    if len(sizes) != 1 or len(axes) != 2 or not all(word.is_zero for word in axes):
+        raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
+    (size,) = sizes
+    return size.value if size.letter == "R" else f"[{size.value} / 2]"
+
+
+def on_the_surface(draft: Draft) -> None:
+    """Write lengths along the surface of a mapped cylinder as angles."""
+    if draft.state.polar != "cylinder" or draft.state.mapped == UNKNOWN:
+        return
+    radius = draft.sure("mapped", "Y is mapped onto a cylinder")
+    if draft.letters() & {"C", "H"}:
+        raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
+    for at, word in enumerate(draft.words):
+        if word.letter in ANGLE_LETTERS:
+            angle = f"[[{word.value}] * {degrees(1):.12f} / {radius}]"
+            draft.words[at] = ForeignWord(ANGLE_LETTERS[word.letter], angle, "expression")

@@ -23,9 +23,9 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import FIELDS, value_text
-from g12.tools.translate.milling.drilling_cycles import seconds_of_dwell
 from g12.tools.translate.rules.codes import is_own, mapped
 from g12.tools.translate.rules.decimals import in_units
+from g12.tools.translate.rules.drilling_cycles import seconds_of_dwell
 from g12.tools.translate.turning.given_words import (
     start_point,
     stored_setting,
