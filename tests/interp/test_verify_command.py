@@ -228,7 +228,9 @@ def test_plot_shows_where_x0_lies(cut, plot, tmp_path):
     assert says in (tmp_path / "x.svg").read_text()
 
 
-@pytest.mark.parametrize(("suffix", "extra"), [("png", []), ("svg", ["--feeds"]), ("pdf", [])])
+@pytest.mark.parametrize(
+    ("suffix", "extra"), [("png", []), ("svg", ["--units", "inch"]), ("pdf", [])]
+)
 def test_plot_writes_the_requested_picture(suffix, extra, plot, tmp_path):
     path = tmp_path / f"picture.{suffix}"
     code, out, err = plot(GOOD, *extra, to=path.name)

@@ -223,6 +223,8 @@ def check_event(pocket, planes):
     pocket.check_feeds(feed, entries.get("P", feed))
     if is_pocket:
         widest = entries.get("J", 2 * pocket.cutter - NARROWER)
+        rings = max(1, math.ceil(rough / widest - SAME))
+        assert len(pocket.circles) == rings * len(levels), pocket.report.line
         pocket.check_growth(widest, 0.0)
     pocket.strokes = finishing
     pocket.check_feeds(entries.get("V", feed))
