@@ -108,7 +108,7 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
     arc = planned_moves.arc(centre, complex(start), turn * sweep)
-    split = split_on_cylinder(arc, MACHINE._replace(radius=surface), deviation)
+    split = split_on_cylinder(arc, MACHINE._replace(per_radian=surface), deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
     assert places[[0, -1]] == pytest.approx([start, end])
     places -= centre
@@ -136,7 +136,7 @@ def test_the_settings_of_a_section_are_in_program_units():
     lengths = [made.tolerance, *planning[1:4], planning.height_acceleration, rules.radius_tolerance]
     in_mm = [0.005, 0.005, 0.001, 1100, 900, 0.0127]
     assert lengths == pytest.approx([length / 25.4 for length in in_mm])
-    assert (planning.radius, planning.turn_acceleration) == (RADIUS, 3600.0)
+    assert (planning.per_radian, planning.turn_acceleration) == (RADIUS, 3600.0)
 
 
 @pytest.mark.parametrize(

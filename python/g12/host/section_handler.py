@@ -34,14 +34,16 @@ from g12.host.section_reader import SectionReader, block_of
 from g12.host.section_run import Section
 from g12.host.spindle_c import missing_code
 from g12.lengths import DEGREES_PER_TURN
-from g12.moves.setup import SectionKind, SectionMachine
+from g12.moves.setup import ROTARY_AXES, SectionKind, SectionMachine
 from g12.request.context import YZ
 from g12.section.block_rules import alone
 from g12.section.effects import SectionModes
 from g12.section.line import BlockLocation
 from g12.section.start import SectionCodes, SectionStart
 
-OTHER_WORDS = "ABDHKTUVWY"
+OTHER_WORDS = "DHKTUVW"
+LINEAR_AXES = "XYZ"
+AXES = LINEAR_AXES + ROTARY_AXES
 G96 = 960
 
 
@@ -57,11 +59,11 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         words=block_of(block).words,
         alone=is_alone(block, words),
         level=interp.call_level,
-        position=position_of(interp, "XCZ"),
+        position=position_of(interp, AXES),
         machine_unit=units.program_units_per_machine_unit(interp),
         millimetre=1 / millimetres_per_unit(interp),
         offsets=_offsets(interp),
-        x_shift=interp.axis_offset_x,
+        shifts={letter: getattr(interp, f"axis_offset_{letter.lower()}") for letter in LINEAR_AXES},
         modes=SectionModes(
             incremental=interp.distance_mode == MODE_INCREMENTAL,
             per_revolution=interp.feed_mode == PER_REVOLUTION,
@@ -88,12 +90,14 @@ def is_alone(block: ParsedBlock, words: str = "") -> bool:
 
 
 def _offsets(interp: Interp) -> dict[str, float]:
-    """Return the sum of work offset, G92 and tool offset for X, Z and C."""
-    tool = interp.tool_offset
+    """Return the sum of work offset, G92 and tool offset for each axis."""
+    names = {letter: f"{{}}_offset_{letter.lower()}" for letter in LINEAR_AXES}
+    names |= {letter: f"{2 * letter}_{{}}_offset" for letter in ROTARY_AXES}
     return {
-        "X": interp.origin_offset_x + interp.axis_offset_x + tool.x,
-        "Z": interp.origin_offset_z + interp.axis_offset_z + tool.z,
-        "C": interp.CC_origin_offset + interp.CC_axis_offset + tool.c,
+        letter: getattr(interp, name.format("origin"))
+        + getattr(interp, name.format("axis"))
+        + getattr(interp.tool_offset, letter.lower())
+        for letter, name in names.items()
     }
 
 
@@ -193,8 +197,8 @@ def run_section(
         borrowed.begin(interp)
         codes = codes_of(start.location.code)
         yield from _running(interp, section, codes, frame, program).run()
-        if MACHINE.settings.c_clamp_shapes:
-            units.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
+        for code in MACHINE.settings.drag(kind.words.axes.turn)[1:]:
+            units.run_code(interp, f"M{code}")
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
@@ -222,7 +226,7 @@ def report_turns(interp: Interp, turned: float) -> None:
 
 
 def check_clamp(refuse: Callable[[str], Refusal]) -> None:
-    """Refuse codes of C's clamp that LinuxCNC would not know when it comes to them."""
+    """Refuse codes of a clamp that LinuxCNC would not know when it comes to them."""
     unknown = MACHINE.settings.unknown_clamp_code(MACHINE.m_codes)
     if unknown:
         raise refuse(unknown)
@@ -241,6 +245,6 @@ def _running(
         frame,
         SectionReader(interp, kind, program),
         SectionOutput(interp, kind, canon=emccanon),
-        first="".join(f"M{code}" for code in MACHINE.settings.c_clamp_shapes),
+        first="".join(f"M{code}" for code in MACHINE.settings.drag(kind.words.axes.turn)[:1]),
         report=lambda contour: begin_report(interp, kind, contour),
     )

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
-from g12.cylinder.cylinder_section import RADIUS, Cylinder
+from g12.cylinder.cylinder_section import CYLINDERS
 from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
@@ -92,15 +93,21 @@ def _polar_codes(code: str) -> SectionCodes:
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
     block, code = self.blocks[self.remap_level], messages.code_of_block(self)
-    if not (block.c_flag and block.c_number == 0.0):
+    given = words_in(block, CYLINDERS)
+    letter = next(iter(given), _rotary_axis())
+    if given.get(letter) != 0.0:
         refuse_typed(self)
         messages.settle(self)
-        yield from run_section(
-            self, Cylinder, _cylinder_codes, lambda start: Cylinder(start, section_machine())
-        )
-    elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
-        raise Refusal(f"{RADIUS}0 must be alone in its block", code)
+        kind, codes = CYLINDERS[letter], partial(_cylinder_codes, letter)
+        yield from run_section(self, kind, codes, lambda start: kind(start, section_machine()))
+    elif words_in(block, MOVE_WORDS.replace(letter, "")):
+        raise Refusal(f"{letter}0 must be alone in its block", code)
 
 
-def _cylinder_codes(code: str) -> SectionCodes:
-    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
+def _rotary_axis() -> str:
+    """Return the letter of the axis that a cylinder of this machine turns with."""
+    return next((letter for letter in CYLINDERS if letter in MACHINE.coordinates), "C")
+
+
+def _cylinder_codes(letter: str, code: str) -> SectionCodes:
+    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, letter)
