@@ -325,7 +325,10 @@ def hal(machine: Machine) -> list[str]:
 def axes(machine: Machine) -> Iterator[Section]:
     letters = [slide.letter for slide in machine.slides]
     module = "trivkins" if machine.face is None else "polar_xzc"
-    yield "KINS", [f"JOINTS = {len(letters)}", f"KINEMATICS = {module} coordinates={''.join(letters)}"]
+    yield (
+        "KINS",
+        [f"JOINTS = {len(letters)}", f"KINEMATICS = {module} coordinates={''.join(letters)}"],
+    )
     default, fastest = machine.velocities
     yield (
         "TRAJ",

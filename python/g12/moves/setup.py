@@ -88,8 +88,8 @@ def check_entry(
 ) -> None:
     """Refuse to begin a section in modes that none allows, or against its own ``rules``.
 
-    ``letters`` are the machine's axes, ``needed`` those of the section, ``centred`` those whose 0 is
-    ``centre``.
+    ``letters`` are the machine's axes, ``needed`` those of the section. ``centred`` are those whose
+    0 is ``centre``.
     """
     beside = "needs a move after G40: the tool is still beside the programmed point"
     *others, last = tuple(needed)

@@ -18,8 +18,8 @@ class SectionStart(NamedTuple):
     ``position`` is by letter: X a radius value, C in degrees. ``machine_unit`` is the length of a
     machine unit, ``millimetre`` that of 1 mm; ``offsets`` convert from program to machine
     coordinates, ``shifts`` are what G52 or G92 adds to X, Y and Z, of X a radius value. ``speeds``
-    are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds per
-    revolution refer to. ``tool_radius`` is None if no tool is loaded.
+    are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds
+    per revolution refer to. ``tool_radius`` is None if no tool is loaded.
     """
 
     location: BlockLocation
