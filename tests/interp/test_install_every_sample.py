@@ -35,6 +35,7 @@ PACKAGE = {
     **{f"ngc/{file.name}": b"" for file in features.ROOT.glob("ngc/*.ngc")},
     "python/g12/__main__.py": b"",
 }
+PAGES = (features.FORMS, features.CYCLES_PAGE)  # they need a code with forms
 # of samples that are no machines by themselves
 NO_MACHINE = {"interpreter", "does-not-load", "no-sub", "python-fails"}
 
@@ -65,7 +66,7 @@ def full_set(ini):
     lathe = "Y" not in ini.axes
     control = "programs-fanuc-lathe" if lathe else "programs-haas-mill"
     codes = [name for name in (LATHE if lathe else MILL) if not why_not(ini, name)]
-    names = [*codes, "forms"] if any(name in forms.FORMS_OF for name in codes) else codes
+    names = [*codes, *PAGES] if any(name in forms.FORMS_OF for name in codes) else codes
     return names if ini.get("FILTER", "nc") else [*names, control]
 
 
@@ -90,9 +91,9 @@ def why_not(ini, name):
         return "no-axis"
     if name in features.CONTROLS and ini.get("FILTER", "nc"):
         return "filter"
-    return {"polar-shapes": "no-polar", "forms": "forms", features.KINEMATICS: "kinematics"}.get(
-        name
-    )
+    if name in PAGES:
+        return name
+    return {"polar-shapes": "no-polar", features.KINEMATICS: "kinematics"}.get(name)
 
 
 OWN_PROBLEMS = {  # samples with the pin names of an older LinuxCNC
@@ -118,7 +119,7 @@ def in_and_out(path, names):
     problems = [finding.kind for finding in found if finding.level == PROBLEM]
     assert {*problems} <= OWN_PROBLEMS.get(path.name, set())
     there = {*config.features} | {f"programs-{control}" for control in installed_programs(config)}
-    assert there == {*names} - {"forms"}
+    assert there == {*names} - {*PAGES}
     of_codes = forms.files_of(config, names) if "forms" in names else []
     assert {f"{form}.ngc" for form in forms.shown(config)} == set(of_codes)
     list(removal.uninstall(IniText(path), dry_run=False))

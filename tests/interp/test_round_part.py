@@ -7,11 +7,8 @@ The words, refusals and settings that a lathe's cylinder shares are in test_cyli
 import math
 import random
 
-import pytest
-
-from g12.tools.preview.tracer import Tracer
 from support.flat_contours import FlatContour, apart, flat_path, unrolled_path
-from support.sim_machines import SIM, kept_tracer
+from support.sim_machines import kept_tracer
 
 FIRST = "G21 G17 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 TOOL = 3.0  # mm, the radius of T3

@@ -99,6 +99,7 @@ def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
     assert reported(ini) == []
 
 
+@pytest.mark.parametrize("pages", ["forms", "cycles-page"])
 @pytest.mark.parametrize(
     ("text", "names", "why"),
     [
@@ -106,10 +107,11 @@ def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
         (AXIS, [], "no code here has a form"),
     ],
 )
-def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why):
+def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why, pages):
     with pytest.raises(Refused) as refused:
-        make_plan(config_of(write_config(tmp_path, text)), [*names, "forms"])
+        make_plan(config_of(write_config(tmp_path, text)), [*names, pages])
     assert why in refused.value.args[0].text
+    assert refused.value.args[0].kind == pages
 
 
 def shown_in(tmp_path, screen, lines, remaps=HAAS):
@@ -178,11 +180,12 @@ CYCLES_TAB = f"{GLADE}{CYCLES}"
 def test_each_screen_gets_the_cycles_page(tmp_path, screen, lines):
     ini = write_config(tmp_path, screen)
     with restored(ini):
-        put_in(ini, "haas", "forms")
+        put_in(ini, "haas", "cycles-page")
         assert lines in ini.read_text()
+        assert "NGCGUI" not in ini.read_text()
         assert texts_of("screen", ini) == []
         installed = ini.read_text()
-        put_in(ini, "forms")
+        put_in(ini, "cycles-page")
         assert ini.read_text() == installed
 
 
@@ -216,32 +219,34 @@ def test_other_screens_show_the_face_already(tmp_path, screen):
     assert "face" not in ini.read_text()
 
 
-@pytest.mark.parametrize(
-    ("screen", "names", "line", "shows"),
-    [
-        (ON_LATHE, ("polar",), "USER_COMMAND_FILE = own.py\n", "axis_face.py"),
-        (PROBE_BASIC, ("haas", "forms"), "USER_TABS_PATH = own_py/\n", ""),
-    ],
-)
-def test_a_file_of_the_users_own_stays_and_is_named(tmp_path, screen, names, line, shows):
-    ini = write_config(tmp_path, with_lines(screen, "DISPLAY", line), own_py="print()\n")
+def test_a_command_file_of_the_users_own_stays_and_is_named(tmp_path):
+    line = "USER_COMMAND_FILE = own.py\n"
+    ini = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", line), own_py="print()\n")
     with restored(ini):
-        put_in(ini, *names)
-        assert ini.read_text().count(line.split()[0]) == 1
+        put_in(ini, "polar")
+        assert ini.read_text().count("USER_COMMAND_FILE") == 1
         (said,) = texts_of("screen", ini)
         assert line.strip() in said and "is yours and stays" in said
-    if shows:
-        (tmp_path / "own.py").write_text(f"# {shows}\n")
-    else:
-        (tmp_path / "own_py" / "cycles").mkdir(parents=True)
-    put_in(ini, *names)
+    (tmp_path / "own.py").write_text("# axis_face.py\n")
+    put_in(ini, "polar")
     assert texts_of("screen", ini) == []
+
+
+def test_a_folder_of_tabs_of_the_users_own_is_refused_until_it_has_the_page(tmp_path):
+    text = with_lines(PROBE_BASIC, "DISPLAY", "USER_TABS_PATH = own/\n")
+    ini = write_config(tmp_path, text)
+    with pytest.raises(Refused, match="USER_TABS_PATH = own/ is yours and stays"):
+        put_in(ini, "haas", "cycles-page")
+    (tmp_path / "own" / "cycles").mkdir(parents=True)
+    put_in(ini, "haas", "cycles-page")
+    assert texts_of("screen", ini) == []
+    assert "include/probe_basic" not in ini.read_text()
 
 
 @pytest.mark.parametrize("screen", [AXIS, TK, PROBE_BASIC])
 def test_a_page_that_is_not_there_is_found(tmp_path, screen):
     ini = write_config(tmp_path, screen)
-    put_in(ini, "haas", "forms")
+    put_in(ini, "haas", "cycles-page")
     ini.write_text(ini.read_text().replace("configs/include/", "configs/included/include/"))
     missing = [text for text in texts_of("screen", ini) if "is not there" in text]
     assert len(missing) == 1

@@ -297,18 +297,23 @@ def add_settings(plan: InstallPlan, control: Control) -> None:
 
 
 def add_forms(plan: InstallPlan) -> None:
-    """Add the lines that show the forms of present and new codes."""
-    if features.FORMS not in plan.requested:
+    """Add the lines that show the forms of present and new codes, by ngcgui or on one page."""
+    asked = [name for name in (features.FORMS, features.CYCLES_PAGE) if name in plan.requested]
+    if not asked:
         return
     if not screen.screen_of(plan.config):
         text = "[DISPLAY] DISPLAY is missing: no screen could show a form"
-        raise refuse("forms", text, "name the screen")
+        raise refuse(asked[0], text, "name the screen")
     codes = [*dict.fromkeys([*plan.config.features, *plan.requested])]
     if not forms.files_of(plan.config, codes):
-        cure = "install a code with them: --with haas forms"
-        raise refuse("forms", "no code here has a form", cure)
-    plan.add(forms.lines_for(plan.config, codes, plan.prefix))
-    plan.add(screen.page_lines(plan.config, screen.CYCLES, plan.prefix))
+        cure = f"install a code with them: --with haas {asked[0]}"
+        raise refuse(asked[0], "no code here has a form", cure)
+    if features.FORMS in asked:
+        plan.add(forms.lines_for(plan.config, codes, plan.prefix))
+    if features.CYCLES_PAGE in asked:
+        for taken in screen.key_taken(plan.config, screen.CYCLES):
+            raise refuse(features.CYCLES_PAGE, taken.text, taken.cure)
+        plan.add(screen.page_lines(plan.config, screen.CYCLES, plan.prefix))
 
 
 def add_face_view(plan: InstallPlan) -> None:

@@ -5,8 +5,7 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
-from g12.ini_sections import entries_of
-from g12.machine_ini import HANDLERS, Remap, remap_from_value
+from g12.machine_ini import HANDLERS, Remap, entries_of, remap_from_value
 from g12.tools.translate.blocks.control import read_control, shipped_controls
 
 ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs
@@ -29,9 +28,9 @@ REMAP_FILES = {
     SPINDLE_AS_C: "spindle_c.inc",
 }
 CONTROLS = {f"programs-{control}": control for control in shipped_controls()}
-FORMS = "forms"
+FORMS, CYCLES_PAGE = "forms", "cycles-page"
 KINEMATICS = "polar-kinematics"
-FEATURE_NAMES = (*REMAP_FILES, KINEMATICS, FORMS, *CONTROLS)
+FEATURE_NAMES = (*REMAP_FILES, KINEMATICS, FORMS, CYCLES_PAGE, *CONTROLS)
 EXCLUSIVE = (("haas", "yasnac", "mitsubishi"), ("polar", "polar-g12.3"), tuple(CONTROLS))
 POLAR_FEATURES = ("polar", "polar-g12.3")
 AXES_NEEDED = {  # of the machine; a mill's are XYZ
@@ -51,7 +50,8 @@ MEANING = {
     "polar-g12.3": "G12.3/G13.3 polar coordinate interpolation on and off",
     "cylinder": "G7.1 (G07.1) cylindrical interpolation on and off",
     KINEMATICS: "G12.1 in LinuxCNC's planner, on a lathe of the usual form (make kinematics)",
-    FORMS: "pages to fill in, with pictures, for the codes that the machine has",
+    FORMS: "ngcgui's pages to fill in, with pictures, for the codes that the machine has",
+    CYCLES_PAGE: "one page for these codes, which draws each cycle as it is typed",
     SPINDLE_AS_C: "M254/M255 the spindle becomes C, and the spindle again (--pins)",
     POLAR_SHAPES: "o<polar_polygon> and other shapes, o<face_holes> and other holes, "
     "by G12.4/G13.4",
@@ -65,6 +65,7 @@ FIRST_STEPS = {  # what to try of a feature, besides a code
     SPINDLE_AS_C: "home, M254: the spindle turns to its index and to C; M255 gives it back",
     KINEMATICS: "home, a program with G12.1: the screen shows the face until its G13.1",
     FORMS: "fill in a form on its page, Create Feature, Finalize: the program is open",
+    CYCLES_PAGE: "on the page Cycles choose a cycle, type, Add, Open: the program is open",
 }
 ON_ABORT = "ON_ABORT_COMMAND"  # of [RS274NGC], and of [G12] for the user's own command
 ABORT_SUB = "g12_on_abort"

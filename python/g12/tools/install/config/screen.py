@@ -147,8 +147,6 @@ def screen_findings(config: Config) -> Iterator[ConfigFinding]:
     yield from missing_files(config)
     if is_for_face(config) and not config.features.keys().isdisjoint(AXES_NEEDED):
         yield from key_taken(config, FACE)
-    if any("form_" in name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")):
-        yield from key_taken(config, CYCLES)
 
 
 def missing_files(config: Config) -> Iterator[ConfigFinding]:
