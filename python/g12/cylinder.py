@@ -114,16 +114,10 @@ class CylinderSettings(NamedTuple):
 
 
 class Cylinder(SectionKind):
-    """A section on a turned surface; this one is of a lathe's Z slide and its C axis.
-
-    ``sense`` is 1 where a positive angle leads to the right or upwards, ``across`` the axis that
-    stands on the axis of rotation.
-    """
+    """A section on a turned surface; this one is of a lathe's Z slide and its C axis."""
 
     words = CYLINDER_WORDS
     on_words = "C"
-    sense: ClassVar[float] = 1.0
-    across: ClassVar[str] = ""
 
     def check(self, start: SectionStart) -> None:
         self.check_machine(start)
@@ -143,7 +137,7 @@ class Cylinder(SectionKind):
     @property
     def per_radian(self) -> float:
         """The length to the right or upwards of a radian of the rotary axis."""
-        return self.surface * self.sense
+        return self.surface
 
     def word_rules(self) -> WordRules:
         return WordRules(
@@ -174,12 +168,16 @@ class Cylinder(SectionKind):
 
 
 class CylinderOnMill(Cylinder):
-    """A section of a mill with A, which turns about X."""
+    """A section of a mill with A, which turns about X.
+
+    ``across`` is the axis that stands on the axis of rotation, ``sense`` is 1 where a positive
+    angle leads to the right or upwards.
+    """
 
     words = words_on_mill("XAZ", AxisLetters("X", "A", "Z"), across="Y")
     on_words = "A"
-    sense = -1.0
-    across = "Y"
+    across: ClassVar[str] = "Y"
+    sense: ClassVar[float] = -1.0
 
     def check_machine(self, start: SectionStart) -> None:
         across = self.across
@@ -196,8 +194,8 @@ class CylinderOnMill(Cylinder):
 
     @property
     def per_radian(self) -> float:
-        reversed_ = self.machine.settings.rotary_sense == "reversed"
-        return super().per_radian * (-1.0 if reversed_ else 1.0)
+        turned = -1.0 if self.machine.settings.rotary_sense == "reversed" else 1.0
+        return self.surface * self.sense * turned
 
 
 class CylinderOnMillWithB(CylinderOnMill):
@@ -205,8 +203,8 @@ class CylinderOnMillWithB(CylinderOnMill):
 
     words = words_on_mill("BYZ", AxisLetters("Y", "B", "Z"), across="X")
     on_words = "B"
-    sense = 1.0
     across = "X"
+    sense = 1.0
 
 
 # By the letter of the rotary axis.
