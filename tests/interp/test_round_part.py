@@ -13,10 +13,17 @@ import pytest
 
 from g12.tools.preview.tracer import Tracer
 from support import polar_programs
-from support.flat_contours import FlatContour, apart, flat_path, unrolled_path
+from support.flat_contours import (
+    FIRST,
+    FlatContour,
+    apart,
+    flat_path,
+    flat_program,
+    unrolled_path,
+    wrapped_program,
+)
 from support.sim_machines import SIM, kept_tracer
 
-FIRST = "G21 G17 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 TOOL = 3.0  # mm, the radius of T3
 TOLERANCE = 0.005  # POLAR_TOLERANCE, mm
 RADII = (3.0, 25.0, 80.0)
@@ -32,26 +39,6 @@ mill = kept_tracer("mill_mm")
 mill_a = kept_tracer("mill_a_mm")
 mill_b = kept_tracer("mill_a_mm", overrides=WITH_B)
 reversed_a = kept_tracer("mill_a_mm", overrides={"G12": {"ROTARY_SENSE": "reversed"}})
-
-
-def flat_program(contour):
-    return [
-        FIRST, "T3 M6", "G0 Z5", f"G0 X{contour.start.real:.9f} Y{contour.start.imag:.9f}",
-        "G1 Z-1 F300", *contour.flat(), "G1 Z5", "M2",
-    ]  # fmt: skip
-
-
-def wrapped_program(contour, turn, radius, sense=1.0):
-    x, y = contour.start.real, contour.start.imag
-    if turn == "A":
-        there = f"X{x:.9f} Y0 A{math.degrees(-sense * y / radius):.9f}"
-    else:
-        there = f"X0 Y{y:.9f} B{math.degrees(sense * x / radius):.9f}"
-    return [
-        FIRST, "T3 M6", f"G0 Z{radius + 5:g}", f"G0 {there}", f"G7.1 {turn}{radius:g}",
-        f"G1 Z{radius - 1:g} F300", *contour.round_part(turn, radius, sense),
-        f"G1 Z{radius + 5:g}", f"G7.1 {turn}0", "M2",
-    ]  # fmt: skip
 
 
 def check_contours(mill, machine, turn, sense, seed, count):

@@ -12,6 +12,7 @@ import math
 import numpy as np
 from shapely.geometry import LineString
 
+FIRST = "G21 G17 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 SENSE = {"A": -1.0, "B": 1.0}  # LinuxCNC's: the right-hand rule, seen from the workpiece
 X, Y, Z, A, B = range(5)
 # Radians: LinuxCNC itself takes a smaller turn for none, and its path is 0.003 mm off there.
@@ -95,6 +96,26 @@ def wrapped(words, turn, radius, sense=1.0):
 
 def _block(code, words):
     return " ".join([code, *(f"{word}{value:.9f}" for word, value in words.items())])
+
+
+def flat_program(contour, feed=300):
+    return [
+        FIRST, "T3 M6", "G0 Z5", f"G0 X{contour.start.real:.9f} Y{contour.start.imag:.9f}",
+        f"G1 Z-1 F{feed:g}", *contour.flat(), "G1 Z5", "M2",
+    ]  # fmt: skip
+
+
+def wrapped_program(contour, turn, radius, sense=1.0, feed=300):
+    x, y = contour.start.real, contour.start.imag
+    if turn == "A":
+        there = f"X{x:.9f} Y0 A{math.degrees(-sense * y / radius):.9f}"
+    else:
+        there = f"X0 Y{y:.9f} B{math.degrees(sense * x / radius):.9f}"
+    return [
+        FIRST, "T3 M6", f"G0 Z{radius + 5:g}", f"G0 {there}", f"G7.1 {turn}{radius:g}",
+        f"G1 Z{radius - 1:g} F{feed:g}", *contour.round_part(turn, radius, sense),
+        f"G1 Z{radius + 5:g}", f"G7.1 {turn}0", "M2",
+    ]  # fmt: skip
 
 
 def flat_path(trace):
