@@ -16,8 +16,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from g12.errors import Refusal, number
-from g12.ini_sections import entries_of, with_included
 from g12.lengths import is_inch
+from g12.machine_ini import entries_of, with_included
 
 INI_SECTION = "G12"
 CLAMP_CODES = range(3, 10)  # of LinuxCNC's own M codes, those that may serve a clamp

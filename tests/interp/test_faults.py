@@ -25,9 +25,9 @@ sys.path.insert(0, "{python}")
 sys.modules["{module}"] = None
 import remap
 """
-HALVES = ["g12.request.words", "g12.polar.segments"]
+HALVES = ["g12.cycles.plan", "g12.polar.segments"]
 PROGRAMS = {  # of the half whose codes they use
-    "g12.request.words": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
+    "g12.cycles.plan": ("mill_mm", ["F600", "G0 X0 Y0", "G12 I20 D1 Z-1", "M2"]),
     "g12.polar.segments": (
         "lathe_mm",
         ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"],
@@ -105,7 +105,7 @@ def test_a_half_that_does_not_load_leaves_the_other(tmp_path, broken, used):
 
 
 def test_an_axis_that_cannot_be_leaves_the_cycles():
-    machine, program = PROGRAMS["g12.request.words"]
+    machine, program = PROGRAMS["g12.cycles.plan"]
     overrides = {"AXIS_X": {"MAX_ACCELERATION": "0"}}
     with Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0}) as tracer:
         assert "g12: [AXIS_X] MAX_ACCELERATION = 0: must be above 0" in tracer.printed

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from g12.request.context import Tool
+from g12.request.words import Tool
 from g12.shapes import pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.tools.preview.tracer import Tracer

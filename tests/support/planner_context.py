@@ -4,7 +4,7 @@
 import pytest
 
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.request.context import Context, Tool
+from g12.request.words import Context, Tool
 
 MM = Context(
     inch=False,

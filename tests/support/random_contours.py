@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from shapely.geometry import LineString, Polygon
 
-from g12.compensation import offset
+from g12.compensation import centre_path
 from g12.compensation.contour import Contour, PlaneMove
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.geometry.curve import angle_of
@@ -76,7 +76,7 @@ def stands(part):
 def refusal(contour):
     """Return the message with which a contour is refused, or an empty text."""
     try:
-        offset.tool_path(contour, contour.elements, TOLERANCE)
+        centre_path.tool_path(contour, contour.elements, TOLERANCE)
     except Refusal as refused:
         assert len(refused.message) < LONGEST_MESSAGE
         return refused.message
@@ -86,8 +86,8 @@ def refusal(contour):
 def blind_path(monkeypatch, contour):
     """Return the tool's path, compensated and its ramps, that nobody has looked at for gouges."""
     with monkeypatch.context() as patch:
-        patch.setattr(offset, "check_gouges", lambda *_: None)
-        path = offset.tool_path(contour, contour.elements, TOLERANCE)
+        patch.setattr(centre_path, "check_gouges", lambda *_: None)
+        path = centre_path.tool_path(contour, contour.elements, TOLERANCE)
     return [element for element in path if isinstance(element, PlaneMove) and element.line > 1]
 
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a section finds where nothing forbids it to begin: tests replace what they are about."""
 
-from g12.section.effects import SectionModes
+from g12.section.effects import SectionModes, SectionStart
 from g12.section.line import BlockLocation
-from g12.section.start import SectionStart
 
 START = SectionStart(
     location=BlockLocation("G12.1", 7),

@@ -12,8 +12,8 @@ from collections import Counter
 import pytest
 from shapely.ops import nearest_points
 
+from g12.compensation.centre_path import tool_path
 from g12.compensation.contour import Contour
-from g12.compensation.offset import tool_path
 from g12.errors import Refusal
 from support import random_contours
 from support.contour_geometry import Round, Straight, lines

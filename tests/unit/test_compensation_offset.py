@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from g12.compensation.centre_path import tool_path
 from g12.compensation.contour import Contour
-from g12.compensation.offset import tool_path
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.section.effects import Action
 from support.contour_geometry import distance, shape_of

@@ -12,13 +12,11 @@ from hypothesis import strategies as st
 
 from g12.cycles import mitsubishi, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
-from g12.cycles.entry import PocketEntry
 from g12.cycles.haas import plan_pocket
-from g12.cycles.plan import EventPlanes
+from g12.cycles.plan import EventPlanes, PocketEntry
 from g12.errors import Refusal
-from g12.request.context import Tool
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CycleExtent
+from g12.request.words import Tool, Words
 from support.planner_context import INCH, MM, reported, words_of
 
 NONE = EventPlanes()

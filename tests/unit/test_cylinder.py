@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, PlaneNames, Start
-from g12.cylinder.cylinder_section import (
+from g12.cylinder import (
     CYLINDER_WORDS,
     Cylinder,
     CylinderSettings,
@@ -21,8 +21,8 @@ from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock, check_codes, check_letters
+from g12.section.effects import codes_with_word
 from g12.section.line import BlockLocation, split_line
-from g12.section.start import codes_with_word
 from g12.settings import Settings
 from support import planned_moves
 from support.section_starts import START as POLAR_START

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from g12.cycles.entry import (
+from g12.cycles.plan import (
     STRAIGHT_DOWN,
     Descent,
     Helix,

@@ -6,8 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from g12.geometry.boxes import BoxTree, apart
-from g12.geometry.curve import Arc, Line
+from g12.geometry.curve import Arc, BoxTree, Line, apart
 
 
 def some(count):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from g12.errors import Refusal
-from g12.moves.spacing import MOST_SEGMENTS_OF_MOVE, Stretch, spaced
+from g12.moves.steps import MOST_SEGMENTS_OF_MOVE, Stretch, spaced
 from g12.polar.polar_section import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed

@@ -8,10 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.lengths import LARGEST, MM_PER_INCH
-from g12.request.common import other_cutter, steps_between
-from g12.request.context import Tool
-from g12.request.travel import CycleExtent, MachineFrame, check_travel
-from g12.request.words import Words
+from g12.request.common import CycleExtent, MachineFrame, check_travel, other_cutter, steps_between
+from g12.request.words import Tool, Words
 from support.planner_context import MM, reported
 
 # ---------------------------------------------------------------- words

@@ -2,7 +2,7 @@
 """Which codes begin and end a section: the user's choice."""
 
 from g12.machine_ini import remap_from_value
-from g12.section.start import codes_of_section
+from g12.section.effects import codes_of_section
 
 PAIR = ("G12.1 modalgroup=1 python=polar_on", "G13.1 modalgroup=1 python=polar_off")
 OTHER = ("G12.3 modalgroup=1 py=polar_on", "G13.3 modalgroup=1 py=polar_off")

@@ -1,5 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""From a contour to the tool centre's path, without the rounding in the program's points.
+"""From a contour to the tool centre's path: cutter compensation, without the program's rounding.
+
+Each element under compensation is shifted to its parallel on the tool's side, then joined to its
+neighbours:
+
+- outside corner: an arc about the corner, part of the block that follows;
+- inside corner: both parallels end where they cross;
+- ramp on: ends square to the start of the next element of the contour; ramp off: starts square to
+  the end of the last one. Blocks without motion in the plane are skipped.
+
+Corners that are too tight for the tool are refused, and so is a path on which it gouges (`gouge`).
 
 Moves under compensation may be only rounding of the program's points, not geometry. A CAM system's
 last decimal makes a chamfer of a corner, or sends the contour back by a step. The tool's centre
@@ -10,13 +20,239 @@ removed and its neighbours are joined; its Z remains.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from math import copysign
-from typing import TypeGuard
+from typing import NamedTuple, NoReturn, TypeGuard
 
+from g12.compensation.compensated import PathOfMove
 from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove, Plunge
-from g12.compensation.offset import tool_path
-from g12.errors import Refusal
-from g12.geometry.curve import Arc, Line
+from g12.compensation.gouge import LeadRefusal, check_gouges
+from g12.errors import Refusal, number
+from g12.geometry.curve import PARALLEL_SINE, Arc, Curve, Line, crossings, sweep_between
+
+JOINED = 0.04  # tolerances: parallels with an arc of less sagitta are joined without it
+ONE_CORNER = 2.0  # tolerances: ends within this distance are one corner
+
+
+class _Step(NamedTuple):
+    """A move of the contour, and its parallel.
+
+    ``compensated``: compensation is on at both its ends. ``ramp``: it is switched on by this move.
+    """
+
+    move: PlaneMove
+    parallel: Curve
+    compensated: bool
+    ramp: bool
+
+
+class _Joint(NamedTuple):
+    """The end of one move's path and the start of the next one's, with an arc about ``corner``.
+
+    Without a corner the two points are the same.
+    """
+
+    end_before: complex
+    start_after: complex
+    corner: complex | None = None
+
+
+def tool_path(contour: Contour, elements: list[PathElement], tolerance: float) -> list[PathElement]:
+    """Return the tool centre's path for a contour's elements, in the same order.
+
+    ``tolerance`` in program units: the path deviates by a small share of it.
+    """
+    moves = [e for e in elements if isinstance(e, PlaneMove)]
+    if not any(e.offset for e in moves):
+        return elements
+    try:
+        centred = iter(_centred(contour, moves, tolerance))
+    except LeadRefusal as refusal:
+        raise _with_other_side(refusal, contour, moves, tolerance) from None
+    path: list[PathElement] = []
+    for element in elements:
+        path.extend(next(centred) if isinstance(element, PlaneMove) else (element,))
+    return path
+
+
+def _with_other_side(
+    refusal: Refusal, contour: Contour, moves: list[PlaneMove], tolerance: float
+) -> Refusal:
+    """Return a refusal that suggests the other of G41 and G42, where that one can be cut."""
+    others = [move._replace(offset=-move.offset) for move in moves]
+    trial = copy(contour)
+    trial.elements, trial.notes = list(others), []
+    try:
+        _centred(trial, others, tolerance)
+    except Refusal:
+        return refusal
+    codes = sorted({_code(contour, move) for move in others if move.offset})
+    return Refusal(f"{refusal.rule}. {' and '.join(codes)}?", refusal.code, refusal.line)
+
+
+def _centred(
+    contour: Contour, moves: list[PlaneMove], tolerance: float
+) -> list[tuple[PathElement, ...]]:
+    """Return for each move the moves of the tool's centre."""
+    steps = _steps(contour, moves)
+    last = steps[-1]
+    if last.ramp:
+        contour.refuse(
+            last.move.line,
+            f"{_code(contour, last.move)} needs a block of the contour after its G1",
+        )
+    joints = [_joint(contour, a, b, tolerance) for a, b in zip([None, *steps], steps)]
+    joints.append(_Joint(last.parallel.end, last.parallel.end))
+    cuts = []
+    for k, step in enumerate(steps):
+        joint, end = joints[k], joints[k + 1].end_before
+        if not step.compensated:
+            path = _uncompensated(step.move, joint.start_after, end)
+        else:
+            path = _trimmed(contour, steps, k, joint.start_after, end)
+            if joint.corner is not None:
+                path = (_corner_arc(step.move, joint, joint.corner), *path)
+        cuts.append(PathOfMove(step.move, path, step.compensated))
+    check_gouges(contour, cuts, tolerance)
+    return [cut.path for cut in cuts]
+
+
+def _steps(contour: Contour, moves: list[PlaneMove]) -> list[_Step]:
+    steps = []
+    offset = 0.0
+    for move in moves:
+        ramp = bool(move.offset) and not offset
+        compensated = bool(move.offset) and bool(offset)
+        curve = _parallel(contour, move) if compensated else move.curve
+        steps.append(_Step(move, curve, compensated, ramp))
+        offset = move.offset
+    return steps
+
+
+def _joint(contour: Contour, a: _Step | None, b: _Step, tolerance: float) -> _Joint:
+    """Return the joint between two moves that follow each other in the plane."""
+    if a is not None and a.ramp and not b.compensated:
+        contour.refuse(
+            b.move.line,
+            f"G40 follows {_code(contour, a.move)} of line {a.move.line}"
+            " with nothing between them to cut",
+        )
+    if a is not None and a.compensated and b.compensated:
+        return _corner(contour, a, b, tolerance)
+    point = a.parallel.end if a is not None and a.compensated else b.parallel.start
+    return _Joint(point, point)
+
+
+def _corner(contour: Contour, a: _Step, b: _Step, tolerance: float) -> _Joint:
+    turned = a.move.curve.direction(1.0).conjugate() * b.move.curve.direction(0.0)
+    sine, cosine = turned.imag, turned.real
+    end_before, start_after, offset = a.parallel.end, b.parallel.start, b.move.offset
+    if cosine > 0.0 and _is_joined(a, b, abs(start_after - end_before), abs(sine), tolerance):
+        point = (end_before + start_after) / 2
+        return _Joint(point, point)
+    if sine * offset <= PARALLEL_SINE * abs(offset):
+        return _Joint(end_before, start_after, b.move.start)
+    crossing = _crossing(a.parallel, b.parallel)
+    if crossing is None:
+        _refuse_tight(contour, a, b)
+    return _Joint(crossing, crossing)
+
+
+def _crossing(one: Curve, other: Curve) -> complex | None:
+    """Return the crossing of two parallels nearest to the corner, None without one."""
+    length, best, nearest = one.length, None, 0.0
+    for point in crossings(one, other):
+        on_one, on_other = one.length_to(point, late=True), other.length_to(point)
+        on_both = (
+            -SAME_POINT <= on_one <= length + SAME_POINT
+            and -SAME_POINT <= on_other <= other.length + SAME_POINT
+        )
+        if on_both and (best is None or length - on_one + on_other < nearest):
+            best, nearest = point, length - on_one + on_other
+    return best
+
+
+def _is_joined(a: _Step, b: _Step, gap: float, sine: float, tolerance: float) -> bool:
+    """Return whether two parallels need no arc between them: it would be very short."""
+    straight = isinstance(a.parallel, Line) and isinstance(b.parallel, Line)
+    sagitta = gap * sine / 8.0  # of an arc with the gap as its chord
+    return sagitta <= JOINED * tolerance and (straight or gap <= ONE_CORNER * tolerance)
+
+
+def _refuse_tight(contour: Contour, a: _Step, b: _Step) -> NoReturn:
+    contour.refuse(
+        b.move.line,
+        f"the tool of radius {number(abs(b.move.offset))} cannot reach both lines {a.move.line} "
+        f"and {b.move.line}: their corner is too tight",
+    )
+
+
+def _code(contour: Contour, move: PlaneMove) -> str:
+    return "G41" if (move.offset > 0.0) != contour.mirrored else "G42"
+
+
+def _corner_arc(move: PlaneMove, joint: _Joint, corner: complex) -> PlaneMove:
+    turn = -1 if move.offset > 0.0 else 1
+    sweep = sweep_between(joint.end_before, joint.start_after, corner, turn)
+    return move._replace(curve=Arc(joint.end_before, corner, sweep), h1=move.h0)
+
+
+def _parallel(contour: Contour, move: PlaneMove) -> Curve:
+    """Return the curve shifted by its offset: the path of the tool's centre along it."""
+    curve = move.curve
+    if isinstance(curve, Arc):
+        inward = move.offset if curve.sweep > 0.0 else -move.offset
+        if inward - curve.radius > SAME_POINT:
+            contour.refuse(
+                move.line,
+                f"the arc of radius {number(curve.radius)} is smaller than the tool radius "
+                f"{number(abs(move.offset))} ({_neighbours(contour, move)})",
+            )
+    return curve.offset(move.offset)
+
+
+def _neighbours(contour: Contour, move: PlaneMove) -> str:
+    moves = [e for e in contour.elements if isinstance(e, PlaneMove)]
+    k = moves.index(move)  # one ramp comes before it, another after it
+    return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"
+
+
+def _trimmed(
+    contour: Contour, steps: list[_Step], k: int, start: complex, end: complex
+) -> tuple[PathElement, ...]:
+    """Return the parallel of a step between two points of it; refuse points in reverse order."""
+    move, parallel = steps[k].move, steps[k].parallel
+    length = parallel.length_to(end, late=True) - parallel.length_to(start)
+    if length < -SAME_POINT:
+        contour.refuse(
+            move.line,
+            f"too short for the tool radius {number(abs(move.offset))} between its inside corners "
+            f"with lines {steps[k - 1].move.line} and {steps[k + 1].move.line}",
+        )
+    if length <= SAME_POINT:
+        return _move_of_z(move)
+    if isinstance(parallel, Line):
+        return (move._replace(curve=Line(start, end)),)
+    sweep = copysign(length / parallel.radius, parallel.sweep)
+    return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
+
+
+def _uncompensated(move: PlaneMove, start: complex, end: complex) -> tuple[PathElement, ...]:
+    """Return a ramp, or a move without compensation, between the joints at its ends.
+
+    A ramp that is square to the contour and as long as the tool's radius shrinks to a point.
+    """
+    if isinstance(move.curve, Arc):
+        return (move,)
+    if abs(end - start) <= SAME_POINT:
+        return _move_of_z(move)
+    return (move._replace(curve=Line(start, end)),)
+
+
+def _move_of_z(move: PlaneMove) -> tuple[PathElement, ...]:
+    """Return the move of Z that remains of a move without length in the plane, if any."""
+    return () if move.h0 == move.h1 else (Plunge(move.line, move.feed, move.h0, move.h1),)
+
 
 MOST_POINTS = 100  # replaced by one line: each further point is checked against all of them
 

@@ -20,8 +20,7 @@ from typing import NamedTuple
 
 from g12.compensation.contour import SAME_POINT, Contour, PathElement, PlaneMove
 from g12.errors import number
-from g12.geometry.boxes import BoxTree
-from g12.geometry.curve import Arc, Box, Curve, common_points
+from g12.geometry.curve import Arc, Box, BoxTree, Curve, common_points
 
 LEADS = 3  # moves at either end of a contour that are searched for the point where it closes
 CROSSING = 2  # moves at either end that may cross each other

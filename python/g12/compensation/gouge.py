@@ -47,8 +47,7 @@ from g12.compensation.compensated import (
 )
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.geometry.boxes import apart
-from g12.geometry.curve import common_points
+from g12.geometry.curve import apart, common_points
 
 SAME_DIRECTION_COSINE = 0.9  # cosine: passes in the same direction differ by less than this angle
 CROSSED = 0.02  # of the tool's radius: a contour that goes farther to both sides crosses itself

@@ -11,13 +11,10 @@ circles.
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.hole import Chosen, check_block, chosen_cutter, hole_of, turns_of
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import Chosen, CyclePlan, check_block, chosen_cutter, hole_of, turns_of
 from g12.errors import number
-from g12.request.common import CLEARED, check_count, steps_between
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CLEARED, CycleExtent, check_count, steps_between
+from g12.request.words import XY, Words
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
 

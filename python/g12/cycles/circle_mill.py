@@ -40,14 +40,13 @@ from g12.request.common import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
+    CycleExtent,
     check_count,
     check_modes,
     loaded_tool,
     steps_between,
 )
-from g12.request.context import XY, Tool
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.words import XY, Tool, Words
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7

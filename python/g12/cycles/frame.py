@@ -16,20 +16,26 @@ from math import ceil, pi, radians, sqrt, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
-from g12.cycles.entry import PocketEntry
-from g12.cycles.hole import CLEARANCE_MM, Chosen, Hole, check_block, chosen_cutter, hole_of
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import (
+    CLEARANCE_MM,
+    Chosen,
+    CyclePlan,
+    Hole,
+    PocketEntry,
+    check_block,
+    chosen_cutter,
+    hole_of,
+)
 from g12.errors import number
 from g12.request.common import (
     CLEARED,
     CLOCKWISE,
     COUNTERCLOCKWISE,
+    CycleExtent,
     check_count,
     steps_between,
 )
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.words import XY, Words
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
 POCKET, WALL_INSIDE, WALL_OUTSIDE = 0, 1, 2  # H

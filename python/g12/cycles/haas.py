@@ -23,22 +23,25 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 """
 
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
-from g12.cycles.entry import STRAIGHT_DOWN, PocketEntry, pocket_descent
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import (
+    STRAIGHT_DOWN,
+    CyclePlan,
+    PocketEntry,
+    choose_cutter,
+    kept_cutter,
+    pocket_descent,
+)
 from g12.errors import number
 from g12.request.common import (
     CLEARED,
+    CycleExtent,
     check_count,
     check_modes,
     check_start,
-    commanded_tool,
     other_cutter,
-    sound_tool,
     steps_between,
 )
-from g12.request.context import XY, Tool
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.words import XY, Tool, Words
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 
@@ -103,28 +106,6 @@ def plan_pocket(
     return CyclePlan(numbers, extent, cut, message, other, commanded, kept_cutter=kept)
 
 
-def kept_cutter(words: Words, cutter: Tool) -> str | None:
-    """Return the operator message of a block without D whose cutter the program does not show.
-
-    It may be that of an older line of the tool table, or depend on what ran before.
-    """
-    context, before = words.context, "the D of what ran before"
-    size = context.tool_size(2 * cutter.radius)
-    named = context.tool_in_table(cutter.number) if cutter.number else None
-    if named and abs(named.radius - cutter.radius) > context.rounding:
-        now = context.tool_size(2 * named.radius)
-        return (
-            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
-            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
-        )
-    if not context.d_is_earlier():
-        return None
-    counts = f"{before} counts, diameter {size}"
-    if context.last_cutter is None:
-        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
-    return f"{words.code}: no D above this block in the program: {counts}. Give D"
-
-
 def links_outward(
     words: Words, first: float, finished: float, stepover: float, clearing: str, levels: int
 ) -> dict[str, float]:
@@ -134,22 +115,6 @@ def links_outward(
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
     step, last_step = min(growth, finished - first), finished - first - growth * (links - 1)
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
-
-
-def choose_cutter(words: Words) -> tuple[Tool, str]:
-    """Return the cutter of the block and its source, for messages.
-
-    The source is D in the block, else the D last commanded, else the tool in the spindle.
-    """
-    context, tool = words.context, commanded_tool(words)
-    if tool is not None:
-        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
-    if context.last_cutter is not None:
-        return context.last_cutter, "the D last commanded"
-    if context.spindle_tool is None:
-        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    source = f"T{context.spindle_tool.number} in the spindle"
-    return sound_tool(words, context.spindle_tool, source), source
 
 
 def check_radii(

@@ -16,10 +16,8 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 from g12.cut_report import BY_D, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import number
-from g12.request.common import check_modes, check_start, commanded_tool, other_cutter
-from g12.request.context import XY, XZ, YZ, Tool
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CycleExtent, check_modes, check_start, commanded_tool, other_cutter
+from g12.request.words import XY, XZ, YZ, Tool, Words
 
 MITSUBISHI_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}

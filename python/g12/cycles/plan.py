@@ -1,14 +1,30 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The result of the planner of any cycle."""
+"""What the planners of cycles share: their result, centre and cutter of a hole, the descent.
+
+The helix of a pocket consists of half turns with the same fall each. The slope of the last few
+decreases, so that the toolpath has no corner where it reaches the level. One full circle at that
+level follows. The helix ends at the angle where it began. Lengths are in program units.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import atan, ceil, cos, pi, radians, sin, tan
 from typing import NamedTuple
 
-from g12.cut_report import PlannedCut
-from g12.request.context import Tool
-from g12.request.travel import CycleExtent
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, PlannedCut, UsedCutter
+from g12.errors import number
+from g12.request.common import (
+    CLEARED,
+    COUNTERCLOCKWISE,
+    CycleExtent,
+    check_modes,
+    check_start,
+    commanded_tool,
+    other_cutter,
+    sound_tool,
+)
+from g12.request.words import Tool, Words
 
 
 class EventPlanes(NamedTuple):
@@ -40,3 +56,227 @@ class CyclePlan(NamedTuple):
     commanded_cutter: Tool | None = None
     commanded_planes: EventPlanes | None = None
     kept_cutter: str | None = None
+
+
+LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
+MOST_HELIX_HALF_TURNS = 2000  # a helix of more has a wrong I or Z
+
+
+class PocketEntry(NamedTuple):
+    """The machine's settings [G12] ENTRY, ENTRY_ANGLE in degrees, PLUNGE_FEED in per cent of F."""
+
+    helix: bool = False
+    angle: float = 3.0
+    feed: float = 100.0
+
+
+STRAIGHT_DOWN = PocketEntry()
+
+
+class Descent(NamedTuple):
+    """A descent: ``turns`` half turns that fall by ``fall`` each, then the last ones of the helix.
+
+    No turns: straight down.
+    """
+
+    turns: int = 0
+    fall: float = 0.0
+
+
+class Helix(NamedTuple):
+    """Helices of one radius, whose ``last`` half turns have a decreasing slope."""
+
+    radius: float = 0.0
+    slope: float = 0.0
+    last: int = 0
+
+    def descent(self, height: float) -> Descent:
+        """Return the descent by a height, at most as steep as the slope, in whole turns."""
+        if not self.radius or height <= 0.0:
+            return Descent()
+        rest = 0.5 * self.last
+        turns = max(1, ceil(height / (pi * self.radius * self.slope) - rest))
+        turns += (turns + self.last) % 2
+        return Descent(turns, height / (turns + rest))
+
+
+def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
+    """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
+    if not entry.helix:
+        return Helix()
+    slope = tan(radians(entry.angle))
+    radius = min(first, CLEARED * cutter) if cutter else first
+    return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
+
+
+def pocket_descent(
+    words: Words, entry: PocketEntry, first: float, cutter: float, heights: tuple[float, float]
+) -> dict[str, float]:
+    """Return the locals of the descent in a pocket, or refuse a helix of too many turns.
+
+    ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
+    ``heights`` are those of the first level and of each further one.
+    """
+    helix, feed = helix_of(entry, first, cutter), words.context.feed
+    check_helix(words, helix, heights[0], cutter)
+    to_first, further = map(helix.descent, heights)
+    numbers = {
+        "restart": heights[1] != 0 and not further.turns,
+        "turns": to_first.turns,
+        "feed": feed,
+        "plunge_feed": feed * (entry.feed / 100.0),
+    }
+    if not to_first.turns:
+        return numbers
+    return numbers | {
+        "fall": to_first.fall,
+        "next_turns": further.turns,
+        "next_fall": further.fall,
+        "last_turns": helix.last,
+        "helix_radius": helix.radius,
+        "side": -1 if first > helix.radius else 1,
+    }
+
+
+def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:
+    """Refuse a helix so narrow that it needs too many turns; ``cutter`` is the cutter's radius."""
+    turns = helix.descent(height).turns
+    if turns <= MOST_HELIX_HALF_TURNS:
+        return
+    least = height / (pi * helix.slope * (MOST_HELIX_HALF_TURNS - 2))
+    if cutter and least > CLEARED * cutter:
+        fits = f"{number(height * CLEARED * cutter / least)} down fits at most"
+    else:
+        fits = f"I from {number(cutter + least)} fits"
+    raise words.refuse(
+        f"a helix of radius {number(helix.radius)} needs {turns // 2} turns for {number(height)}, "
+        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
+    )
+
+
+CLEARANCE_MM, CLEARANCE_INCH = 1.0, 0.04  # of the rapid down, above the top
+WHOLE_TURN = 1e-5  # a smaller part of a turn is rounding: its arc would be a full circle
+
+
+class Hole(NamedTuple):
+    """Centre, the Z where the block begins, the end of the rapid down, top and bottom."""
+
+    x: float
+    y: float
+    start: float
+    clear: float
+    top: float
+    bottom: float
+
+    @property
+    def depth(self) -> float:
+        return self.top - self.bottom
+
+
+class Chosen(NamedTuple):
+    """The cutter of a block, its name in messages, and what the operator hears of it."""
+
+    tool: Tool
+    source: str
+    used: UsedCutter
+    other: str | None
+    kept: str | None
+
+    @property
+    def radius(self) -> float:
+        return self.tool.radius
+
+    def plan(
+        self,
+        numbers: dict[str, float],
+        extent: CycleExtent,
+        cut: Callable[[], PlannedCut],
+        message: str | None = None,
+    ) -> CyclePlan:
+        commanded = self.tool if self.used.source == BY_D else None
+        return CyclePlan(
+            numbers, extent, cut, message, self.other, commanded, kept_cutter=self.kept
+        )
+
+
+def check_block(words: Words, known: str) -> None:
+    check_modes(words)
+    words.check_known(known)
+    if "X" not in words and "Y" not in words:
+        check_start(words)
+
+
+def hole_of(words: Words, top: float | None = None) -> Hole:
+    """Return where the cycle cuts; under G91 its Z counts from the top, which is R or ``top``."""
+    context = words.context
+    x = context.absolute(words.take("X"), context.x)
+    y = context.absolute(words.take("Y"), context.y)
+    depth = words.require("Z", "the depth")
+    if top is None:
+        given = words.take("R")
+        top = context.absolute(given, context.z)
+        if top > context.z + context.rounding:
+            rule = f"puts the top above the tool at Z{number(context.z)}: retract first"
+            raise words.refuse_word("R", top if given is None else given, rule)
+    bottom = top + depth if context.incremental else depth
+    if bottom >= top - context.smallest_ring:
+        raise words.refuse_word("Z", depth, f"must be below the top, Z{number(top)}")
+    clearance = CLEARANCE_INCH if context.inch else CLEARANCE_MM
+    return Hole(x, y, context.z, min(context.z, top + clearance), top, bottom)
+
+
+def chosen_cutter(words: Words) -> Chosen:
+    """Return the cutter: D, else the D last commanded, else the loaded tool."""
+    context, with_d = words.context, "D" in words
+    other = other_cutter(words, context.last_cutter)
+    tool, source = choose_cutter(words)
+    by = BY_D if with_d else LOADED if context.last_cutter is None else BY_LAST_D
+    kept = None if with_d else kept_cutter(words, tool)
+    return Chosen(tool, source, UsedCutter(tool.radius, by, tool.number), other, kept)
+
+
+def turns_of(height: float, pitch: float, arc: int) -> dict[str, float]:
+    """Return the locals of one helix from +X: turns begun, direction of its end from the centre."""
+    turns = height / pitch
+    if abs(turns - round(turns)) < WHOLE_TURN:
+        turns = max(1, round(turns))
+    angle = 2 * pi * (turns % 1) * (1 if arc == COUNTERCLOCKWISE else -1)
+    return {"rounds": ceil(turns), "end_x": cos(angle), "end_y": sin(angle)}
+
+
+def kept_cutter(words: Words, cutter: Tool) -> str | None:
+    """Return the operator message of a block without D whose cutter the program does not show.
+
+    It may be that of an older line of the tool table, or depend on what ran before.
+    """
+    context, before = words.context, "the D of what ran before"
+    size = context.tool_size(2 * cutter.radius)
+    named = context.tool_in_table(cutter.number) if cutter.number else None
+    if named and abs(named.radius - cutter.radius) > context.rounding:
+        now = context.tool_size(2 * named.radius)
+        return (
+            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
+            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
+        )
+    if not context.d_is_earlier():
+        return None
+    counts = f"{before} counts, diameter {size}"
+    if context.last_cutter is None:
+        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
+    return f"{words.code}: no D above this block in the program: {counts}. Give D"
+
+
+def choose_cutter(words: Words) -> tuple[Tool, str]:
+    """Return the cutter of the block and its source, for messages.
+
+    The source is D in the block, else the D last commanded, else the tool in the spindle.
+    """
+    context, tool = words.context, commanded_tool(words)
+    if tool is not None:
+        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
+    if context.last_cutter is not None:
+        return context.last_cutter, "the D last commanded"
+    if context.spindle_tool is None:
+        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
+    source = f"T{context.spindle_tool.number} in the spindle"
+    return sound_tool(words, context.spindle_tool, source), source

@@ -16,21 +16,19 @@ from math import ceil, cos, pi, sin, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.hole import (
+from g12.cycles.plan import (
     CLEARANCE_MM,
     Chosen,
+    CyclePlan,
     Hole,
     check_block,
     chosen_cutter,
     hole_of,
     turns_of,
 )
-from g12.cycles.plan import CyclePlan
 from g12.errors import number
-from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, check_count, steps_between
-from g12.request.context import XY
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, check_count, steps_between
+from g12.request.words import XY, Words
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
 INSIDE, OUTSIDE = 0, 1  # H

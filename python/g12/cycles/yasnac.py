@@ -31,6 +31,7 @@ from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
 from g12.request.common import (
+    CycleExtent,
     check_count,
     check_modes,
     check_start,
@@ -39,9 +40,7 @@ from g12.request.common import (
     sound_tool,
     steps_between,
 )
-from g12.request.context import XY, Tool
-from g12.request.travel import CycleExtent
-from g12.request.words import Words
+from g12.request.words import XY, Tool, Words
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
 

@@ -13,7 +13,6 @@ from pathlib import Path
 import linuxcnc
 
 from g12.errors import Refusal
-from g12.ini_sections import value_in, with_included
 from g12.machine_ini import (
     Axis,
     FaceAxes,
@@ -26,6 +25,8 @@ from g12.machine_ini import (
     ranges_of,
     remap_lines,
     spindle_c_timeout,
+    value_in,
+    with_included,
 )
 from g12.settings import Settings, settings_from_ini
 

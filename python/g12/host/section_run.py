@@ -24,8 +24,8 @@ from g12.moves.setup import SectionKind
 from g12.moves.steps import SectionPlan
 from g12.section import block_rules
 from g12.section.block_rules import SectionBlock
+from g12.section.effects import SectionCodes
 from g12.section.line import TextLine, split_line
-from g12.section.start import SectionCodes
 
 MOST_SECTION_LINES = 1_000_000
 LONGEST_READING = 0.5  # s in which LinuxCNC obeys no abort, nor anything else

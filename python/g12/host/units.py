@@ -6,7 +6,7 @@ from __future__ import annotations
 import emccanon
 
 from g12.host.interp import DIAMETER_ACTIVE, G7, Interp, ToolTableEntry, millimetres_per_unit
-from g12.request.context import Tool
+from g12.request.words import Tool
 from g12.section.block_rules import NO_CODE, GGroup
 
 

@@ -3,8 +3,8 @@
 
 1. ``setup``: what a kind of section takes from the machine, and its travel.
 2. ``exact_stops``: where the tool must stop, because LinuxCNC's blending would cut the corner.
-3. ``spacing``: the fewest segments along an element that stay within the tolerance.
-4. ``steps``: the moves of a plan, and their F words.
+3. ``steps``: the moves of a plan: the fewest segments along an element that stay within the
+   tolerance, and their F words.
 
 LinuxCNC's planner is the reason for most. With a rotary axis in motion it looks ahead by one move
 only, so short segments cost speed. F applies to the linear axes. The P of G64 does not limit the

@@ -10,8 +10,8 @@ from g12.errors import number
 from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.steps import FaceMove, SectionPlan, Segments, Step
+from g12.section.effects import SectionStart, WordRules
 from g12.section.line import SectionWords
-from g12.section.start import SectionStart, WordRules
 from g12.settings import Settings
 
 LEAST_MM = 0.001  # LinuxCNC 2.9.0~pre1 runs a smaller move of a slide with a rotary axis too fast

@@ -37,8 +37,8 @@ from g12.polar.pole import POLE, along_and_around, check_pole_distance, slide_at
 from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
 from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
+from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
-from g12.section.start import SectionStart, WordRules
 
 POLE_SHARE = 0.5  # of the tolerance: a path nearer to the pole than this runs through it
 NO_ROTATION = 1e-9  # radians: C does not turn

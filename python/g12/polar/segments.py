@@ -22,8 +22,7 @@ from math import copysign, pi
 from typing import NamedTuple
 
 from g12.geometry.curve import Arc, Curve, Line, angle_of
-from g12.moves.spacing import BULGE, Density, Stretch, spaced
-from g12.moves.steps import Split
+from g12.moves.steps import BULGE, Density, Split, Stretch, spaced
 from g12.polar.pole import POLE, along_and_around, slide_at
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius

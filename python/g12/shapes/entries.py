@@ -13,8 +13,7 @@ from typing import NamedTuple
 from g12.cut_report import LOADED, PlannedCut, ShapePasses, UsedCutter
 from g12.errors import number
 from g12.request.common import LEFT_OUT, loaded_tool, steps_between
-from g12.request.context import Context
-from g12.request.words import Words
+from g12.request.words import Context, Words
 
 PASS_ENTRIES = ("depth_per_pass", "allowance", "feed", "plunge_feed")
 CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid

@@ -36,9 +36,8 @@ from g12.host.units import (
     tool_of_entry,
 )
 from g12.lengths import ROUNDING_MM, converts
-from g12.request.context import Context, Tool
-from g12.request.travel import CycleExtent, MachineFrame, check_travel
-from g12.request.words import Words
+from g12.request.common import CycleExtent, MachineFrame, check_travel
+from g12.request.words import Context, Tool, Words
 from g12.section.block_rules import NO_CODE, GGroup
 
 READING_WORDS = (  # codes that read words of a cycle's block

@@ -9,10 +9,9 @@ from interpreter import INTERP_OK
 
 from g12.cycles import circle_mill, mitsubishi, yasnac
 from g12.cycles.bore import plan_bore
-from g12.cycles.entry import PocketEntry
 from g12.cycles.frame import plan_frame
 from g12.cycles.haas import plan_pocket
-from g12.cycles.plan import CyclePlan
+from g12.cycles.plan import CyclePlan, PocketEntry
 from g12.cycles.thread import plan_thread
 from g12.host import borrowed, messages, reported
 from g12.host.call_frame import set_locals_at

@@ -1,30 +1,262 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The handlers of G12.1, G13.1 and G7.1, whatever codes the REMAP lines give them."""
+"""The handlers of G12.1, G13.1 and G7.1, and how a section begins: its state, report and run."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from g12.cylinder.cylinder_section import RADIUS, Cylinder
+import emccanon
+from interpreter import MODE_INCREMENTAL
+
+from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
+from g12.cut_report import CutElement, SectionCut, more_text, report_text
+from g12.cylinder import RADIUS, Cylinder
 from g12.errors import Refusal
-from g12.host import borrowed, kinematics_switch, messages
+from g12.geometry.curve import Arc
+from g12.host import borrowed, kinematics_switch, messages, units
 from g12.host.call_frame import CallFrame
 from g12.host.handlers import aborts
-from g12.host.interp import MOVE_WORDS, Interp, words_in
-from g12.host.machine import MACHINE
-from g12.host.program_lines import ProgramLines
-from g12.host.section_handler import (
-    check_ini,
-    is_typed,
-    refuse_typed,
-    run_section,
-    section_machine,
+from g12.host.interp import (
+    INVERSE_TIME,
+    MOVE_WORDS,
+    PER_REVOLUTION,
+    PLANE_CODES,
+    Interp,
+    ParsedBlock,
+    millimetres_per_unit,
+    position_of,
+    words_in,
 )
+from g12.host.kinematics_switch import face_in_force
+from g12.host.machine import MACHINE
+from g12.host.program_lines import ProgramLines, running_file, without_line
+from g12.host.reported import SECTION_BEGAN, asked, report_of
+from g12.host.section_output import SectionOutput
+from g12.host.section_reader import SectionReader, block_of
+from g12.host.section_run import Section
+from g12.host.spindle_c import missing_code
+from g12.lengths import DEGREES_PER_TURN
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
+from g12.moves.setup import SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
-from g12.section.start import SectionCodes, codes_of_section, codes_with_word
+from g12.request.words import YZ
+from g12.section.block_rules import alone
+from g12.section.effects import (
+    SectionCodes,
+    SectionModes,
+    SectionStart,
+    codes_of_section,
+    codes_with_word,
+)
+from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
+
+OTHER_WORDS = "ABDHKTUVWY"
+G96 = 960
+
+
+def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart:
+    """Return the state at the start of a section, whose code is the remapped block on ``line``.
+
+    ``words`` are the letters that the block may have.
+    """
+    block = interp.blocks[interp.remap_level]
+    tool = units.tool_in_spindle(interp)
+    return SectionStart(
+        location=BlockLocation(messages.code_of_block(interp), line),
+        words=block_of(block).words,
+        alone=is_alone(block, words),
+        level=interp.call_level,
+        position=position_of(interp, "XCZ"),
+        machine_unit=units.program_units_per_machine_unit(interp),
+        millimetre=1 / millimetres_per_unit(interp),
+        offsets=_offsets(interp),
+        x_shift=interp.axis_offset_x,
+        modes=SectionModes(
+            incremental=interp.distance_mode == MODE_INCREMENTAL,
+            per_revolution=interp.feed_mode == PER_REVOLUTION,
+            feed=interp.feed_rate,
+            speed=units.spindle_speed(interp),
+            motion=interp.motion_mode,
+        ),
+        spindle=units.feed_spindle(interp),
+        speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
+        tool_radius=tool.radius if tool else None,
+        diameter=units.diameter_mode(interp),
+        yz_plane=PLANE_CODES.get(interp.plane) == YZ,
+        compensated=interp.cutter_comp_side != 0,
+        offset_pending=bool(interp.arc_not_allowed),
+        inverse_time=interp.feed_mode == INVERSE_TIME,
+        surface_speed=G96 in without_line(interp.active_g_codes),
+        rotated=interp.rotation_xy != 0,
+        missing_code=missing_code(interp),
+    )
+
+
+def is_alone(block: ParsedBlock, words: str = "") -> bool:
+    return alone(block_of(block), words) and not words_in(block, OTHER_WORDS)
+
+
+def _offsets(interp: Interp) -> dict[str, float]:
+    """Return the sum of work offset, G92 and tool offset for X, Z and C."""
+    tool = interp.tool_offset
+    return {
+        "X": interp.origin_offset_x + interp.axis_offset_x + tool.x,
+        "Z": interp.origin_offset_z + interp.axis_offset_z + tool.z,
+        "C": interp.CC_origin_offset + interp.CC_axis_offset + tool.c,
+    }
+
+
+def begin_report(interp: Interp, kind: SectionKind, contour: Contour) -> None:
+    """Report a section, or the part of it that follows M66."""
+    start = kind.start
+    memory = asked(interp)
+    if memory is None:
+        return
+    elements = tuple(element for each in contour.elements if (element := _element(each)))
+    if memory.get(SECTION_BEGAN):
+        emccanon.COMMENT(more_text(elements))
+        return
+    memory[SECTION_BEGAN] = True
+    cut = SectionCut(kind.surface, kind.rules.diameter, elements)
+    report = report_of(interp, start.location.code, start.location.line, start.words, cut)
+    home = interp.filename
+    report = report._replace(  # since the lines of the section were read other modes are in force
+        file="" if home == running_file(interp) else os.path.basename(home),
+        at=(start.position["X"], interp.current_y, start.position["Z"], start.position["C"]),
+        feed=start.modes.feed,
+        per_revolution=start.modes.per_revolution,
+        incremental=start.modes.incremental,
+    )
+    emccanon.COMMENT(report_text(report))
+
+
+def _element(element: PathElement) -> CutElement | None:
+    if isinstance(element, PlaneMove):
+        line, feed, offset, curve, h0, h1, side = element
+        more = (curve.centre, curve.sweep) if isinstance(curve, Arc) else (None, 0.0)
+        return CutElement(line, side, abs(offset), feed, h0, h1, curve.start, curve.end, *more)
+    if isinstance(element, Plunge):
+        return CutElement(element.line, 0, 0.0, element.feed, element.h0, element.h1)
+    return None
+
+
+TYPED = 1  # call level of a block outside any sub
+REPORTED_TURN = 540.0  # degrees: a closed contour and its leads take more than one turn
+NOT_IN_MDI = (
+    "is not possible in MDI: it needs the lines after it. Write them into a program,"
+    " or into a sub that MDI calls"
+)
+FACE_ON = "the face is on already, by hand: G13.1 first"
+
+
+def check_ini() -> None:
+    """Read the INI values that sections use; raise Refusal for one that cannot be used."""
+    MACHINE.read("settings", "remaps")
+    section_machine()
+
+
+def section_machine() -> SectionMachine:
+    return SectionMachine(
+        frozenset(MACHINE.coordinates), MACHINE.settings, MACHINE.axes, MACHINE.face
+    )
+
+
+def is_typed(interp: Interp) -> bool:
+    """Return whether the block being remapped was typed in MDI; a sub that MDI calls was not."""
+    return messages.in_mdi(interp) and interp.call_level == TYPED
+
+
+def refuse_typed(interp: Interp) -> None:
+    """Refuse a section typed in MDI, where no following lines can be read."""
+    if is_typed(interp):
+        raise Refusal(NOT_IN_MDI, messages.code_of_block(interp))
+
+
+def following_lines(interp: Interp) -> ProgramLines:
+    """Return the lines after the block; refuse a program whose file is missing."""
+    try:
+        return ProgramLines(interp)
+    except OSError as problem:
+        rule = f"the program's file cannot be read while it runs: {problem.strerror}"
+        raise Refusal(rule, messages.code_of_block(interp)) from None
+
+
+def run_section(
+    interp: Interp,
+    kind: type[SectionKind],
+    codes_of: Callable[[str], SectionCodes],
+    begin: Callable[[SectionStart], SectionKind],
+) -> Iterator[int]:
+    """Run the section that begins with the block being remapped.
+
+    ``codes_of`` returns its codes for the one that began it, ``begin`` the section for its start.
+    """
+    program, running = following_lines(interp), running_file(interp)
+    frame, c = CallFrame(interp, program.home.filename), interp.CC_current
+    try:
+        start = start_of_section(interp, program.shown_line, kind.on_words)
+        if face_in_force(interp):
+            raise start.location.refuse(FACE_ON)
+        section = begin(start)
+        check_clamp(start.location.refuse)
+        borrowed.begin(interp)
+        codes = codes_of(start.location.code)
+        yield from _running(interp, section, codes, frame, program).run()
+        if MACHINE.settings.c_clamp_shapes:
+            units.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
+        if kind.unwinds:
+            report_turns(interp, interp.CC_current - c)
+    except Exception as error:
+        line = None
+        if isinstance(error, Refusal):
+            if error.lacks_line:
+                error.at(program.shown_line)
+            line = None if error.file else error.line
+            if line and program.home.filename != running:
+                error.file = os.path.basename(program.home.filename)
+        called = program.source is not program.home and not line
+        frame.unwind(line or program.line, called=called, continue_at=program.next_at_home)
+        raise
+
+
+def report_turns(interp: Interp, turned: float) -> None:
+    """Show the operator, once a program, how far C has to unwind; ``turned`` is in degrees."""
+    if abs(turned) > REPORTED_TURN and not interp.c_axis_wrapped:
+        code, turns = messages.code_of_block(interp), abs(turned) / DEGREES_PER_TURN
+        text = (
+            f"{code}: C has turned {turns:.1f} times, and G0 C0"
+            " unwinds all of it. With [AXIS_C] WRAPPED_ROTARY = 1 it takes the short way"
+        )
+        messages.message_once(interp, "turns", text)
+
+
+def check_clamp(refuse: Callable[[str], Refusal]) -> None:
+    """Refuse codes of C's clamp that LinuxCNC would not know when it comes to them."""
+    unknown = MACHINE.settings.unknown_clamp_code(MACHINE.m_codes)
+    if unknown:
+        raise refuse(unknown)
+
+
+def _running(
+    interp: Interp,
+    kind: SectionKind,
+    codes: SectionCodes,
+    frame: CallFrame,
+    program: ProgramLines,
+) -> Section:
+    return Section(
+        kind,
+        codes,
+        frame,
+        SectionReader(interp, kind, program),
+        SectionOutput(interp, kind, canon=emccanon),
+        first="".join(f"M{code}" for code in MACHINE.settings.c_clamp_shapes),
+        report=lambda contour: begin_report(interp, kind, contour),
+    )
+
 
 MDI_LINE = 0  # the number of a line in MDI
 

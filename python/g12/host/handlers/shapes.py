@@ -15,10 +15,7 @@ from g12.errors import Refusal
 from g12.host import borrowed, messages, reported, units
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import cycle_state
-from g12.host.interp import Interp
-from g12.host.kinematics_switch import face_in_force
-from g12.host.machine import MACHINE
-from g12.host.section_handler import (
+from g12.host.handlers.sections import (
     FACE_ON,
     check_clamp,
     check_ini,
@@ -26,11 +23,14 @@ from g12.host.section_handler import (
     section_machine,
     start_of_section,
 )
+from g12.host.interp import Interp
+from g12.host.kinematics_switch import face_in_force
+from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
 from g12.moves.steps import Segments
 from g12.polar.polar_section import POLE_SHARE, Polar
+from g12.section.effects import SectionStart, code_of_handler
 from g12.section.line import BlockLocation
-from g12.section.start import SectionStart, code_of_handler
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine

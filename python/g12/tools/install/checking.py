@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
-from g12.ini_sections import entries_of
+from g12.machine_ini import entries_of
 from g12.settings import INI_SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features

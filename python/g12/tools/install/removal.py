@@ -5,8 +5,7 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from g12.ini_sections import key_and_value
-from g12.machine_ini import remap_from_value
+from g12.machine_ini import key_and_value, remap_from_value
 from g12.tools.install import package_copy, placing
 from g12.tools.install.config import features, forms, screen
 from g12.tools.install.config.filters import FILTER_LINE

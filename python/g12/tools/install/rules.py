@@ -10,8 +10,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from g12.errors import LONGEST_BLOCK, Refusal
-from g12.ini_sections import INCLUDE, key_and_value
-from g12.machine_ini import m_codes_of, remap_from_value
+from g12.machine_ini import INCLUDE, key_and_value, m_codes_of, remap_from_value
 from g12.settings import INI_SECTION, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.install import package_copy, placing

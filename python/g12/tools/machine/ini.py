@@ -14,15 +14,19 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from g12.errors import Refusal
-from g12.ini_sections import (
+from g12.machine_ini import (
     INCLUDE,
+    Axis,
+    axes_of,
     continued,
+    coordinates_of,
     entries_of,
     included_file,
     key_and_value,
+    millimetres_of,
+    number_in,
     section_extent,
 )
-from g12.machine_ini import Axis, axes_of, coordinates_of, millimetres_of, number_in
 from g12.settings import Settings, settings_from_lines
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing

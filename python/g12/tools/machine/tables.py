@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from g12.ini_sections import leading_number
+from g12.machine_ini import leading_number
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
 

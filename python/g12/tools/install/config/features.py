@@ -5,8 +5,7 @@ from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 
-from g12.ini_sections import entries_of
-from g12.machine_ini import HANDLERS, Remap, remap_from_value
+from g12.machine_ini import HANDLERS, Remap, entries_of, remap_from_value
 from g12.tools.translate.blocks.control import read_control, shipped_controls
 
 ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs

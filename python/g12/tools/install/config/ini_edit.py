@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.ini_sections import entries_of, included_file, key_and_value, section_extent
+from g12.machine_ini import entries_of, included_file, key_and_value, section_extent
 from g12.tools.machine.ini import Ini, IniError, as_included
 
 BEGIN_MARK = "# >>> g12 install"

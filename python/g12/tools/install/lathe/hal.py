@@ -9,7 +9,7 @@ from itertools import chain, product
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.ini_sections import continued
+from g12.machine_ini import continued
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config, folder_from_ini
 

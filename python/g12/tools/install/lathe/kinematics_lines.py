@@ -10,8 +10,7 @@ from collections.abc import Iterator, Sequence
 from itertools import chain
 from math import isclose
 
-from g12.ini_sections import leading_number
-from g12.machine_ini import FACE_KINEMATICS, coordinates_of
+from g12.machine_ini import FACE_KINEMATICS, coordinates_of, leading_number
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.ini_edit import NEXT, NOW, IniText

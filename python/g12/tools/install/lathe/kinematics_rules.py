@@ -12,8 +12,7 @@ from math import hypot
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.ini_sections import leading_number
-from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of
+from g12.machine_ini import ACCELERATION_PINS, FACE_KINEMATICS, face_joints, face_of, leading_number
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.hal import (

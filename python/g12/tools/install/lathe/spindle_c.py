@@ -12,8 +12,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from g12.ini_sections import leading_number
-from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints
+from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints, leading_number
 from g12.settings import INI_SECTION, LIVE_SPINDLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config.features import KINEMATICS, ROOT

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A section on a cylinder: a slide along it and a rotary axis, with their feeds.
+"""Cylindrical interpolation: a contour on the unrolled surface becomes moves of Z and a C axis.
 
-On a surface of radius r an angle of the rotary axis is r times the angle in radians long. The slide
-and that length are proportional to the axes' positions: a line is exactly one segment. The segments
-of an arc bulge equally everywhere; spacing shares the deviation between them.
+A slide runs along the cylinder, a rotary axis turns it. On a surface of radius r an angle is r
+times the angle in radians long. The slide and that length are proportional to the axes' positions:
+a line is exactly one segment. The segments of an arc bulge equally everywhere; spacing shares the
+deviation between them. `section`, `compensation` and `moves` hold what polar mode shares.
 
 On a lathe, Z is a length, C an angle, and X at right angles to the surface. The unrolled surface is
 viewed from outside: C to the right and Z upwards, so G2 is clockwise there and G41 has the tool on
@@ -26,11 +27,19 @@ from g12.geometry.curve import Arc
 from g12.lengths import LARGEST
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.setup import LEAST_MM, RADIUS_TOLERANCE_MM, SectionKind, check_entry
-from g12.moves.spacing import BULGE, Stretch, spaced
-from g12.moves.steps import ROUNDING_SHARE, MachinePosition, SectionPlan, Split, StepMaker
+from g12.moves.steps import (
+    BULGE,
+    ROUNDING_SHARE,
+    MachinePosition,
+    SectionPlan,
+    Split,
+    StepMaker,
+    Stretch,
+    spaced,
+)
 from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
+from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
-from g12.section.start import SectionStart, WordRules
 
 RADIUS = "C"  # the word of G7.1
 LEAST_DENSITY = 2.0  # segments per radian of an arc: fewer do not resemble it
