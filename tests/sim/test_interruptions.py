@@ -16,6 +16,7 @@ MACHINES = [
     pytest.param(name, marks=[pytest.mark.xdist_group(f"interruptions {name}"), *marks])
     for name, marks in (
         ("mill_mm", []),
+        ("mill_a_mm", []),
         ("lathe_mm", []),
         ("lathe_mm_kinematics", [needs_kinematics]),
     )
