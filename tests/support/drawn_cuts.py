@@ -262,7 +262,7 @@ def check_section(cut, trace, ini):
     height = cut.report.at[0 if planned.surface else 2] * mm
     wanted = contour_path(elements_of(cut.report, planned), height, trace.radius(cut.at))
     blocks = [(line, list(steps)) for line, steps in groupby(wanted, key=lambda step: step.line)]
-    moves = [move for move in trace.moves[cut.at : cut.end] if feed_length(move) > NEAR / 100]
+    moves = [move for move in trace.moves[cut.at : cut.end] if length_of(move) > NEAR / 100]
     made = [(line, list(some)) for line, some in groupby(moves, key=lambda move: move.line)]
     assert [line for line, _ in made] == [line for line, _ in blocks], cut.line
     seen = seen_as(cut, ini)
@@ -277,7 +277,7 @@ def check_section(cut, trace, ini):
 
 def check_feed(moves, steps, on_face):
     """Compare a block's time with that of its toolpath at F; on the face it may be slower."""
-    given = [seconds_of(move) for move in moves if rate(move, 0.0)]
+    given = [length_of(move) / rate(move, 0.0) for move in moves if rate(move, 0.0)]
     wanted = [60.0 * step.length / step.feed for step in steps if step.feed]
     if len(given) == len(moves) and len(wanted) == len(steps):
         rounding = ROUNDED / sum(step.length for step in steps)
@@ -286,9 +286,8 @@ def check_feed(moves, steps, on_face):
         assert least < share < 1.0 + SECTION_FEED + rounding, steps[0].line
 
 
-def seconds_of(move):
-    length = move.length if move.kind == "arc" else feed_length(move)
-    return length / rate(move, 0.0)
+def length_of(move):
+    return move.length if move.kind == "arc" else feed_length(move)
 
 
 def seen_as(cut, ini):
