@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The content of a picture: a program, the machine, the moves, and the actual motion if run."""
 
-import re
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +19,6 @@ from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.deviation import deviation_of
 from g12.tools.verify.model.program import TracedProgram
 
-COMMENTS = re.compile(r"\([^)]*\)|;.*")
 SAME_POINT = 1e-6  # mm
 NO_MARKS = Marks()
 
