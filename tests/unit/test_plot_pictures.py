@@ -19,7 +19,7 @@ from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import clearest_axes, window_lines
 from g12.tools.plot.face import programmed_history
 from g12.tools.plot.marks import Marks
-from g12.tools.plot.mill import Layout, cut_through, removed_at
+from g12.tools.plot.mill import cut_through, removed_at
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import scene_of
 from g12.tools.plot.unrolled import unrolled
@@ -172,20 +172,10 @@ def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
     assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
 
 
-def test_a_floor_is_removed_up_to_the_top():
-    _, levels = both(Hand().line(x=50, z=0).rapid(z=-2).line(x=60))
-    assert removed_at(levels[-1], 0.0).bounds == pytest.approx((47, -2, 63, 0), abs=0.01)
-
-
 def test_a_tool_without_a_diameter_is_only_its_centre():
     shown, only = scene(Hand(tool=8).line(x=5)), "tool centre only"
     texts = [f"no tool: {only}", "cutter T1, ⌀ 6 mm", f"T8 has no diameter: {only}"]
     assert [plan_view.cutter_text(shown, tool) for tool in (0, 1, 8)] == texts
-
-
-def test_there_and_back_again_is_drawn_once():
-    there = np.array([[0.0, 0.0], [10.0, 5.0]])
-    assert len(plan_view.once([there, there[::-1], there + 3])) == 2
 
 
 def uncut(centre):
@@ -321,22 +311,6 @@ def test_every_text_is_on_the_page(apart):
     inked, (width, height) = figure.get_tightbbox(canvas.get_renderer()), figure.get_size_inches()
     assert inked.x0 >= 0 and inked.x1 <= width
     assert inked.y0 >= 0 and inked.y1 <= height
-
-
-@pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40)])
-@pytest.mark.parametrize("window", [False, True])
-def test_nothing_leaves_the_page_or_overlaps(size, window):
-    layout = Layout(np.array(size, float), 8, window)
-    figure = Figure(figsize=(layout.width, layout.height))
-    plan, side = (axes.get_position() for axes in layout.axes(figure))
-    assert 0 < side.y0 < side.y1 < plan.y0 < plan.y1 < 1
-    assert 0 < plan.x0 < plan.x1 < 1
-    assert (plan.x0, plan.x1) == (side.x0, side.x1)
-    x, y = layout.window_corner()
-    if window and layout.below:
-        assert y > 0 and y + 1.9 < side.y0 * layout.height
-    elif window:
-        assert x > plan.x1 * layout.width
 
 
 # ---------------------------------------------------------------- deviations
