@@ -18,7 +18,6 @@ MACHINES = [
     )
     for name, marks in (
         ("mill_mm", []),
-        ("mill_a_mm", []),
         ("lathe_mm", []),
         ("lathe_mm_kinematics", [needs_kinematics]),
     )
