@@ -12,7 +12,7 @@ import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.cycles_page.machine import MachineState
-from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Line, Sketch
+from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch
 from g12.tools.forms.table import MILL, ROUND, Form
 from g12.tools.machine.ini import Ini, IniError, read_ini
 from g12.tools.path.part import C, Part, X, Z, last_x0
@@ -48,9 +48,12 @@ class Sketcher:
         trace = self._interpreter().trace_text(text, timeout=TIMEOUT, **options)
         part = Part(form.place != MILL, self.ini.tool_beside, last_x0(trace))
         moves = [(move, positions_of(move, part)) for move in trace.moves]
-        lines = [Line(move.kind == "rapid", seen(part, form, each)) for move, each in moves]
+        cut, rapid = (
+            [seen(part, form, each) for move, each in moves if (move.kind == "rapid") is rapid]
+            for rapid in (False, True)
+        )
         radius = trace.radius(len(moves) - 1) if moves else 0.0
-        return Sketch(*self._outcome(trace, moves, form), lines, radius)
+        return Sketch(*self._outcome(trace, moves, form), cut, rapid, radius)
 
     def _interpreter(self) -> Tracer:
         """Return the interpreter, a new one where the tool table is another."""
