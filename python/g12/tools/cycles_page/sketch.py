@@ -26,12 +26,9 @@ class Sketch(NamedTuple):
         """
         points = np.concatenate(self.cut or [np.zeros((1, 2))])
         low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
-        size = np.maximum(high - low, 1e-3)
-        scale = MARGIN * min(width / size[0], height / size[1])
+        place, middle = np.array([width, height]), (low + high) / 2
+        scale = MARGIN * (place / np.maximum(high - low, 1e-3)).min()
         for name, pen in ("swept", 2 * self.radius * scale), ("rapid", 1), ("path", 1.3):
             lines = self.rapid if name == "rapid" else self.cut
-            pixels = [
-                (width / 2, height / 2) + (line - (low + high) / 2) * scale * (1, -1)
-                for line in lines
-            ]
+            pixels = [place / 2 + (line - middle) * scale * (1, -1) for line in lines]
             yield name, max(pen, 0.1), pixels
