@@ -129,10 +129,12 @@ def test_what_is_wrong_is_said_in_the_cycle_s_words(page, texts, said):
     assert (sketch.state, sketch.text[: len(said)]) == (REFUSED, said)
 
 
-def test_travel_is_judged_with_the_work_offset(page):
-    moved = MachineState({5220: 1.0, 5221: 490.0}, 0, (0.0,) * 9)
-    sketch = page("mill_mm", state=moved).show("haas", tool="5", i="8", k="30", q="8")
+def test_travel_is_judged_with_the_work_offset_and_depth_is_below_it(page):
+    moved = MachineState({5220: 1.0, 5221: 490.0, 5223: -100.0}, 0, (0.0,) * 9)
+    shown = page("mill_mm", state=moved)
+    sketch = shown.show("haas", tool="5", i="8", k="30", q="8")
     assert sketch.text.startswith("the X axis would go to ")
+    assert shown.fill(x="-100").text.endswith("at the programmed feeds, down to Z-4.000")
 
 
 def test_the_default_tool_is_the_loaded_one_else_the_first_with_a_diameter(page):
