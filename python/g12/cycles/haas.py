@@ -22,13 +22,13 @@ from 0, in the tool table, or a cutter known without it; I above 0, greater than
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
+from g12.cut_report import PocketCut
 from g12.cycles.plan import (
     STRAIGHT_DOWN,
+    Cutter,
     CyclePlan,
     PocketEntry,
-    choose_cutter,
-    kept_cutter,
+    chosen_cutter,
     pocket_descent,
 )
 from g12.errors import number
@@ -38,10 +38,9 @@ from g12.request.common import (
     check_count,
     check_modes,
     check_start,
-    other_cutter,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.request.words import XY, Words
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 
@@ -50,7 +49,7 @@ def plan_pocket(
     words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
-    context, other = words.context, other_cutter(words, words.context.last_cutter)
+    context = words.context
     check_modes(words)
     words.check_known(HAAS_WORDS)
     first = words.require("I", "the radius of the first circle")
@@ -62,9 +61,8 @@ def plan_pocket(
     depth = words.take("Z")
     if not names_centre:
         check_start(words)
-    with_d = "D" in words
-    cutter, source = choose_cutter(words)
-    check_radii(words, first, outward, cutter, source)
+    cutter = chosen_cutter(words)
+    check_radii(words, first, outward, cutter)
 
     finished, stepover = outward or (first, first)
     links = links_outward(words, first, finished, stepover, clearing, levels)
@@ -88,7 +86,6 @@ def plan_pocket(
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
 
     def cut() -> PocketCut:
-        last = LOADED if context.last_cutter is None else BY_LAST_D
         return PocketCut(
             plane=XY,
             centre=(x, y, z),
@@ -97,13 +94,10 @@ def plan_pocket(
             step=stepover if outward else 0.0,
             inner=first_radius - cutter.radius,
             levels=tuple(z + z_step * level for level in range(levels)),
-            cutter=UsedCutter(cutter.radius, BY_D if with_d else last, cutter.number),
+            cutter=cutter.used,
         )
 
-    commanded = cutter if with_d else None
-    kept = None if with_d else kept_cutter(words, cutter)
-    numbers = numbers | links | down
-    return CyclePlan(numbers, extent, cut, message, other, commanded, kept_cutter=kept)
+    return cutter.plan(numbers | links | down, extent, cut, message)
 
 
 def links_outward(
@@ -118,7 +112,7 @@ def links_outward(
 
 
 def check_radii(
-    words: Words, first: float, outward: tuple[float, float] | None, cutter: Tool, source: str
+    words: Words, first: float, outward: tuple[float, float] | None, cutter: Cutter
 ) -> None:
     """Refuse circles that the cutter cannot mill, or that do not grow."""
     context, rounding = words.context, words.context.rounding
@@ -126,11 +120,11 @@ def check_radii(
         raise words.refuse_word("I", first, "must be greater than 0")
     size = context.tool_size(cutter.radius)
     if first <= cutter.radius + rounding:
-        rule = f"must be greater than the tool radius {size} ({source})"
+        rule = f"must be greater than the tool radius {size} ({cutter.source})"
         raise words.refuse_word("I", first, rule)
     if first - cutter.radius < context.smallest_ring - rounding:
         least = number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({source}) by at least {least}"
+        rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
         raise words.refuse_word("I", first, rule)
     if outward and outward[0] <= first + rounding:
         raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
@@ -149,7 +143,7 @@ def upward(words: Words, depth: float | None) -> str | None:
 
 
 def uncut_material(
-    words: Words, outward: tuple[float, float] | None, first: float, cutter: Tool, helix: float
+    words: Words, outward: tuple[float, float] | None, first: float, cutter: Cutter, helix: float
 ) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
 
