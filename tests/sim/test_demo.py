@@ -76,9 +76,3 @@ def test_the_demo_goes_on_after_a_failure(tmp_path, monkeypatch, capsys):
     out = capsys.readouterr().out
     assert "polar/slot.ngc: FAILED: slot did not come up" in out and "[2 of 2]" in out
     assert "NOT everything came out right: " in out and "yasnac/example.ngc" in out.splitlines()[-1]
-
-
-def test_every_sample_of_the_demo_is_there():
-    for sample in demo.SAMPLES:
-        assert sample.path.is_file() and sample.ini.is_file()
-    assert {"haas/O60121.ngc", "haas/O60131.ngc"} <= {sample.program for sample in demo.SAMPLES}

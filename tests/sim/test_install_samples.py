@@ -18,7 +18,6 @@ from support.sample_configs import SAMPLES, copy_samples, tree
 MILLS = [
     "qtdragon/qtdragon_xyz/qtdragon_metric.ini",
     "axis/remap/extend-builtins/extend-builtins.ini",  # own TOPLEVEL and remaps
-    "axis/corexy/corexy_by_hal.ini",  # [RS274NGC] in an included file that two machines share
     "axis/ini_with_includes/includes_demo.ini",  # [RS274NGC] goes on after an #INCLUDE
 ]
 LATHE = "gmoccapy/lathe_configs/lathe_C.ini"

@@ -108,12 +108,6 @@ def test_a_program_on_the_face_by_hand_needs_g13_1_first(lathe):
 # ---------------------------------------------------------------- G12.1
 
 
-def test_g12_1_typed_is_refused(lathe):
-    lathe.mdi("G12.1")
-    assert "Write them into a program, or into a sub that MDI calls" in lathe.errors()[0].text
-    assert not on_the_face(lathe)
-
-
 @pytest.mark.parametrize("how", ["off", "limit switch"])
 def test_adaptive_feed_ends_with_the_face_where_the_machine_goes_off(lathe, how):
     """LinuxCNC aborts twice then, and drops what the first abort has queued."""

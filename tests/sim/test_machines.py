@@ -35,35 +35,6 @@ def sample(ini):
     return read_ini(ini).file("DISPLAY", "OPEN_FILE")
 
 
-def test_each_desktop_machine_has_a_headless_twin():
-    assert [f"{ini.stem}_headless" for ini in DESKTOP] == [ini.stem for ini in HEADLESS]
-
-
-@pytest.mark.parametrize("ini", DESKTOP, ids=name)
-def test_twins_differ_in_their_screen_only(ini):
-    one = read_ini(ini)
-    other = read_ini(ini.with_name(f"{ini.stem}_headless.ini"))
-    assert lines_of(one) == lines_of(other)
-    assert sample(one.path) == sample(other.path)
-
-
-@pytest.mark.parametrize("ini", GMOCCAPY, ids=name)
-def test_a_machine_on_gmoccapy_is_the_one_on_axis(ini):
-    other = read_ini(ini.with_name(f"{ini.stem.removesuffix('_gmoccapy')}.ini"))
-    assert lines_of(read_ini(ini)) == lines_of(other)
-    assert ini.read_text().count("NGCGUI_SUBFILE") == other.path.read_text().count("NGCGUI_SUBFILE")
-
-
-def lines_of(ini, screen=False):
-    """Return the INI's lines outside [DISPLAY], or those in it, that are no comments."""
-    lines, section = [], None
-    for line in ini.lines:
-        section = line if line.startswith("[") else section
-        if (section == "[DISPLAY]") is screen and line and not line.startswith("#"):
-            lines.append(line)
-    return lines
-
-
 @pytest.mark.parametrize("ini", marked(RUN_HERE), ids=name)
 def test_every_machine_runs_its_sample_to_the_end(ini):
     with Machine(ini) as machine:
@@ -71,14 +42,6 @@ def test_every_machine_runs_its_sample_to_the_end(ini):
         result = machine.run(sample(ini), timeout=120)
         assert result.error is None
         assert result.seconds > 0.5
-
-
-def test_every_headless_machine_has_the_same_screen():
-    """But for the machine's own: its sample, its picture, how fast F and C may be."""
-    own = ("OPEN_FILE", "GEOMETRY", "MAX_FEED_OVERRIDE", "MAX_ANGULAR_VELOCITY")
-    screens = [lines_of(read_ini(ini), screen=True) for ini in HEADLESS]
-    shown = [[line for line in lines if not line.startswith(own)] for lines in screens]
-    assert shown == [shown[0]] * len(HEADLESS)
 
 
 @pytest.mark.parametrize("ini", marked(OF_EACH_KIND), ids=name)

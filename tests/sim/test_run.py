@@ -58,16 +58,6 @@ def g12_run(tmp_path, capsys):
         ),
         (
             "lathe_mm",
-            "G21 G90\nG112\nM2\n",
-            2,
-            [],
-            "running part.ngc in real time\n"
-            "g12 run: PROGRAM:2: G-code out of range: G112, a code of haas-lathe, fanuc-lathe, "
-            f"fanuc-lathe-b and others: {COMMAND} translate --control NAME makes a LinuxCNC "
-            "program of it\n",
-        ),
-        (
-            "lathe_mm",
             "G21 G90\nM154\nM2\n",
             2,
             [],

@@ -12,6 +12,7 @@ import time
 MINUTES = float(os.environ.get("SOAK_MINUTES", "10"))
 SEED = int(os.environ.get("SOAK_SEED", "0"))
 END = float(os.environ.setdefault("SOAK_END", str(time.time() + 60 * MINUTES)))  # workers inherit
+LANES = range(3)  # the tests of one thing, each with random kinds of it
 WORKERS = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
 if "SOAK_STARTED" not in os.environ:  # a file with a byte for each test that has started
     os.environ["SOAK_STARTED"] = tempfile.mkstemp(prefix="soak-")[1]

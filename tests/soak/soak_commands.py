@@ -9,7 +9,7 @@ import pytest
 
 from g12.tools.commands import main
 from g12.tools.translate.blocks.control import shipped_controls
-from soak import SEED, tries
+from soak import LANES, SEED, tries
 from support.sim_machines import copy_of_machines
 from support.small_configs import write_config
 from support.valid_programs import MACHINES, machine_of, valid_program
@@ -84,19 +84,20 @@ def check_codes(codes, damage, what):
     assert damage or codes["verify"] == 0, what
 
 
-@pytest.mark.parametrize("kind", MACHINES)
-def test_programs(kind, tmp_path, capsys, request):
-    chance = random.Random(f"{SEED} {kind}")
+@pytest.mark.parametrize("lane", LANES)
+def test_programs(lane, tmp_path, capsys, request):
+    chance = random.Random(f"{SEED} {lane}")
     ini = copy_of_machines(tmp_path) / "machine.ini"
-    ini.write_text(machine_of(kind).text)
     named = {"INI": str(ini), "FOLDER": str(tmp_path)}
     for number in tries(request, "programs, damaged or not, given to every command"):
+        kind = chance.choice(list(MACHINES))
+        ini.write_text(machine_of(kind).text)
         program, text = tmp_path / f"{kind} {number}.ngc", valid_program(kind, chance, 1)
         damage = number % 8 > 0
         program.write_text(damaged(chance, text) if damage else text)
         named.update(PROGRAM=str(program), CONTROL=chance.choice(CONTROLS))
         words = {**WORDS, "run": RUN} if number % 8 == 1 else WORDS
-        what, codes = f"{number} of {SEED}\n{program.read_text()}", {}
+        what, codes = f"{number} of {SEED} {lane}\n{program.read_text()}", {}
         for command, pattern in words.items():
             codes[command] = main.main([filled(word, named) for word in pattern])
             said = check_said(capsys, codes[command], f"{command} {what}")

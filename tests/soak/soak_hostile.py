@@ -5,14 +5,15 @@ import random
 
 import pytest
 
-from soak import SEED, tries
+from soak import LANES, SEED, tries
 from support.hostile_files import Shop, check_answer, kinds
 
 KINDS = kinds()
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_soak_hostile(kind, tmp_path, capfd, request):
-    chance, shop = random.Random(f"{SEED} {kind}"), Shop(tmp_path)
+@pytest.mark.parametrize("lane", LANES)
+def test_soak_hostile(lane, tmp_path, capfd, request):
+    chance, shop = random.Random(f"{SEED} {lane}"), Shop(tmp_path)
     for number in tries(request, "hostile files given to commands"):
-        check_answer(capfd, f"{number} of {SEED}", *shop.attack(kind, chance))
+        kind = chance.choice(KINDS)
+        check_answer(capfd, f"{number} of {SEED} {lane}", *shop.attack(kind, chance))

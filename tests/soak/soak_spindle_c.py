@@ -3,15 +3,12 @@
 
 import random
 
-import pytest
-
 from soak import SEED, tries
 from support.spindle_lathe import INTERRUPTS, SPINDLE_LATHE, SpindleLathe, interrupted
 
 
-@pytest.mark.parametrize("interrupt", INTERRUPTS)
-def test_interrupts(interrupt, request):
-    chance = random.Random(f"{interrupt} {SEED}")
+def test_interrupts(request):
+    chance = random.Random(SEED)
     with SpindleLathe(SPINDLE_LATHE) as lathe:
-        for _ in tries(request, f"spindle and C, {interrupt}, and the next program"):
-            interrupted(lathe, interrupt, chance)
+        for _ in tries(request, "spindle and C, interrupted, and the next program"):
+            interrupted(lathe, chance.choice(INTERRUPTS), chance)

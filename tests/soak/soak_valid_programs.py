@@ -10,7 +10,7 @@ import pytest
 from g12.tools.commands import main
 from interp.test_valid_cuts import check_cuts
 from interp.test_valid_programs import check_as_its_words_ask
-from soak import SEED, tries
+from soak import LANES, SEED, tries
 from support.sim_machines import ROOT, copy_of_machines
 from support.valid_programs import MACHINES, machine_of, valid_program
 
@@ -25,27 +25,34 @@ def with_offset_pin(text):
     return text.replace(last, f"{last}\nHALFILE = {KINEMATICS}/polar_tool_offset.hal")
 
 
-@pytest.mark.parametrize("kind", MACHINES)
-def test_programs_as_they_are_read(kind, tmp_path, request):
-    for number in tries(request, "valid programs judged by verify"):
-        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
+def kinds(lane):
+    """Yield kinds of programs, all of them before one comes again."""
+    chance = random.Random(f"{SEED} {lane}")
+    while True:
+        yield from chance.sample(list(MACHINES), len(MACHINES))
 
 
-@pytest.mark.parametrize("kind", MACHINES)
-def test_cuts_as_their_words_ask(kind, tmp_path, request):
-    for number in tries(request, "valid programs judged by their words"):
-        check_cuts(kind, tmp_path, f"{SEED} {number}")
+@pytest.mark.parametrize("lane", LANES)
+def test_programs_as_they_are_read(lane, tmp_path, request):
+    for number, kind in zip(tries(request, "valid programs judged by verify"), kinds(lane)):
+        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {lane} {number}", SEGMENTS)
 
 
-@pytest.mark.parametrize("kind", MACHINES)
-def test_programs_as_they_run(kind, tmp_path, capsys):
+@pytest.mark.parametrize("lane", LANES)
+def test_cuts_as_their_words_ask(lane, tmp_path, request):
+    for number, kind in zip(tries(request, "valid programs judged by their words"), kinds(lane)):
+        check_cuts(kind, tmp_path, f"{SEED} {lane} {number}")
+
+
+@pytest.mark.parametrize("lane", LANES)
+def test_programs_as_they_run(lane, tmp_path, capsys, request):
     """With feeds ten times as high, so that it does not take an hour."""
-    program, text = tmp_path / "run.ngc", valid_program(kind, random.Random(f"{SEED} run"), 1)
-    program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
-    ini = copy_of_machines(tmp_path) / "machine.ini"
-    ini.write_text(
-        with_offset_pin(machine_of(kind).text) if OFFSET in kind else machine_of(kind).text
-    )
-    main.main(["verify", str(program), "--ini", str(ini), "--run", "--json"])
-    found = json.loads(capsys.readouterr().out)["findings"]
-    assert {each["code"] for each in found} <= {"plunge-fast"}, found  # at ten times the feed
+    program, ini = tmp_path / "run.ngc", copy_of_machines(tmp_path) / "machine.ini"
+    for number, kind in zip(tries(request, "valid programs judged as they run"), kinds(lane)):
+        text = valid_program(kind, random.Random(f"{SEED} {lane} {number}"), 1)
+        program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
+        machine = machine_of(kind).text
+        ini.write_text(with_offset_pin(machine) if OFFSET in kind else machine)
+        main.main(["verify", str(program), "--ini", str(ini), "--run", "--json"])
+        found = json.loads(capsys.readouterr().out)["findings"]
+        assert {each["code"] for each in found} <= {"plunge-fast"}, (kind, found)  # ten times F
