@@ -189,7 +189,7 @@ def test_a_filter_of_the_users_own_for_a_suffix_is_refused(tmp_path):
     ("spindles", "control", "settings"),
     [
         (2, "doosan-lathe", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
-        (1, "mill-round-part", "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n"),
+        (1, "mill-on-face", "[G12]\nPOLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
     ],
 )
 def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings):

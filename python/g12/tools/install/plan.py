@@ -182,9 +182,8 @@ def add_filter(plan: InstallPlan) -> None:
 def add_settings(plan: InstallPlan, control: Control) -> None:
     """Add the settings that a lathe's programs need."""
     if control.turns_c:
-        depth = "CYLINDER_X" if control.onto == "round" else "POLAR_Z"
         several = plan.config.ini.number("TRAJ", "SPINDLES", 1) > 1
-        plan.add({SETTINGS: [f"{depth} = allow", f"LIVE_SPINDLE = {int(several)}"]})
+        plan.add({SETTINGS: ["POLAR_Z = allow", f"LIVE_SPINDLE = {int(several)}"]})
 
 
 def add_forms(plan: InstallPlan) -> None:
