@@ -7,7 +7,6 @@ import math
 import numpy as np
 
 from bench import Figure
-from bench.least_time import least_seconds
 from bench.polar import (
     MANUAL_TOOLS,
     SAMPLES,
@@ -18,6 +17,7 @@ from bench.polar import (
     seconds_at,
     seconds_in,
 )
+from g12.tools.path.least_time import least_seconds
 from support.contour_geometry import Round
 from support.operated_machine import Machine
 from support.polar_programs import INCHES

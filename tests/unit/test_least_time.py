@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from bench.least_time import least_seconds
+from g12.tools.path.least_time import least_seconds
 
 FREE = (1e9, 1e9)
 

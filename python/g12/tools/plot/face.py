@@ -90,10 +90,10 @@ def draw_history(panels: Sequence[Axes], scene: Scene, along: str) -> None:
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
     name = scene.unit.name
     x.plot(history.time, history.x / scene.unit.mm, **drawn)
-    turn, second, height = (AXIS_LETTERS[axis] for axis in scene.path.part.roles[:3])
+    turn, along_axis, height = (AXIS_LETTERS[axis] for axis in scene.path.part.roles[:3])
     style.caption(x, f"{height} (radius), {name}")
     z.plot(history.time, history.z / scene.unit.mm, **drawn)
-    style.caption(z, f"{second}, {name}")
+    style.caption(z, f"{along_axis}, {name}")
     c.plot(history.time, history.c, **drawn)
     style.caption(c, f"{turn}, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)

@@ -4,15 +4,19 @@
 mm, mm², mm/min, degrees, seconds; None is not known. Positions are the program's.
 """
 
+import cmath
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
-from g12.cut_report import HolesCut
+from g12.cut_report import CutElement, HolesCut
+from g12.geometry.curve import Arc, Line
 from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
+from g12.tools.path.lathe_axes import lathe_axes
 from g12.tools.path.part import C, X
+from g12.tools.path.section_times import Leg, SectionTimes, section_times
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.verify.judge import Judgement
@@ -22,11 +26,13 @@ from g12.tools.verify.model.deviation import (
     circles_of,
     deviation_of,
     off_circles,
+    section_curve,
 )
 from g12.tools.verify.model.program import TracedProgram
 
 SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "on the contour"}
 THIRD = {"G17": 2, "G18": 1, "G19": 0}
+TURN = 1e-3  # radians of a corner, mm
 ROUNDED = 6  # decimals of rings
 
 
@@ -108,7 +114,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
     turn, _, height, _ = cut.roles
     diameters = cut.surface and height == X and program.diameters(cut.at)
-    factor = 2 if diameters else 1
+    times, factor = times_of(cut, program.ini), 2 if diameters else 1
     return {
         "sides": " and ".join(SIDES[side] for side in sides),
         "surface": cut.surface or None,
@@ -121,6 +127,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "longest": max(lengths, default=0.0),
         "c_speed": max(_speeds_of_c(cut, program), default=0.0),
         "c_limit": _finite(program.limits.axes[turn]),
+        "seconds_planned": times and times._asdict(),
     }
 
 
@@ -134,6 +141,39 @@ def _speeds_of_c(cut: Cut, program: TracedProgram) -> Iterator[float]:
 
 def _finite(value: float) -> float | None:
     return value if math.isfinite(value) else None
+
+
+def times_of(cut: Cut, ini: Ini) -> SectionTimes | None:
+    """Return about how long a section takes on this machine, None where that is not estimated.
+
+    That is on a cylinder, with the tool beside the X line, and without a feed.
+    """
+    drawn = [each for each in cut.elements if each.end is not None and each.start != each.end]
+    if cut.surface or ini.tool_beside or not drawn or not all(each.feed for each in cut.elements):
+        return None
+    legs = list(_legs(drawn, cut))
+    plunges = (each for each in cut.elements if each.end is None)
+    plunging = sum(60 * abs(each.z1 - each.z0) / each.feed for each in plunges)
+    return SectionTimes(*(plunging + each for each in section_times(legs, lathe_axes(ini))))
+
+
+def _legs(drawn: Sequence[CutElement], cut: Cut) -> Iterator[Leg]:
+    """Yield the tool's moves beside a contour, with its leads, and arcs round outside corners."""
+    curves = [section_curve(each, cut) for each in drawn]
+    beside = [c.offset(e.side * e.radius * cut.mm) for c, e in zip(curves, drawn)]
+    end, side = curves[0].start, 0
+    for n, each in enumerate(drawn):
+        feed, curve = each.feed * cut.mm / 60, beside[n]
+        if each.side != side:  # onto the contour, or away from it
+            to = beside[n + 1].start if each.side and n + 1 < len(drawn) else curve.end
+            curve = Line(end, to)
+        elif each.side:
+            turn = (curve.start - curves[n].start) * (end - curves[n].start).conjugate()
+            sweep = cmath.phase(turn) if abs(turn) > TURN else 0.0
+            if sweep * each.side < -TURN:
+                yield Leg(Arc(end, curves[n].start, sweep), feed)
+        yield Leg(curve, feed)
+        end, side = curve.end, each.side
 
 
 def _shape(cut: Cut, program: TracedProgram) -> dict[str, Any]:

@@ -60,6 +60,11 @@ ROWS: tuple[Row, ...] = (
     ("speed of C", "{c_speed:1} degrees/s at most, limit {c_limit:1}"),
     ("time", "{real_seconds:1} s, {seconds_programmed:1} s at the programmed feeds"),
     ("time", "{seconds_programmed:1} s at the programmed feeds"),
+    (
+        "kinematics",
+        "about {seconds_planned[segments]:1} s in segments, {seconds_planned[kinematics]:1} s with "
+        "kinematics, {seconds_planned[least]:1} s at the limits of X and C",
+    ),
 )
 
 

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The gain of a polar section from kinematics: its estimated time with and without, and the least.
+
+Lengths are mm, times seconds, angles radians. The tool's path is divided into even steps from one
+corner to the next, where the tool stops; C also turns at rest at the pole.
+
+In segments, LinuxCNC is no faster within a segment than it can brake in it. A segment of X and C is
+a spiral. Where the path makes the angle p with the radius r, the spiral has the curvature sin p (1
++ cos(p)**2) / r, and its difference from the path's own curvature gives the segment's length.
+
+On the face the planner may brake anywhere with all of its acceleration A, and C and the slide have
+to follow. The path takes the share p v**2 of an axis's acceleration, braking q times the planner's:
+p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, for the least time.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from g12.geometry.curve import Curve
+from g12.tools.path.face_follow import axis_derivatives
+from g12.tools.path.lathe_axes import LatheAxes
+from g12.tools.path.least_time import least_seconds, seconds_at
+
+STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
+SMOOTH_CORNER = math.radians(5.0)  # a sharper corner is a stop
+SEGMENT_BULGE = 1.44  # of the tolerance
+STOPPED_IN = 0.4  # measured: the square of the speed by length times acceleration of a segment
+TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
+PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
+OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
+TINY = 1e-9
+
+
+class Leg(NamedTuple):
+    """A move of the tool across the face: its curve, and its feed along it in mm/s."""
+
+    curve: Curve
+    feed: float
+
+
+class SectionTimes(NamedTuple):
+    """Seconds of a section: in segments, with kinematics, and at the limits of slide and C."""
+
+    segments: float
+    kinematics: float
+    least: float
+
+
+class _Stretch(NamedTuple):
+    """Points (complex) one step apart from one stop to the next, with their feeds.
+
+    ``bend`` is the path's signed curvature there; ``along`` and ``around`` are its direction's
+    components along the radius and around the pole.
+    """
+
+    points: np.ndarray
+    feed: np.ndarray
+    bend: np.ndarray
+    along: np.ndarray
+    around: np.ndarray
+
+    @property
+    def step(self) -> float:
+        return float(np.abs(np.diff(self.points)).mean())
+
+
+def section_times(legs: Sequence[Leg], axes: LatheAxes) -> SectionTimes:
+    stretches = [stretch for run in _smooth(legs) for stretch in _off_pole(_drawn(run))]
+    turns = sum(
+        _turn(one.points[-1], other.points[0], axes) for one, other in zip(stretches, stretches[1:])
+    )
+    segments = [_in_segments(each, axes) for each in stretches]
+    chorded = sum(_seconds(each, *how) for each, how in zip(stretches, segments))
+    face = min(
+        sum(_on_face(each, *how, axes, share) for each, how in zip(stretches, segments))
+        for share in TRIED_SHARES
+    )
+    least = sum(
+        least_seconds(each.points, each.feed, axes.slide, axes.c_radians) for each in stretches
+    )
+    return SectionTimes(chorded + turns, min(chorded, face + SWITCHING) + turns, least + turns)
+
+
+def _smooth(legs: Iterable[Leg]) -> Iterator[list[Leg]]:
+    run: list[Leg] = []
+    for leg in legs:
+        if run and abs(leg.curve.direction(0.0) - run[-1].curve.direction(1.0)) > SMOOTH_CORNER:
+            yield run
+            run = []
+        run.append(leg)
+    if run:
+        yield run
+
+
+def _drawn(run: Sequence[Leg]) -> _Stretch:
+    """Return moves without a corner as evenly spaced points."""
+    ends = np.cumsum([0.0, *(leg.curve.length for leg in run)])
+    count = int(min(MOST, max(FEWEST, ends[-1] / STEP)))
+    lengths = np.linspace(0.0, ends[-1], count + 1)
+    owners = np.clip(np.searchsorted(ends, lengths, side="right") - 1, 0, len(run) - 1)
+    legs = [run[owner] for owner in owners]
+    shares = (lengths - ends[owners]) / np.diff(ends)[owners]
+    points = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
+    heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
+    bends = np.array([leg.curve.curvature for leg in run])[owners]
+    feeds = np.array([leg.feed for leg in run])[owners]
+    polar = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
+    return _Stretch(points, feeds, bends, polar.real, polar.imag)
+
+
+def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
+    """Yield the portions of a stretch that are off the pole, by more than a step."""
+    off = np.abs(stretch.points) > max(STEP, stretch.step)
+    edges = np.flatnonzero(np.diff([0, *off.astype(int), 0]))
+    for first, last in zip(edges[::2], edges[1::2]):
+        if last - first > 2:
+            yield _Stretch(*(each[first:last] for each in stretch))
+
+
+def _turn(end: complex, start: complex, axes: LatheAxes) -> float:
+    """Return the time of C's turn at the pole between two points, 0 where they coincide."""
+    turn = abs(np.angle(start * np.conj(end)))
+    speed, acceleration = axes.c_radians
+    top = min(speed, math.sqrt(turn * acceleration))
+    return float(turn / top + top / acceleration) if turn > TINY else 0.0
+
+
+def _in_segments(stretch: _Stretch, axes: LatheAxes) -> tuple[np.ndarray, np.ndarray]:
+    """Return the speeds in segments, and the acceleration along the path."""
+    radius, along, around = np.abs(stretch.points), np.abs(stretch.along), np.abs(stretch.around)
+    (speed, slide), (c_speed, spindle) = axes.slide, axes.c_radians
+    spiral = stretch.around * (1.0 + along**2) / radius
+    deviation = np.minimum(axes.tolerance, 0.5 * radius)
+    bulge = 8.0 * SEGMENT_BULGE * deviation / np.maximum(np.abs(stretch.bend - spiral), TINY)
+    length = np.minimum(np.sqrt(bulge), len(radius) * stretch.step)
+    length = np.where(around > TINY, np.minimum(length, radius / np.maximum(along, TINY)), length)
+    quick = np.minimum(slide / np.maximum(along, TINY), spindle * radius / np.maximum(around, TINY))
+    most = np.minimum(speed / np.maximum(along, TINY), c_speed * radius / np.maximum(around, TINY))
+    chorded = np.sqrt(STOPPED_IN * quick * length)
+    return np.minimum(np.minimum(stretch.feed, most), chorded), quick
+
+
+def _on_face(
+    stretch: _Stretch,
+    chorded: np.ndarray,
+    quick: np.ndarray,
+    axes: LatheAxes,
+    share: float,
+) -> float:
+    """Return the seconds with kinematics, with segments where those are quicker."""
+    face = axes.face or [OF_SLIDE * axes.slide.acceleration] * 2
+    whole = share * math.hypot(*face)
+    most = np.where(stretch.bend, share * min(face), whole)
+    followed = np.minimum(stretch.feed, _followed(stretch, axes, most))
+    braking = np.where(followed >= chorded, PLANNED * whole, quick)
+    return _seconds(stretch, np.maximum(followed, chorded), braking)
+
+
+def _followed(stretch: _Stretch, axes: LatheAxes, most: np.ndarray) -> np.ndarray:
+    """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
+    (speed, acceleration), (c_speed, c_acceleration) = axes.slide, axes.c_radians
+    radius = np.abs(stretch.points)
+    slide, c = axis_derivatives(radius, stretch.along, stretch.around, stretch.bend)
+    square = np.minimum(speed / _size(slide[0]), c_speed / _size(c[0])) ** 2
+    square = np.minimum(square, most / _size(stretch.bend))
+    for (first, second), limit in ((c, c_acceleration), (slide, acceleration)):
+        p, q = np.abs(second) / limit, np.abs(first) / limit
+        both = np.maximum(p * p + (q * stretch.bend) ** 2, TINY**2)
+        under = p * p - both * (1.0 - (q * most) ** 2)
+        bound = (p - np.sqrt(np.maximum(under, 0.0))) / both
+        square = np.where(under >= 0.0, np.minimum(square, np.maximum(bound, 0.0)), square)
+        square = np.where(q * most > 1.0 + 1e-6, 0.0, square)
+    return np.sqrt(square)
+
+
+def _size(values: np.ndarray) -> np.ndarray:
+    """Return absolute values that may be divided by."""
+    return np.maximum(np.abs(values), TINY)
+
+
+def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> float:
+    """Return the time of a stretch from stop to stop, at most at these speeds."""
+    gains = (2.0 * stretch.step * braking).tolist()
+    squares = np.square(speeds).tolist()
+    for order in (range(len(squares)), range(len(squares) - 1, -1, -1)):
+        reached = 0.0
+        for at in order:
+            squares[at] = min(squares[at], reached)
+            reached = squares[at] + gains[at]
+    return seconds_at(squares, stretch.step)
