@@ -26,6 +26,7 @@ OTHER_PLANES = frozenset(("G18", "G19"))
 NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
 OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
 ENDING = MACHINES_OWN | SHIFTING
+ARC = frozenset("IJR")
 LEAST_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
 DRILLED = frozenset(("G73", "G81", "G82", "G83"))
 SIGNED_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -47,7 +48,7 @@ def mill_block(draft: Draft) -> None:
     _go_home(draft)
     if _drills(draft):
         return
-    has_words = bool(draft.letters() & set("XYZIJR"))
+    has_words = bool(draft.letters() & {"X", "Y", "Z", *ARC})
     if has_words and not draft.call and REFERENCES.isdisjoint(draft.codes()):
         _write_move(draft)
     elif draft.call:
