@@ -43,10 +43,10 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",
         "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter", "D0": "no diameter",
     },
-    "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross"},
+    "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross", "Q.00001": "P, Q and L make"},
     "G12.6 Z-9 R0 I6 K2 P1 H1 D3": {"K.05": "too thin", "E.45": "no diameter", "E.434": "too thin"},
     "G12.6 Z-9 R0 I6 P1 D1": {
-        "I0": "greater", "I": "missing", "P": "missing", "P0": "must not be 0", "P12": "too large",
+        "I0": "greater", "I": "missing", "P": "missing", "P0": "left-hand", "P12": "too large", "P.006": "in size", "L99999": "P, Q and L make",
         "Z": "missing", "Z1": "below", "Z-.5": "longer", "R6": "retract", "K0": "greater",
         "K6": "less", "K2.9": "tool diameter", "H2": "most", "H-1": "least", "J0": "least",
         "J1.5": "whole", "Q0": "greater", "Q-1": "greater", "D99": "table", "I3.2": "tool diameter",
