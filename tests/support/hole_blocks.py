@@ -247,6 +247,8 @@ def check_bore(block, moves):
         at, z = sampled(move)
         assert (np.abs(at - centre) < last + RADIUS).all() or z.min() > top - 1e-6
         assert move.kind != "rapid" or (np.abs(at - centre)[z < top - 1e-6] < 1e-6).all()
+        falls = move.kind == "rapid" and move.end[2] < move.start[2]
+        assert not falls or move.end[2] > min(block.start[2], top + 1) - 1e-6
 
 
 def check_thread(block, moves):
@@ -342,6 +344,9 @@ def check_frame(block, moves):
         if low.any() and line.length > 1e-9:
             beyond = finished.buffer(-RADIUS) if outside else finished.buffer(RADIUS)
             assert not line.intersects(beyond) if outside else beyond.covers(line)
+    rises = [move.end[2] - move.start[2] for move in moves if move.end[2] > move.start[2] + 1e-6]
+    assert max(rises[:-1], default=0.0) < 1 + 1e-6  # between the levels
+    assert max(move.end[2] for move in moves) < block.start[2] + 1e-6
     step = block.words.get("K", 1e9)
     heights = [block.start[2], *sorted(levels, reverse=True)]
     assert (-np.diff(heights) < step + 1e-5).all() and abs(heights[-1] - block.Z) < 1e-5
