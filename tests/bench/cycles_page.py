@@ -9,7 +9,6 @@ import time
 
 from bench import Figure
 from g12.tools.cycles_page.page import Page
-from g12.tools.cycles_page.sketch import MachineState
 from support.sim_machines import SIM
 
 MACHINES = "mill_mm", "mill_yasnac_mm", "mill_mitsubishi_mm", "lathe_mm"
@@ -33,8 +32,7 @@ def figures():
 
 def opened(machine):
     drawn = threading.Event()
-    there = MachineState({}, 0, (0.0,) * 9)
-    return Page(SIM / f"{machine}_headless.ini", drawn.set, lambda: there), drawn
+    return Page(SIM / f"{machine}_headless.ini", drawn.set), drawn
 
 
 def middle(page, drawn, form):
