@@ -22,15 +22,16 @@ KINDS = pytest.mark.parametrize("kind", hole_blocks.MAKERS)
 SEEDS = st.integers(0, 10**9)
 
 metric = kept_tracer("mill_mm", tools={**hole_blocks.TOOLS, 5: 0.0})
+helical = kept_tracer("mill_mm", tools=hole_blocks.TOOLS, overrides={"G12": {"ENTRY": "helix"}})
 inch = kept_tracer("mill_inch", tools={n: d / 25.4 for n, d in hole_blocks.TOOLS.items()})
 
 
 @KINDS
 @settings(max_examples=20, deadline=None)
 @given(seed=SEEDS)
-def test_any_valid_block_cuts_what_its_words_say(metric, kind, seed):
+def test_any_valid_block_cuts_what_its_words_say(metric, helical, kind, seed):
     block = hole_blocks.MAKERS[kind](random.Random(seed))
-    traced = metric.trace_text([*block.before, block.text, "M2"])
+    traced = (metric, helical)[seed % 2].trace_text([*block.before, block.text, "M2"])
     assert traced.error is None, traced.error
     hole_blocks.CHECKS[kind](block, traced.moves[1:])
 

@@ -62,10 +62,8 @@ def written(chance, code, words, start, diameter):
         shown.append(f"{letter}{given:.6f}")
         read[letter] = given * scale + base
     at = " ".join(f"{axis}{value / unit:.9f}" for axis, value in zip("XYZ", start))
-    modes = (
-        f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f} F{300 / unit}"
-    )
-    before = (modes, f"G0 {at}", "G91" if incremental else "G90")
+    modes = f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f}"
+    before = (modes, f"G0 {at} F{300 / unit}", "G91" if incremental else "G90")
     return Block(code, read, before, f"{code} {' '.join(shown)}", start, diameter / 2)
 
 
@@ -347,6 +345,13 @@ def check_frame(block, moves):
     rises = [move.end[2] - move.start[2] for move in moves if move.end[2] > move.start[2] + 1e-6]
     assert max(rises[:-1], default=0.0) < 1 + 1e-6  # between the levels
     assert max(move.end[2] for move in moves) < block.start[2] + 1e-6
+    for move in moves:
+        fall = move.start[2] - move.end[2]
+        if move.kind != "rapid" and move.length > 1e-6:
+            due = block.words.get("P", 300.0) if fall > 1e-6 else 300.0
+            assert abs(move.feed - due) < 1e-3
+        if move.kind == "arc":
+            assert fall <= math.tan(math.radians(3)) * move.length * (1 + 1e-6)
     step = block.words.get("K", 1e9)
     heights = [block.start[2], *sorted(levels, reverse=True)]
     assert (-np.diff(heights) < step + 1e-5).all() and abs(heights[-1] - block.Z) < 1e-5
