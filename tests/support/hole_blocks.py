@@ -105,7 +105,8 @@ def thread(chance):
         words["R"] = chance.uniform(-0.5, 0.4)
     outside, taper = chance.random() < 0.4, chance.random() < 0.3
     if taper:
-        words["E"] = chance.choice((1 / 16, chance.uniform(0.01, 0.2), -chance.uniform(0.01, 0.1)))
+        tapers = ((0.01, 0.2), (0.5, 1.0), (-0.1, -0.01))
+        words["E"] = chance.choice((1 / 16, *(chance.uniform(*each) for each in tapers)))
     narrower = max(0.0, words.get("E", 0.0)) / 2 * 27
     if outside:
         words |= {"I": narrower + 2 * pitch + chance.uniform(1, 20), "H": 1}

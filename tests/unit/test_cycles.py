@@ -10,11 +10,14 @@ from functools import partial
 import pytest
 
 from g12.cycles import mitsubishi, yasnac
+from g12.cycles.bore import plan_bore
 from g12.cycles.circle_mill import plan_call, plan_code
+from g12.cycles.frame import plan_frame
 from g12.cycles.haas import plan_pocket
-from g12.cycles.plan import EventPlanes, PocketEntry
+from g12.cycles.plan import STRAIGHT_DOWN, EventPlanes, PocketEntry
+from g12.cycles.thread import plan_thread
 from g12.errors import Refusal
-from g12.request.common import CycleExtent
+from g12.request.common import COUNTERCLOCKWISE, CycleExtent
 from g12.request.words import Tool, Words
 from support.planner_context import INCH, MM, reported, words_of
 
@@ -191,6 +194,24 @@ def test_how_far_each_goes():
     for name, words, radius in (("pocket", "H2", 38.0), ("perimeter", "H1", 62.5)):
         event = plan(name, f"X3 Y4 Z-9 I2 E5 R50 Q.5 {words}", cutter)
         assert event.extent == CycleExtent("G17", (3, 4, -9), radius, (2, 5, -9))
+
+
+@pytest.mark.parametrize(
+    ("planner", "words", "radius", "heights", "corners"),
+    [
+        (partial(plan_bore, steepest=3.0), "Z-9 R0 I25 P1 K21", 15, (10, -9), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1", 10, (10, -9, 0.25), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1 E-.1 J3", 10.45, (10, -9, -1.5), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1 K19 H1", 30 * (1 + 4 / 58), (10, -9, 1 / 58), (0, 0)),
+        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R12 H1", 2, (10, -9), (8, 3)),
+        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R5 H2", 33, (10, -9), (15, 10)),
+    ],
+)
+def test_how_far_a_hole_goes(planner, words, radius, heights, corners):
+    extent = planner(Words("G13", words_of(f"{words} D2"), MM), arc=COUNTERCLOCKWISE).extent
+    assert (extent.plane, extent.centre) == ("G17", (0, 0, -9))
+    assert extent.radius == pytest.approx(radius)
+    assert (*extent.heights, *extent.corners) == pytest.approx((*heights, *corners))
 
 
 # ---------------------------------------------------------------- Haas

@@ -30,7 +30,7 @@ HEIGHT = sqrt(3) / 2  # of the sharp 60 degree triangle, in pitches
 DEPTHS = {INSIDE: 5 / 8, OUTSIDE: 17 / 24}  # of a thread in these heights: ISO 68, ISO 724
 WITHIN_MM = 0.002  # of a taper: its arcs
 MOST_TAPER = 1  # E: a cone of 53 degrees; pipe threads have 0.0625
-QUARTER = 0.0212  # greatest error of a quarter turn's arc, per change of the radius in it
+QUARTER = 0.03  # greatest error of a quarter turn's arc, per change of the radius in it
 
 
 class Thread(NamedTuple):
