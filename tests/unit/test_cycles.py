@@ -59,7 +59,7 @@ REFUSED = {
     "haas": [
         ("R.5 I1", "R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F"),
         ("D1", "I is missing: the radius of the first circle"),
-        ("I.12505 D1", "I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0002"),
+        ("I.12505 D1", "I0.12505 must be greater than the tool radius 0.125 (D1) by at least 0.0002"),
         ("I0 D0", "I0 must be greater than 0"),
         ("I.5 K.5 Q.1", "I0.5 must be less than K0.5"),
         ("I.5 L0", "L0 must be at least 1"),
@@ -68,8 +68,8 @@ REFUSED = {
         ("I.5 K1 Q1e-320", "Q9.99989e-321 makes 1000000001 circles, the most is 100000"),
     ],
     "yasnac": [
-        ("I0", "I0 must not be 0"),
-        ("I-5 R-6 D2", "I-5 must exceed the tool radius 10 (D2) in size"),
+        ("I0", "I0 must be at least 0.00508"),
+        ("I-5 R-6 D2", "I-5 must be greater in size than the tool radius 10 (D2)"),
         ("I50 R50 D2", beyond("R50", 40, WITH_D,
          "it must be from 0 to less than X40, where I50 puts it")),
         ("I30 R29.99746", beyond("R29.99746", 29.99746, NO_D,
@@ -92,7 +92,7 @@ REFUSED = {
     "mitsubishi": [
         ("R.5 D2", "R0.5 is not a word of this cycle, which knows I D F"),
         ("I50", "D is missing: the tool whose radius reduces the circle, D0 for none"),
-        ("I0 D0", "I0 must be greater than the tool radius 0 (D0) by at least 0.00508"),
+        ("I0 D0", "I0 must be at least 0.00508"),
     ],
     "pocket": [
         ("X", "X is missing: the circle's centre"),
@@ -184,12 +184,12 @@ OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inc
     ("name", "words", "text"),
     [
         ("haas", "I.5 D1", "greater than the tool radius 6{} (D1)"),
-        ("haas", "I6.001 D1", "must exceed the tool radius 6{} (D1) by"),
+        ("haas", "I6.001 D1", "greater than the tool radius 6{} (D1) by"),
         ("haas", "I7 K30 Q13 D1", "Q13 is greater than the tool diameter 12{}: material is left"),
         ("haas", "I19 K30 Q9 D1", "I19 is greater than 1.5 x the tool diameter 12{}: a core is"),
-        ("yasnac", "I.5 D1", "must exceed the tool radius 6{} (D1) in size"),
+        ("yasnac", "I.5 D1", "greater than the tool radius 6{} (D1)"),
         ("yasnac", "I9 R1 D1", "centre (tool radius 6{}, D1): it must be"),
-        ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1) by"),
+        ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1)"),
         ("pocket", "Z-1 I1 R.5", "greater than the tool radius 6{} (T1)"),
         ("pocket", "R60 J13.5", "than the tool diameter 12{}: material is left"),
     ],

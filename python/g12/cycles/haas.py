@@ -17,18 +17,17 @@ The motions of `ngc/g12_haas.ngc`, per level:
 A tool-centre radius b is the programmed radius less the tool radius.
 
 Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
-required; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`; D whole,
-from 0, in the tool table, or a cutter known without it; I above 0, greater than the tool radius by
+required, above 0; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`;
+D whole, from 0, in the tool table, or a cutter known without it; I greater than the tool radius by
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, PocketCut, UsedCutter
+from g12.cut_report import PocketCut
 from g12.cycles.plan import (
     STRAIGHT_DOWN,
     CyclePlan,
     PocketEntry,
-    choose_cutter,
-    kept_cutter,
+    chosen_cutter,
     pocket_descent,
 )
 from g12.errors import number
@@ -36,9 +35,9 @@ from g12.request.common import (
     CLEARED,
     CycleExtent,
     check_count,
+    check_fits,
     check_modes,
     check_start,
-    other_cutter,
     steps_between,
 )
 from g12.request.words import XY, Tool, Words
@@ -50,10 +49,10 @@ def plan_pocket(
     words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
-    context, other = words.context, other_cutter(words, words.context.last_cutter)
+    context = words.context
     check_modes(words)
     words.check_known(HAAS_WORDS)
-    first = words.require("I", "the radius of the first circle")
+    first = words.require_positive("I", "the radius of the first circle")
     outward = words.take_pair("K", "Q")
     levels = words.take_whole("L", least=1, default=1)
     names_centre = "X" in words or "Y" in words
@@ -62,9 +61,11 @@ def plan_pocket(
     depth = words.take("Z")
     if not names_centre:
         check_start(words)
-    with_d = "D" in words
-    cutter, source = choose_cutter(words)
-    check_radii(words, first, outward, cutter, source)
+    chosen = chosen_cutter(words)
+    cutter = chosen.tool
+    check_fits(words, "I", first, cutter.radius, f"({chosen.source})")
+    if outward and outward[0] <= first + context.rounding:
+        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
     finished, stepover = outward or (first, first)
     links = links_outward(words, first, finished, stepover, clearing, levels)
@@ -88,7 +89,6 @@ def plan_pocket(
     extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
 
     def cut() -> PocketCut:
-        last = LOADED if context.last_cutter is None else BY_LAST_D
         return PocketCut(
             plane=XY,
             centre=(x, y, z),
@@ -97,13 +97,10 @@ def plan_pocket(
             step=stepover if outward else 0.0,
             inner=first_radius - cutter.radius,
             levels=tuple(z + z_step * level for level in range(levels)),
-            cutter=UsedCutter(cutter.radius, BY_D if with_d else last, cutter.number),
+            cutter=chosen.used,
         )
 
-    commanded = cutter if with_d else None
-    kept = None if with_d else kept_cutter(words, cutter)
-    numbers = numbers | links | down
-    return CyclePlan(numbers, extent, cut, message, other, commanded, kept_cutter=kept)
+    return chosen.plan(numbers | links | down, extent, cut, message)
 
 
 def links_outward(
@@ -115,25 +112,6 @@ def links_outward(
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
     step, last_step = min(growth, finished - first), finished - first - growth * (links - 1)
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
-
-
-def check_radii(
-    words: Words, first: float, outward: tuple[float, float] | None, cutter: Tool, source: str
-) -> None:
-    """Refuse circles that the cutter cannot mill, or that do not grow."""
-    context, rounding = words.context, words.context.rounding
-    if first <= rounding:
-        raise words.refuse_word("I", first, "must be greater than 0")
-    size = context.tool_size(cutter.radius)
-    if first <= cutter.radius + rounding:
-        rule = f"must be greater than the tool radius {size} ({source})"
-        raise words.refuse_word("I", first, rule)
-    if first - cutter.radius < context.smallest_ring - rounding:
-        least = number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({source}) by at least {least}"
-        raise words.refuse_word("I", first, rule)
-    if outward and outward[0] <= first + rounding:
-        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
 
 def upward(words: Words, depth: float | None) -> str | None:

@@ -227,11 +227,19 @@ def hole_of(words: Words, top: float | None = None) -> Hole:
 
 def chosen_cutter(words: Words) -> Chosen:
     """Return the cutter: D, else the D last commanded, else the loaded tool."""
-    context, with_d = words.context, "D" in words
-    other = other_cutter(words, context.last_cutter)
-    tool, source = choose_cutter(words)
-    by = BY_D if with_d else LOADED if context.last_cutter is None else BY_LAST_D
-    kept = None if with_d else kept_cutter(words, tool)
+    context = words.context
+    other, tool, kept = other_cutter(words, context.last_cutter), commanded_tool(words), None
+    by, last, loaded = BY_D, context.last_cutter, context.spindle_tool
+    source = f"D{tool.number}" if tool else ""
+    if not tool and last:
+        tool, source, by = last, "the D last commanded", BY_LAST_D
+    elif not tool and loaded:
+        tool, source, by = loaded, f"T{loaded.number} in the spindle", LOADED
+    if not tool:
+        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
+    sound_tool(words, tool, source)
+    if by != BY_D:
+        kept = kept_cutter(words, tool)
     return Chosen(tool, source, UsedCutter(tool.radius, by, tool.number), other, kept)
 
 
@@ -264,19 +272,3 @@ def kept_cutter(words: Words, cutter: Tool) -> str | None:
     if context.last_cutter is None:
         counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
     return f"{words.code}: no D above this block in the program: {counts}. Give D"
-
-
-def choose_cutter(words: Words) -> tuple[Tool, str]:
-    """Return the cutter of the block and its source, for messages.
-
-    The source is D in the block, else the D last commanded, else the tool in the spindle.
-    """
-    context, tool = words.context, commanded_tool(words)
-    if tool is not None:
-        return sound_tool(words, tool, f"D{tool.number}"), f"D{tool.number}"
-    if context.last_cutter is not None:
-        return context.last_cutter, "the D last commanded"
-    if context.spindle_tool is None:
-        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    source = f"T{context.spindle_tool.number} in the spindle"
-    return sound_tool(words, context.spindle_tool, source), source

@@ -33,6 +33,7 @@ from g12.errors import Refusal, number
 from g12.request.common import (
     CycleExtent,
     check_count,
+    check_fits,
     check_modes,
     check_start,
     commanded_tool,
@@ -130,12 +131,8 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
 
 def offset_radii(words: Words, finished: float, tool: Tool) -> OffsetRadii:
     """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
-    size, smallest = words.context.tool_size(tool.radius), words.context.smallest_ring
-    if abs(finished) < smallest:
-        raise words.refuse_word("I", finished, "must not be 0")
-    if abs(finished) - tool.radius < smallest:
-        rule = f"must exceed the tool radius {size} (D{tool.number}) in size"
-        raise words.refuse_word("I", finished, rule)
+    size = words.context.tool_size(tool.radius)
+    check_fits(words, "I", finished, tool.radius, f"(D{tool.number})")
     cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
     return OffsetRadii(words, copysign(tool.radius, finished), cutter)
 

@@ -71,6 +71,24 @@ def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
     return tool
 
 
+def check_fits(
+    words: Words, letter: str, radius: float, cutter: float, source: str, finish: float = 0.0
+) -> None:
+    """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
+
+    ``source`` names the cutter, with the word of a ``finish`` dimension that has to fit too.
+    """
+    context, sized = words.context, " in size" if radius < 0 else ""
+    room, least = abs(radius) - cutter - finish, number(context.smallest_ring)
+    if room >= context.smallest_ring - context.rounding:
+        return
+    if not cutter:
+        raise words.refuse_word(letter, radius, f"must be at least {least}{sized}")
+    by = f" by at least {least}" if room > context.rounding else ""
+    rule = f"must be greater{sized} than the tool radius {context.tool_size(cutter)} {source}{by}"
+    raise words.refuse_word(letter, radius, rule)
+
+
 def loaded_tool(words: Words) -> Tool:
     """Return the tool in the spindle, which must have a diameter."""
     tool = words.context.spindle_tool
