@@ -26,7 +26,6 @@ from g12.cut_report import (
     ThreadCut,
     UsedCutter,
     more_text,
-    read_report,
     report_text,
 )
 from g12.cycles import mitsubishi, yasnac
@@ -38,6 +37,7 @@ from g12.request.words import Tool, Words
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
+from g12.tools.preview.reports import read_report
 from support.planner_context import MM, words_of
 
 TOOLS = {1: Tool(1, 5.0), 2: Tool(2, 2.0)}

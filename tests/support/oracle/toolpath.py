@@ -6,9 +6,10 @@ its plane; of a polar section, the part's face; on a cylinder, its unrolled surf
 measured at right angles to it.
 """
 
+from math import copysign
 from typing import NamedTuple
 
-from g12.geometry.curve import Arc, Curve, Line
+from g12.geometry.curve import DEGENERATE, FULL_TURN, Arc, Curve, Line, angle_of
 
 NO_LENGTH = 1e-6  # mm
 
@@ -48,7 +49,7 @@ class Expected(NamedTuple):
         if isinstance(self.curve, Line):
             found = self._share_in_space(*point)
         else:
-            found = self.curve.share_between(point[0], least, most)
+            found = _share_between(self.curve, point[0], least, most)
         return min(most, max(least, found))
 
     def _share_in_space(self, point: complex, level: float) -> float:
@@ -107,3 +108,15 @@ class Difference(NamedTuple):
     code: str
     line: int
     text: str = ""
+
+
+def _share_between(arc: Arc, point: complex, least: float, most: float) -> float:
+    """Return the share nearest to a point among those between two shares."""
+    start, there = arc.start - arc.centre, point - arc.centre
+    if not arc.sweep or abs(there) <= DEGENERATE or abs(start) <= DEGENERATE:
+        return least
+    turned = angle_of(there * start.conjugate()) * copysign(1.0, arc.sweep) % FULL_TURN
+    shares = [(turned + turn) / abs(arc.sweep) for turn in (-FULL_TURN, 0.0, FULL_TURN)]
+    within = [share for share in shares if least <= share <= most]
+    ends = min((least, most), key=lambda share: abs(arc.point(share) - point))
+    return within[0] if within else ends
