@@ -21,7 +21,7 @@ from support.sim_machines import ROOT, SIM, kept_tracer, trace_text
 KINDS = pytest.mark.parametrize("kind", hole_blocks.MAKERS)
 SEEDS = st.integers(0, 10**9)
 
-metric = kept_tracer("mill_mm", tools=hole_blocks.TOOLS)
+metric = kept_tracer("mill_mm", tools={**hole_blocks.TOOLS, 5: 0.0})
 inch = kept_tracer("mill_inch", tools={n: d / 25.4 for n, d in hole_blocks.TOOLS.items()})
 
 
@@ -37,28 +37,27 @@ def test_any_valid_block_cuts_what_its_words_say(metric, kind, seed):
 
 WRONG = {  # words that replace those of a good block, and a word of the rule
     "G13.5 Z-5 R0 I4 P.2 D1": {
-        "I0": "greater", "I-4": "greater", "I2.9": "exceed", "P0": "greater", "P-1": "greater",
+        "I0": "greater", "I-4": "greater", "I2.9": "greater", "P0": "greater", "P-1": "greater",
         "P": "missing", "P3": "ENTRY_ANGLE", "Z": "missing", "Z0": "below", "Z4": "below",
         "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",
-        "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter",
+        "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter", "D0": "no diameter",
     },
     "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross"},
-    "G13.5 Z-5 R0 I4 P.2 D0": {"P3": "ENTRY_ANGLE"},
-    "G12.6 Z-9 R0 I1 K.6 P.3 H1 D0": {"K.01": "too thin", "E.3": "no diameter", "E.1": "too thin"},
+    "G12.6 Z-9 R0 I6 K2 P1 H1 D3": {"K.05": "too thin", "E.45": "no diameter", "E.434": "too thin"},
     "G12.6 Z-9 R0 I6 P1 D1": {
         "I0": "greater", "I": "missing", "P": "missing", "P0": "must not be 0", "P12": "too large",
         "Z": "missing", "Z1": "below", "Z-.5": "longer", "R6": "retract", "K0": "greater",
         "K6": "less", "K2.9": "tool diameter", "H2": "most", "H-1": "least", "J0": "least",
         "J1.5": "whole", "Q0": "greater", "Q-1": "greater", "D99": "table", "I3.2": "tool diameter",
-        "E3": "more than the length", "E-2": "more than the length",
+        "E3": "more than the length", "E-2": "more than the length", "D5": "no diameter",
     },
     "G13.7 Z-4 I40 J30 R5 D1": {
         "I0": "greater", "I-4": "greater", "I6": "half", "I": "missing", "J": "missing",
         "R": "missing", "R-1": "least", "R2": "tool radius", "R16": "half", "Z": "missing",
         "Z5": "below", "K0": "greater", "Q0": "greater", "Q-1": "greater", "P0": "greater",
         "Q.001": "least", "H3": "most", "E-1": "least", "E13": "tool radius", "E3.1": "tool radius",
-        "L1": "not a word", "D99": "table",
+        "L1": "not a word", "D99": "table", "Q4.21": "0.7", "D0": "no diameter",
     },
 }  # fmt: skip
 CASES = [(good, wrong, rule) for good, rows in WRONG.items() for wrong, rule in rows.items()]

@@ -152,6 +152,7 @@ MESSAGES = {
         HOLE,
         "G13.5 Z-5 R0 I3 P.2 D3",
         "G13.5 Z-5 R0 I5 D3",
+        "G13.5 Z-5 R0 I5 P.2 D0",
         "G13.5 Z1 R0 I5 P.2 D3",
         "G13.5 Z-5 R9 I5 P.2 D3",
         "G13.5 Z-5 R0 I5 K5 P.2 D3",
@@ -168,7 +169,7 @@ MESSAGES = {
         "G13.6 Z-1 R0 I5 P1.5 D3",
         "G13.6 Z-12 R0 I5 P1.5 E1 D3",
         "G13.6 Z-12 R0 I5 P1.5 E6.25 D3",
-        "G12.6 Z-12 R0 I1 P1 K.1 H1 D0",
+        "G12.6 Z-12 R0 I20 P1 K.1 H1 D3",
         "G13.6 Z-12 R0 I5 P1.5 H2 D3",
     ),
     "ngc/frame.md": (
@@ -180,7 +181,7 @@ MESSAGES = {
         "G13.7 Z-4 I40 J6 R3 D3",
         "G13.7 Z-4 I40 J30 R5 H1 Q4 D3",
         "G13.7 Z-4 I40 J30 R5 E4 D3",
-        "G13.7 Z-4 I40 J20.6 R5 Q4.6 D3",
+        "G13.7 Z-4 I40 J30 R5 Q4.6 D3",
     ),
     "ngc/polar.md": (
         LATHE,

@@ -59,7 +59,8 @@ REFUSED = {
     "haas": [
         ("R.5 I1", "R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F"),
         ("D1", "I is missing: the radius of the first circle"),
-        ("I.12505 D1", "must be greater than the tool radius 0.125 (D1) by at least 0.0002"),
+        ("I.12505 D1",
+         "I0.12505 must be greater than the tool radius 0.125 (D1) by at least 0.0002"),
         ("I0 D0", "I0 must be greater than 0"),
         ("I.5 K.5 Q.1", "I0.5 must be less than K0.5"),
         ("I.5 L0", "L0 must be at least 1"),

@@ -1,19 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.5/G13.5 bore: a hole along a helix, or along several from the inside out.
 
-The motions are in `ngc/g12_bore.ngc`. Rules, in the order of the checks: the modes of
-`check_modes`; every word known; Z required, R not above the tool, Z below it; I and P required,
-above 0; K from 0, less than I; Q above 0; L whole, from 0; the cutter; I greater than its radius;
-no material on the way back to the centre; in the full a slope up to [G12] ENTRY_ANGLE; not too many
-circles.
+The motions are in `ngc/g12_bore.ngc`. They return to the centre at full depth, so that no core may
+stay there.
 """
 
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import Chosen, CyclePlan, check_block, chosen_cutter, hole_of, turns_of
+from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
 from g12.errors import number
-from g12.request.common import CLEARED, CycleExtent, check_count, steps_between
+from g12.request.common import CLEARED, CycleExtent, check_count, check_fits, steps_between
 from g12.request.words import XY, Words
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
@@ -28,40 +25,35 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     opened = open_radius(words, wall)
     stepover = words.take_positive("Q")
     springs = words.take_whole("L", least=0)
-    cutter = chosen_cutter(words)
-    check_wall(words, wall, cutter)
-    last = wall - cutter.radius
-    first = first_radius(cutter.radius, last, opened, stepover)
-    if cutter.radius:
-        check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
-    steps = steps_between(first, last, stepover, words.context.rounding) if stepover else 0
-    if not opened or opened < 2 * cutter.radius:
+    cutter = sized_cutter(words)
+    check_fits(words, "I", wall, cutter.radius, cutter.source)
+    first = last = wall - cutter.radius
+    steps = 0
+    if stepover:  # the first helix leaves no core
+        first = min(last, max(CLEARED * cutter.radius, opened + stepover - cutter.radius))
+        steps = steps_between(first, last, stepover, words.context.rounding)
+    check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
+    if opened < 2 * cutter.radius:
         check_slope(words, pitch, first, steepest)
-    turns = turns_of(hole.depth, pitch, arc)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
     check_count(words, circles, f"P{number(pitch)} makes")
     numbers = {
-        "x": hole.x,
-        "y": hole.y,
-        "start": hole.start,
-        "clear": hole.clear,
-        "top": hole.top,
-        "z": hole.bottom,
+        **hole._asdict(),
+        **turns_of(hole.depth, pitch, arc),
         "radius": first,
         "step": (last - first) / max(steps, 1),
         "helices": steps + 1,
         "circles": springs + 1,
         "arc": arc,
     }
-    centre = hole.x, hole.y, hole.bottom
+    centre, first_wall = (hole.x, hole.y, hole.z), first + cutter.radius
 
     def cut() -> PocketCut:
-        first_wall = first + cutter.radius
-        step = stepover or 0.0
-        return PocketCut(XY, centre, wall, first_wall, step, -1.0, (hole.bottom,), cutter.used)
+        return PocketCut(
+            XY, centre, wall, first_wall, stepover or 0.0, -1.0, (hole.z,), cutter.used
+        )
 
-    extent = CycleExtent(XY, centre, last, (hole.start, hole.bottom))
-    return cutter.plan(numbers | turns, extent, cut)
+    return cutter.plan(numbers, CycleExtent(XY, centre, last, (hole.start, hole.z)), cut)
 
 
 def open_radius(words: Words, wall: float) -> float:
@@ -74,35 +66,16 @@ def open_radius(words: Words, wall: float) -> float:
     return opened
 
 
-def check_wall(words: Words, wall: float, cutter: Chosen) -> None:
-    context = words.context
-    if wall - cutter.radius < context.smallest_ring - context.rounding:
-        size, least = context.tool_size(cutter.radius), number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
-        raise words.refuse_word("I", wall, rule)
-
-
 def check_way_back(
-    words: Words, wall: float, has_core: bool, stepover: float | None, cutter: Chosen
+    words: Words, wall: float, has_core: bool, stepover: float | None, cutter: Cutter
 ) -> None:
-    """Refuse a core or a ring between helices: the tool returns to the centre at full depth."""
-    size = words.context.tool_size(2 * cutter.radius)
+    """Refuse a core, or a ring between helices."""
+    size = f"the tool diameter {words.context.tool_size(2 * cutter.radius)} ({cutter.source})"
     if stepover and stepover > 2 * cutter.radius:
-        rule = f"must not exceed the tool diameter {size} ({cutter.source})"
-        raise words.refuse_word("Q", stepover, rule)
+        raise words.refuse_word("Q", stepover, f"must not exceed {size}")
     if has_core:
-        rule = (
-            f"is greater than the tool diameter {size} ({cutter.source}): the tool would cross a"
-            " core at full depth. Give Q, or K if a hole is open"
-        )
-        raise words.refuse_word("I", wall, rule)
-
-
-def first_radius(cutter: float, last: float, opened: float, stepover: float | None) -> float:
-    """Return the tool centre's radius on the first helix: it leaves no core if there is a Q."""
-    if not stepover:
-        return last
-    return min(last, max(CLEARED * cutter, opened + stepover - cutter))
+        cure = "the tool would cross a core at full depth. Give Q, or K if a hole is open"
+        raise words.refuse_word("I", wall, f"is greater than {size}: {cure}")
 
 
 def check_slope(words: Words, pitch: float, radius: float, steepest: float) -> None:

@@ -275,10 +275,10 @@ def roughing_of(
     """Return the locals of the circles of one level; a perimeter is one ring."""
     radius = circle.radius + circle.side * (tool.radius + entries.finish)
     finish, letter = entries.finish, entries.letters.finish
-    source = f"(T{tool.number})" + (f" + {letter}{number(finish)}" if finish else "")
     cutter = 0.0 if circle.side == ON_CIRCLE else tool.radius
     if circle.side != OUTER_SIDE:
-        check_fits(entries.words, "R", circle.radius, cutter, source, finish)
+        more = f" + {letter}{number(finish)}" if finish else ""
+        check_fits(entries.words, "R", circle.radius, cutter, f"T{tool.number}", (finish, more))
     if entries.pocket:
         rings = rings_of(entries, radius, tool, width)
     elif width is not None:

@@ -2,29 +2,23 @@
 """G12.7/G13.7 frame: a rectangle with round corners, a pocket or a wall.
 
 The motions are in `ngc/g12_frame.ngc`. Every ring is a rectangle of the tool centre about X Y, with
-the half lengths a and b along X and Y. It begins in the middle of the side in -Y, or in -X of a
-frame that is narrower in X, on a half circle from the ring before.
-
-Rules, in the order of the checks: the modes of `check_modes`; every word known; Z required, below
-the tool; I, J required, above 0; R required, from 0, at most half of I and J; H whole, 0 to 2; K,
-Q, P above 0, Q in a pocket only; E from 0; the cutter; inside R from its radius, I and J greater
-than its diameter; room for the finish, which is at most its radius; not too many rings; a helix of
-not too many turns.
+the half lengths a and b along X and Y. It begins in the middle of the side in -Y, on a half circle
+from the ring before.
 """
 
-from math import ceil, pi, radians, sqrt, tan
+from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
 from g12.cycles.plan import (
     CLEARANCE_MM,
-    Chosen,
+    Cutter,
     CyclePlan,
     Hole,
     PocketEntry,
     check_block,
-    chosen_cutter,
     hole_of,
+    sized_cutter,
 )
 from g12.errors import number
 from g12.request.common import (
@@ -39,6 +33,7 @@ from g12.request.words import XY, Words
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
 POCKET, WALL_INSIDE, WALL_OUTSIDE = 0, 1, 2  # H
+WIDEST = 0.7  # stepover in tool diameters: more leaves material in the corners between the rings
 
 
 class Frame(NamedTuple):
@@ -56,16 +51,6 @@ class Frame(NamedTuple):
         return 1 if self.kind == WALL_OUTSIDE else -1
 
 
-class Rings(NamedTuple):
-    """The tool centre's rings of a level: half lengths and corner of the first, their growth."""
-
-    a: float
-    b: float
-    corner: float
-    step: float
-    number: int
-
-
 def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
     """Return the frame of one block; ``entry`` are the machine's settings of a plunge."""
     check_block(words, FRAME_WORDS)
@@ -74,62 +59,42 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
     frame = frame_of(words)
     level = words.take_positive("K") or hole.depth
     stepover = words.take_positive("Q")
-    if stepover and frame.kind != POCKET:
-        raise words.refuse_word("Q", stepover, "is the stepover of a pocket (H0)")
-    if stepover and stepover < 2 * context.smallest_ring:
-        rule = f"must be at least {number(2 * context.smallest_ring)}"
-        raise words.refuse_word("Q", stepover, rule)
     plunge_feed = words.take_positive("P") or context.feed * entry.feed / 100
-    cutter = chosen_cutter(words)
+    cutter = sized_cutter(words)
+    if stepover:
+        check_stepover(words, frame, stepover, cutter)
     check_room(words, frame, cutter)
-    stepover = stepover or cutter.radius
-    if not stepover and frame.kind == POCKET:
-        raise words.refuse("Q is missing: the stepover, which D0 does not give")
-    rings = rings_of(words, frame, cutter, stepover)
+    rings = rings_of(words, frame, stepover or cutter.radius, cutter)
     levels = max(1, steps_between(0.0, hole.depth, level, context.rounding))
-    check_count(words, levels * (rings.number + 1), "Q and K make")
-    turned = rings.a < rings.b
-    lead = min(CLEARED * cutter.radius or rings.b, rings.a, rings.b)
-    other = CLOCKWISE + COUNTERCLOCKWISE - arc
+    check_count(words, round(levels * (rings["rings"] + 1)), "Q and K make")
+    lead = min(CLEARED * cutter.radius, rings["a"], rings["b"])
+    fall = hole.depth / levels
     numbers = {
-        "x": hole.x,
-        "y": hole.y,
-        "top": hole.top,
-        "clear": context.length(CLEARANCE_MM),
+        **hole._asdict(),
+        **rings,
+        "retract": context.length(CLEARANCE_MM),
         "levels": levels,
-        "fall": hole.depth / levels,
-        "a": rings.b if turned else rings.a,
-        "b": rings.a if turned else rings.b,
-        "corner": rings.corner,
-        "turned": turned,
-        "step": rings.step,
-        "rings": rings.number,
+        "fall": fall,
         "finish": frame.finish,
         "least": context.smallest_ring,
         "lead": lead,
         "side": frame.side,
         "arc": arc,
-        "lead_arc": other if frame.side > 0 else arc,
-        "turns": turns_down(words, hole.depth / levels, lead, entry) if entry.helix else 0,
+        "lead_arc": CLOCKWISE + COUNTERCLOCKWISE - arc if frame.side > 0 else arc,
+        "turns": turns_down(words, fall, lead, entry) if entry.helix else 0,
         "plunge_feed": plunge_feed,
         "feed": context.feed,
     }
 
     def cut() -> FrameCut:
-        levels_of_z = tuple(hole.top - (n + 1) * hole.depth / levels for n in range(levels))
+        lengths = 2 * frame.half_x, 2 * frame.half_y
+        floors = tuple(hole.top - (n + 1) * fall for n in range(levels))
         middle = frame.kind != POCKET
         return FrameCut(
-            (hole.x, hole.y),
-            (2 * frame.half_x, 2 * frame.half_y),
-            frame.corner,
-            frame.side,
-            middle,
-            levels_of_z,
-            cutter.used,
+            (hole.x, hole.y), lengths, frame.corner, frame.side, middle, floors, cutter.used
         )
 
-    extent = extent_of(hole, frame, cutter, lead)
-    return cutter.plan(numbers, extent, cut, uncut_corners(words, rings, cutter))
+    return cutter.plan(numbers, extent_of(hole, frame, cutter, lead), cut)
 
 
 def frame_of(words: Words) -> Frame:
@@ -144,27 +109,41 @@ def frame_of(words: Words) -> Frame:
             raise words.refuse_word("R", corner, rule)
     kind = words.take_whole("H", least=POCKET, most=WALL_OUTSIDE, default=POCKET)
     finish = words.take("E") or 0.0
-    if finish and finish < 2 * words.context.smallest_ring:
-        rule = f"must be at least {number(2 * words.context.smallest_ring)}"
-        raise words.refuse_word("E", finish, rule)
+    if finish:
+        check_arc(words, "E", finish)
     return Frame(half_x, half_y, min(corner, half_x, half_y), kind, finish)
 
 
-def check_room(words: Words, frame: Frame, cutter: Chosen) -> None:
+def check_arc(words: Words, letter: str, growth: float) -> None:
+    """Refuse a growth whose half circle would be too small."""
+    least = 2 * words.context.smallest_ring
+    if growth < least:
+        raise words.refuse_word(letter, growth, f"must be at least {number(least)}")
+
+
+def check_stepover(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> None:
+    if frame.kind != POCKET:
+        raise words.refuse_word("Q", stepover, "is the stepover of a pocket (H0)")
+    check_arc(words, "Q", stepover)
+    if stepover > WIDEST * 2 * cutter.radius:
+        size = words.context.tool_size(2 * cutter.radius)
+        rule = f"must not exceed {WIDEST} x the tool diameter {size} ({cutter.source})"
+        raise words.refuse_word("Q", stepover, rule)
+
+
+def check_room(words: Words, frame: Frame, cutter: Cutter) -> None:
     """Refuse a frame into which the cutter does not fit, and a finish in the full."""
-    context = words.context
-    if 0 < cutter.radius < frame.finish - context.rounding:
-        size = context.tool_size(cutter.radius)
-        rule = f"must not exceed the tool radius {size} ({cutter.source}): it is cut at full depth"
+    context, smallest = words.context, words.context.smallest_ring
+    radius = f"the tool radius {context.tool_size(cutter.radius)} ({cutter.source})"
+    if cutter.radius < frame.finish - context.rounding:
+        rule = f"must not exceed {radius}: it is cut at full depth"
         raise words.refuse_word("E", frame.finish, rule)
     if frame.side > 0:
         return
-    size = context.tool_size(cutter.radius)
     if frame.corner < cutter.radius - context.rounding:
-        rule = f"must not be below the tool radius {size} ({cutter.source})"
-        raise words.refuse_word("R", frame.corner, rule)
+        raise words.refuse_word("R", frame.corner, f"must not be below {radius}")
     for letter, half in (("I", frame.half_x), ("J", frame.half_y)):
-        if half - cutter.radius - frame.finish < context.smallest_ring:
+        if half - cutter.radius - frame.finish < smallest:
             size = context.tool_size(2 * cutter.radius)
             rule = f"must be greater than the tool diameter {size} ({cutter.source})"
             if frame.finish:
@@ -172,23 +151,26 @@ def check_room(words: Words, frame: Frame, cutter: Chosen) -> None:
             raise words.refuse_word(letter, 2 * half, rule)
 
 
-def rings_of(words: Words, frame: Frame, cutter: Chosen, stepover: float) -> Rings:
-    """Return the rings of a level, from the first to the last rough one.
+def rings_of(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> dict[str, float]:
+    """Return the locals of a level's rings: the first one, their growth to the last rough one.
 
     The first ring of a pocket leaves no core.
     """
     beyond = frame.side * (cutter.radius + frame.finish)
     a, b, corner = frame.half_x + beyond, frame.half_y + beyond, frame.corner + beyond
-    if frame.kind != POCKET:
-        return Rings(a, b, corner, 0.0, 1)
-    narrow = min(a, b)
-    first = CLEARED * cutter.radius or stepover
-    inward = narrow - first
-    if inward < 2 * words.context.smallest_ring:  # the half circle to the next ring is no arc
-        inward = 0.0
-    steps = steps_between(0.0, inward, stepover, words.context.rounding)
-    step = inward / max(steps, 1)
-    return Rings(a - inward, b - inward, corner - inward, step, steps + 1)
+    inward, steps = 0.0, 0
+    if frame.kind == POCKET:
+        inward = min(a, b) - CLEARED * cutter.radius
+        if inward < 2 * words.context.smallest_ring:  # no arc leads to the next ring
+            inward = 0.0
+        steps = steps_between(0.0, inward, stepover, words.context.rounding)
+    return {
+        "a": a - inward,
+        "b": b - inward,
+        "corner": corner - inward,
+        "step": inward / max(steps, 1),
+        "rings": steps + 1,
+    }
 
 
 def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -> int:
@@ -198,23 +180,12 @@ def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -
     return turns
 
 
-def extent_of(hole: Hole, frame: Frame, cutter: Chosen, lead: float) -> CycleExtent:
+def extent_of(hole: Hole, frame: Frame, cutter: Cutter, lead: float) -> CycleExtent:
     """Return the tool centre's last ring, and outside the lead onto it."""
     beyond = frame.side * cutter.radius
     corner = max(0.0, frame.corner + beyond)
     along_x, along_y = frame.half_x + beyond - corner, frame.half_y + beyond - corner
     if frame.side > 0:
         corner += 2 * lead + frame.finish
-    centre = hole.x, hole.y, hole.bottom
-    return CycleExtent(XY, centre, corner, (hole.top, hole.bottom), (along_x, along_y))
-
-
-def uncut_corners(words: Words, rings: Rings, cutter: Chosen) -> str | None:
-    """Return the operator message of a stepover that leaves material between rings, or None."""
-    if not cutter.radius or rings.step * sqrt(2) <= 2 * cutter.radius + words.context.rounding:
-        return None
-    size = words.context.tool_size(2 * cutter.radius)
-    return (
-        f"{words.code}: Q{number(rings.step)} is greater than 0.7 x the tool diameter {size}:"
-        " material is left in the corners between the rings"
-    )
+    centre = hole.x, hole.y, hole.z
+    return CycleExtent(XY, centre, corner, (hole.top, hole.z), (along_x, along_y))

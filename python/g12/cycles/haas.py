@@ -25,6 +25,7 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 from g12.cut_report import PocketCut
 from g12.cycles.plan import (
     STRAIGHT_DOWN,
+    Cutter,
     CyclePlan,
     PocketEntry,
     chosen_cutter,
@@ -40,7 +41,7 @@ from g12.request.common import (
     check_start,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.request.words import XY, Words
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 
@@ -61,9 +62,8 @@ def plan_pocket(
     depth = words.take("Z")
     if not names_centre:
         check_start(words)
-    chosen = chosen_cutter(words)
-    cutter = chosen.tool
-    check_fits(words, "I", first, cutter.radius, f"({chosen.source})")
+    cutter = chosen_cutter(words)
+    check_fits(words, "I", first, cutter.radius, cutter.source)
     if outward and outward[0] <= first + context.rounding:
         raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
@@ -97,10 +97,10 @@ def plan_pocket(
             step=stepover if outward else 0.0,
             inner=first_radius - cutter.radius,
             levels=tuple(z + z_step * level for level in range(levels)),
-            cutter=chosen.used,
+            cutter=cutter.used,
         )
 
-    return chosen.plan(numbers | links | down, extent, cut, message)
+    return cutter.plan(numbers | links | down, extent, cut, message)
 
 
 def links_outward(
@@ -127,7 +127,7 @@ def upward(words: Words, depth: float | None) -> str | None:
 
 
 def uncut_material(
-    words: Words, outward: tuple[float, float] | None, first: float, cutter: Tool, helix: float
+    words: Words, outward: tuple[float, float] | None, first: float, cutter: Cutter, helix: float
 ) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
 

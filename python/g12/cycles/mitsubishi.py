@@ -39,7 +39,7 @@ def plan_circle(words: Words) -> CyclePlan:
     tool = commanded_tool(words)
     if tool is None:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    check_fits(words, "I", commanded, tool.radius, f"(D{tool.number})")
+    check_fits(words, "I", commanded, tool.radius, f"D{tool.number}")
     radius = abs(commanded) - tool.radius
     numbers = {
         "plane": int(context.plane[1:]),

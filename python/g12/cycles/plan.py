@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the planners of cycles share: their result, centre and cutter of a hole, the descent.
+"""What the planners of cycles share: their result, the descent, the cutter, a hole.
 
 The helix of a pocket consists of half turns with the same fall each. The slope of the last few
 decreases, so that the toolpath has no corner where it reaches the level. One full circle at that
@@ -154,37 +154,17 @@ def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> Non
     )
 
 
-CLEARANCE_MM, CLEARANCE_INCH = 1.0, 0.04  # of the rapid down, above the top
-WHOLE_TURN = 1e-5  # a smaller part of a turn is rounding: its arc would be a full circle
-
-
-class Hole(NamedTuple):
-    """Centre, the Z where the block begins, the end of the rapid down, top and bottom."""
-
-    x: float
-    y: float
-    start: float
-    clear: float
-    top: float
-    bottom: float
-
-    @property
-    def depth(self) -> float:
-        return self.top - self.bottom
-
-
-class Chosen(NamedTuple):
+class Cutter(NamedTuple):
     """The cutter of a block, its name in messages, and what the operator hears of it."""
 
-    tool: Tool
-    source: str
     used: UsedCutter
+    source: str
     other: str | None
     kept: str | None
 
     @property
     def radius(self) -> float:
-        return self.tool.radius
+        return self.used.radius
 
     def plan(
         self,
@@ -193,63 +173,31 @@ class Chosen(NamedTuple):
         cut: Callable[[], PlannedCut],
         message: str | None = None,
     ) -> CyclePlan:
-        commanded = self.tool if self.used.source == BY_D else None
+        used = self.used
+        commanded = Tool(used.number, used.radius) if used.source == BY_D else None
         return CyclePlan(
             numbers, extent, cut, message, self.other, commanded, kept_cutter=self.kept
         )
 
 
-def check_block(words: Words, known: str) -> None:
-    check_modes(words)
-    words.check_known(known)
-    if "X" not in words and "Y" not in words:
-        check_start(words)
-
-
-def hole_of(words: Words, top: float | None = None) -> Hole:
-    """Return where the cycle cuts; under G91 its Z counts from the top, which is R or ``top``."""
-    context = words.context
-    x = context.absolute(words.take("X"), context.x)
-    y = context.absolute(words.take("Y"), context.y)
-    depth = words.require("Z", "the depth")
-    if top is None:
-        given = words.take("R")
-        top = context.absolute(given, context.z)
-        if top > context.z + context.rounding:
-            rule = f"puts the top above the tool at Z{number(context.z)}: retract first"
-            raise words.refuse_word("R", top if given is None else given, rule)
-    bottom = top + depth if context.incremental else depth
-    if bottom >= top - context.smallest_ring:
-        raise words.refuse_word("Z", depth, f"must be below the top, Z{number(top)}")
-    clearance = CLEARANCE_INCH if context.inch else CLEARANCE_MM
-    return Hole(x, y, context.z, min(context.z, top + clearance), top, bottom)
-
-
-def chosen_cutter(words: Words) -> Chosen:
-    """Return the cutter: D, else the D last commanded, else the loaded tool."""
-    context = words.context
-    other, tool, kept = other_cutter(words, context.last_cutter), commanded_tool(words), None
-    by, last, loaded = BY_D, context.last_cutter, context.spindle_tool
-    source = f"D{tool.number}" if tool else ""
-    if not tool and last:
-        tool, source, by = last, "the D last commanded", BY_LAST_D
-    elif not tool and loaded:
-        tool, source, by = loaded, f"T{loaded.number} in the spindle", LOADED
-    if not tool:
+def chosen_cutter(words: Words) -> Cutter:
+    """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
+    context, other = words.context, other_cutter(words, words.context.last_cutter)
+    tool, by, kept = commanded_tool(words), BY_D, None
+    if tool is not None:
+        source = f"D{tool.number}"
+    elif context.last_cutter is not None:
+        tool, by, source = context.last_cutter, BY_LAST_D, "the D last commanded"
+    elif context.spindle_tool is not None:
+        tool, by = context.spindle_tool, LOADED
+        source = f"T{tool.number} in the spindle"
+    else:
         raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    sound_tool(words, tool, source)
+    if by != BY_LAST_D:
+        sound_tool(words, tool, source)
     if by != BY_D:
         kept = kept_cutter(words, tool)
-    return Chosen(tool, source, UsedCutter(tool.radius, by, tool.number), other, kept)
-
-
-def turns_of(height: float, pitch: float, arc: int) -> dict[str, float]:
-    """Return the locals of one helix from +X: turns begun, direction of its end from the centre."""
-    turns = height / pitch
-    if abs(turns - round(turns)) < WHOLE_TURN:
-        turns = max(1, round(turns))
-    angle = 2 * pi * (turns % 1) * (1 if arc == COUNTERCLOCKWISE else -1)
-    return {"rounds": ceil(turns), "end_x": cos(angle), "end_y": sin(angle)}
+    return Cutter(UsedCutter(tool.radius, by, tool.number), source, other, kept)
 
 
 def kept_cutter(words: Words, cutter: Tool) -> str | None:
@@ -272,3 +220,65 @@ def kept_cutter(words: Words, cutter: Tool) -> str | None:
     if context.last_cutter is None:
         counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
     return f"{words.code}: no D above this block in the program: {counts}. Give D"
+
+
+CLEARANCE_MM, CLEARANCE_INCH = 1.0, 0.04  # of the rapid down, above the top
+WHOLE_TURN = 1e-5  # a smaller part of a turn is rounding: its arc would be a full circle
+
+
+class Hole(NamedTuple):
+    """Centre, the Z where the block begins, the end of the rapid down, top and floor."""
+
+    x: float
+    y: float
+    start: float
+    clear: float
+    top: float
+    z: float
+
+    @property
+    def depth(self) -> float:
+        return self.top - self.z
+
+
+def check_block(words: Words, known: str) -> None:
+    check_modes(words)
+    words.check_known(known)
+    if "X" not in words and "Y" not in words:
+        check_start(words)
+
+
+def hole_of(words: Words, top: float | None = None) -> Hole:
+    """Return where the cycle cuts; under G91 its Z counts from the top, which is R or ``top``."""
+    context = words.context
+    x = context.absolute(words.take("X"), context.x)
+    y = context.absolute(words.take("Y"), context.y)
+    depth = words.require("Z", "the depth")
+    if top is None:
+        given = words.take("R")
+        top = context.absolute(given, context.z)
+        if given is not None and top > context.z + context.rounding:
+            rule = f"puts the top above the tool at Z{number(context.z)}: retract first"
+            raise words.refuse_word("R", given, rule)
+    z = top + depth if context.incremental else depth
+    if z >= top - context.smallest_ring:
+        raise words.refuse_word("Z", depth, f"must be below the top, Z{number(top)}")
+    clearance = CLEARANCE_INCH if context.inch else CLEARANCE_MM
+    return Hole(x, y, context.z, min(context.z, top + clearance), top, z)
+
+
+def sized_cutter(words: Words) -> Cutter:
+    """Return the cutter of the block, which must have a diameter."""
+    cutter = chosen_cutter(words)
+    if not cutter.radius:
+        raise words.refuse(f"{cutter.source} has no diameter: it sets the path")
+    return cutter
+
+
+def turns_of(height: float, pitch: float, arc: int) -> dict[str, float]:
+    """Return the locals of one helix from +X: turns begun, direction of its end from the centre."""
+    turns = height / pitch
+    if abs(turns - round(turns)) < WHOLE_TURN:
+        turns = max(1, round(turns))
+    angle = 2 * pi * (turns % 1) * (1 if arc == COUNTERCLOCKWISE else -1)
+    return {"rounds": ceil(turns), "turn_x": cos(angle), "turn_y": sin(angle)}

@@ -132,7 +132,7 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
 def offset_radii(words: Words, finished: float, tool: Tool) -> OffsetRadii:
     """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
     size = words.context.tool_size(tool.radius)
-    check_fits(words, "I", finished, tool.radius, f"(D{tool.number})")
+    check_fits(words, "I", finished, tool.radius, f"D{tool.number}")
     cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
     return OffsetRadii(words, copysign(tool.radius, finished), cutter)
 

@@ -72,21 +72,26 @@ def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
 
 
 def check_fits(
-    words: Words, letter: str, radius: float, cutter: float, source: str, finish: float = 0.0
+    words: Words,
+    letter: str,
+    radius: float,
+    cutter: float,
+    source: str,
+    finish: tuple[float, str] = (0.0, ""),
 ) -> None:
     """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
 
-    ``source`` names the cutter, with the word of a ``finish`` dimension that has to fit too.
+    ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
     """
     context, sized = words.context, " in size" if radius < 0 else ""
-    room, least = abs(radius) - cutter - finish, number(context.smallest_ring)
+    room, least = abs(radius) - cutter - finish[0], number(context.smallest_ring)
     if room >= context.smallest_ring - context.rounding:
         return
     if not cutter:
         raise words.refuse_word(letter, radius, f"must be at least {least}{sized}")
     by = f" by at least {least}" if room > context.rounding else ""
-    rule = f"must be greater{sized} than the tool radius {context.tool_size(cutter)} {source}{by}"
-    raise words.refuse_word(letter, radius, rule)
+    size = f"{context.tool_size(cutter)} ({source}){finish[1]}{by}"
+    raise words.refuse_word(letter, radius, f"must be greater{sized} than the tool radius {size}")
 
 
 def loaded_tool(words: Words) -> Tool:
