@@ -59,6 +59,7 @@ MILL_INCH = (
     Slide("Y", -20, 20, 10, 60),
     Slide("Z", -12, 12, 6, 60),
 )
+ROTARY_TABLE = Slide("A", -99999, 99999, 360, 3600)
 LATHE_MM = (
     Slide("X", -10, 300, 150, 1000),
     Slide("Z", -500, 500, 150, 1000),
@@ -76,6 +77,7 @@ LATHE_INCH = (
     Slide("C", -99999, 99999, 360, 3600),
 )
 
+ROTARY = "ABC"
 HOLES = ("bore", "thread", "frame")
 FORMS_OF_LATHE = ("polygon", "slot", "face_pocket", "face_holes", "side_holes")
 CODES_OF_LATHE = ("polar", "cylinder", "polar_shapes")
@@ -100,13 +102,24 @@ def mill(name: str, dialect: str, as_on: str, **more) -> Machine:
         name=name,
         what=f"mill in {UNIT_NAMES[unit]}, G12/G13 as on {as_on}",
         unit=unit,
-        slides=MILL_MM if unit == "mm" else MILL_INCH,
         velocities=(50, 250) if unit == "mm" else (2, 10),
         codes=(f"g12_{dialect}", "circle_mill", *HOLES),
         forms=(dialect, "circle_mill", *HOLES),
         control=f"{dialect}-mill",
-        **{"table": f"mill_{unit}", **more},
+        **{
+            "slides": MILL_MM if unit == "mm" else MILL_INCH,
+            "table": f"mill_{unit}",
+            **more,
+        },
     )
+
+
+def with_a(unit: str) -> Machine:
+    slides = MILL_MM if unit == "mm" else MILL_INCH
+    name, as_on = f"mill_a_{unit}", "Haas, with a rotary axis A"
+    more = {"slides": (*slides, ROTARY_TABLE)}
+    made = mill(name, "haas", as_on, **more)
+    return made._replace(codes=(*made.codes, "cylinder"))
 
 
 def lathe(name: str, unit: str, what: str, **more) -> Machine:
@@ -151,6 +164,8 @@ MACHINES = (
     mill("mill_helix_mm", "haas", "Haas with a helical plunge", settings=HELIX),
     mill("mill_yasnac_mm", "yasnac", "Yasnac"),
     mill("mill_mitsubishi_mm", "mitsubishi", "Mitsubishi"),
+    with_a("mm"),
+    with_a("inch"),
     lathe("lathe_mm", "mm", SLIDE_AND_C),
     lathe("lathe_inch", "inch", SLIDE_AND_C),
     # 0.7 of the slide's acceleration, so that no direction on the face needs more of it.
@@ -262,11 +277,12 @@ def display(machine: Machine, screen: str) -> list[str]:
     lines.append(f"OPEN_FILE = samples/{machine.sample or machine.name}.ngc")
     if screen != "headless" or machine.overrides != "2.0":
         lines.append(f"MAX_FEED_OVERRIDE = {machine.overrides}")
-    if machine.slides[-1].letter == "C":
-        lines.append("# The preview turns the toolpath by C, as it lies on the part.")
-        lines.append(f"GEOMETRY = {'CXZ!' if machine.face is None else 'CXYZ!'}")
+    turn = machine.slides[-1].letter
+    if turn in ROTARY:
+        lines.append(f"# The preview turns the toolpath by {turn}, as it lies on the part.")
+        lines.append(f"GEOMETRY = {turn}{''.join(moving_axes(machine)[:-1])}!")
         lines.append("MAX_ANGULAR_VELOCITY = 90")
-    if screen == "axis" and machine.slides[-1].letter == "C" and machine.face is None:
+    if screen == "axis" and turn == "C" and machine.face is None:
         lines += ["LATHE = 1", "# The key V shows the face too.", FACE_VIEW]
     if screen != "headless":
         place = ["EMBED_TAB_LOCATION = ntb_user_tabs"] if screen == "gmoccapy" else []
@@ -277,7 +293,7 @@ def display(machine: Machine, screen: str) -> list[str]:
 
 def filters(machine: Machine) -> list[str]:
     kinds = [(*PROGRAMS[machine.control], f"translate --control {machine.control}")]
-    if machine.slides[-1].letter == "Z":
+    if machine.slides[1].letter == "Y":
         kinds.append(("Dynapath circle mill events", ("dyn",), f"dynapath --units {machine.unit}"))
     shown, opened = [], []
     for what, names, command in kinds:
@@ -300,7 +316,7 @@ def hal(machine: Machine) -> list[str]:
         files = ["spindle_joints.hal", "../include/spindle_c.hal", "spindle_drive.hal"]
         more = ["HALCMD = loadusr sh ../include/spindle_c_limits.sh"]
     else:
-        files, more = ["three_joints.hal"], []
+        files, more = ["three_joints.hal", *["fourth_joint.hal"] * (len(machine.slides) - 3)], []
     if machine.face is not None:
         files.append("../kinematics/polar_kinematics.hal")
     return [f"HALFILE = {file}" for file in files] + more
@@ -309,13 +325,15 @@ def hal(machine: Machine) -> list[str]:
 def axes(machine: Machine) -> Iterator[Section]:
     letters = [slide.letter for slide in machine.slides]
     module = "trivkins" if machine.face is None else "polar_xzc"
-    yield "KINS", ["JOINTS = 3", f"KINEMATICS = {module} coordinates={''.join(letters)}"]
+    yield (
+        "KINS",
+        [f"JOINTS = {len(letters)}", f"KINEMATICS = {module} coordinates={''.join(letters)}"],
+    )
     default, fastest = machine.velocities
-    coordinates = letters if machine.face is None else ["X", "Y", *letters[1:]]
     yield (
         "TRAJ",
         [
-            f"COORDINATES = {' '.join(coordinates)}",
+            f"COORDINATES = {' '.join(moving_axes(machine))}",
             f"LINEAR_UNITS = {machine.unit}",
             "ANGULAR_UNITS = degree",
             *(["SPINDLES = 2"] if machine.spindle_c else []),
@@ -328,7 +346,7 @@ def axes(machine: Machine) -> Iterator[Section]:
         yield (
             f"JOINT_{number}",
             [
-                f"TYPE = {'ANGULAR' if slide.letter == 'C' else 'LINEAR'}",
+                f"TYPE = {'ANGULAR' if slide.letter in ROTARY else 'LINEAR'}",
                 *limits(slide),
                 "FERROR = 10",
                 "MIN_FERROR = 1",
@@ -336,6 +354,12 @@ def axes(machine: Machine) -> Iterator[Section]:
                 "HOME_SEQUENCE = 0",
             ],
         )
+
+
+def moving_axes(machine: Machine) -> list[str]:
+    """Return the letters of the axes; the kinematics of the face makes Y too."""
+    letters = [slide.letter for slide in machine.slides]
+    return letters if machine.face is None else ["X", "Y", *letters[1:]]
 
 
 def axes_of(machine: Machine, slide: Slide) -> Iterator[Section]:

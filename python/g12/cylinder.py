@@ -6,10 +6,16 @@ times the angle in radians long. The slide and that length are proportional to t
 a line is exactly one segment. The segments of an arc bulge equally everywhere; spacing shares the
 deviation between them. `section`, `compensation` and `moves` hold what polar mode shares.
 
-On a lathe, Z is a length, C an angle, and X at right angles to the surface. The unrolled surface is
-viewed from outside: C to the right and Z upwards, so G2 is clockwise there and G41 has the tool on
-the left, whatever plane is active. An arc's centre is J (or I) along C and K along Z, both lengths
-on the surface from the arc's start.
+The unrolled surface is viewed from outside, so G2 is clockwise there and G41 has the tool on the
+left, whatever plane is active. An arc's centre are lengths on the surface from the arc's start.
+
+| machine | to the right | upwards | at right angles | an arc's centre |
+|---|---|---|---|---|
+| lathe | C | Z | X | J (or I), K |
+| mill with A, which turns about X | X | A, the other way | Z | I, J |
+| mill with B, which turns about Y | B | Y | Z | I, J |
+
+LinuxCNC's positive A turns the part so that the tool moves to Y- on it, by the right-hand rule.
 """
 
 from __future__ import annotations
@@ -18,13 +24,13 @@ import cmath
 from collections.abc import Sequence
 from functools import partial
 from math import copysign, degrees, radians, sqrt
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.errors import number
 from g12.geometry.curve import Arc
-from g12.lengths import LARGEST
+from g12.lengths import LARGEST, ROUNDING_MM
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.setup import LEAST_MM, RADIUS_TOLERANCE_MM, SectionKind, check_entry
 from g12.moves.steps import (
@@ -41,9 +47,9 @@ from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
 
-RADIUS = "C"  # the word of G7.1
 LEAST_DENSITY = 2.0  # segments per radian of an arc: fewer do not resemble it
 
+ORIGIN = "the origin must stay where it is inside the section"
 CYLINDER_WORDS = SectionWords(
     plane="CZX",
     axes=AxisLetters("Z", "C", "X"),
@@ -62,14 +68,41 @@ CYLINDER_WORDS = SectionWords(
         "D": OWN_RADIUS,
     },
     own_block="X needs a block of its own, or [G12] CYLINDER_X = allow",
-    origin="the origin must stay where it is inside the section",
+    origin=ORIGIN,
 )
+
+
+def words_on_mill(plane: str, axes: AxisLetters, across: str) -> SectionWords:
+    """Return the words on a mill; ``across`` is the axis that stands on the axis of rotation."""
+    slide, turn, height = axes
+    others = "".join(letter for letter in "ABCUVWHK@^" if letter != turn)
+    return SectionWords(
+        plane=plane,
+        axes=axes,
+        turn_is_length=False,
+        letters=(),
+        foreign={},
+        relative={},
+        plain=plain_line_of(f"{slide}{turn}{height}IJRF"),
+        planes=frozenset({170}),
+        plane_name=f"{plane[0]}-{plane[1]}",
+        centre=("I", "J"),
+        centre_name="I and J",
+        refused={
+            **dict.fromkeys(others, f"the section's words are {slide}, {turn}, {height}, I and J"),
+            across: f"{across} stays on the axis of rotation inside the section",
+            "T": NO_TOOL_CHANGE,
+            "D": OWN_RADIUS,
+        },
+        own_block=f"{height} needs a block of its own, or [G12] CYLINDER_X = allow",
+        origin=ORIGIN,
+    )
 
 
 class CylinderSettings(NamedTuple):
     """The machine's limits and the owner's settings for a section; lengths in program units."""
 
-    radius: float  # of the surface
+    per_radian: float  # length to the right or upwards of a radian of the rotary axis
     tolerance: float
     # 0.001 mm: a segment that turns moves the slide by this at least, or not at all
     least_slide: float
@@ -81,27 +114,36 @@ class CylinderSettings(NamedTuple):
 
 
 class Cylinder(SectionKind):
-    """A section on a turned surface, of a Z slide and the C axis."""
+    """A section on a turned surface; this one is of a lathe's Z slide and its C axis."""
 
     words = CYLINDER_WORDS
-    on_words = RADIUS
+    on_words = "C"
 
     def check(self, start: SectionStart) -> None:
-        check_entry(start, self.machine.letters, "XZC", ())
-        word = start.words.get(RADIUS)
+        self.check_machine(start)
+        letter = self.on_words
+        word = start.words.get(letter)
         if word is None:
-            rule = f"needs {RADIUS}, the cylinder's radius; {RADIUS}0 ends a section"
+            rule = f"needs {letter}, the cylinder's radius; {letter}0 ends a section"
             raise start.location.refuse(rule)
         if not 0.0 < word <= LARGEST:
             rule = f"must be above 0 and at most {number(LARGEST)}"
-            raise start.location.refuse(f"{RADIUS}{number(word)}, the cylinder's radius, {rule}")
+            raise start.location.refuse(f"{letter}{number(word)}, the cylinder's radius, {rule}")
         self.surface = word * (0.5 if self.machine.settings.cylinder_word == "diameter" else 1.0)
+
+    def check_machine(self, start: SectionStart) -> None:
+        check_entry(start, self.machine.letters, "XZC", ())
+
+    @property
+    def per_radian(self) -> float:
+        """The length to the right or upwards of a radian of the rotary axis."""
+        return self.surface
 
     def word_rules(self) -> WordRules:
         return WordRules(
             diameter=self.start.diameter,
             x_scale=1.0,
-            turn_scale=radians(self.surface),
+            turn_scale=radians(self.per_radian),
             height_with_others=self.machine.settings.cylinder_x == "allow",
             rapid_feed=self.rapid_feed,
             radius_tolerance=RADIUS_TOLERANCE_MM * self.start.millimetre,
@@ -111,7 +153,7 @@ class Cylinder(SectionKind):
     def planning(self) -> CylinderSettings:
         slide, turn, height = (self.machine.axes[letter] for letter in self.words.axes)
         return CylinderSettings(
-            radius=self.surface,
+            per_radian=self.per_radian,
             tolerance=self.tolerance,
             least_slide=LEAST_MM * self.start.millimetre,
             slide_acceleration=self.in_program(slide),
@@ -123,6 +165,52 @@ class Cylinder(SectionKind):
 
     def plan(self, contour: Contour) -> SectionPlan:
         return plan(contour, self.planning)
+
+
+class CylinderOnMill(Cylinder):
+    """A section of a mill with A, which turns about X.
+
+    ``across`` is the axis that stands on the axis of rotation, ``sense`` is 1 where a positive
+    angle leads to the right or upwards.
+    """
+
+    words = words_on_mill("XAZ", AxisLetters("X", "A", "Z"), across="Y")
+    on_words = "A"
+    across: ClassVar[str] = "Y"
+    sense: ClassVar[float] = -1.0
+
+    def check_machine(self, start: SectionStart) -> None:
+        across = self.across
+        there = start.position[across]
+        rule = (
+            f"needs {across}0: the tool must stand on the axis of rotation, not at"
+            f" {across}{number(there)}"
+        )
+        on_axis = abs(there) <= ROUNDING_MM * start.millimetre
+        needed = "".join(self.words.axes)
+        rules = [(on_axis, rule)]
+        centre = "the axis of rotation"
+        check_entry(start, self.machine.letters, needed, rules, (across, "Z"), centre)
+
+    @property
+    def per_radian(self) -> float:
+        turned = -1.0 if self.machine.settings.rotary_sense == "reversed" else 1.0
+        return self.surface * self.sense * turned
+
+
+class CylinderOnMillWithB(CylinderOnMill):
+    """A section of a mill with B, which turns about Y."""
+
+    words = words_on_mill("BYZ", AxisLetters("Y", "B", "Z"), across="X")
+    on_words = "B"
+    across = "X"
+    sense = 1.0
+
+
+# By the letter of the rotary axis.
+CYLINDERS: dict[str, type[Cylinder]] = {
+    kind.on_words: kind for kind in (Cylinder, CylinderOnMill, CylinderOnMillWithB)
+}
 
 
 def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
@@ -152,7 +240,7 @@ def _acceleration(direction: Direction, _point: complex, *, settings: CylinderSe
     """Return the acceleration along a direction that no axis exceeds; it is the same everywhere."""
     *in_plane, deep = map(abs, direction)
     along, around = _slide_and_around(complex(*in_plane), settings.turn_is_first)
-    surface = settings.radius * radians(settings.turn_acceleration)
+    surface = abs(settings.per_radian) * radians(settings.turn_acceleration)
     return 1.0 / max(
         around / surface, along / settings.slide_acceleration, deep / settings.height_acceleration
     )
@@ -190,7 +278,7 @@ def split_on_cylinder(move: PlaneMove, settings: CylinderSettings, deviation: fl
     else:
         points, lengths = [move.start, move.end], [0.0, move.length]
     slides, around = zip(*(_slide_and_around(at, settings.turn_is_first) for at in points))
-    return Split(list(slides), [length / settings.radius for length in around], lengths)
+    return Split(list(slides), [length / settings.per_radian for length in around], lengths)
 
 
 def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:

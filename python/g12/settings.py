@@ -99,6 +99,8 @@ class Settings:
     polar_tool_offset: float = setting(0.0, number_rule(least=-math.inf))
     cylinder_word: str = setting("radius", words("radius", "diameter"))
     cylinder_x: str = setting("refuse", words("refuse", "allow"))
+    rotary_sense: str = setting("standard", words("standard", "reversed"))
+    rotary_drag: tuple[int, ...] = setting((), m_codes("M12 M11"))
     c_clamp: tuple[int, ...] = setting((), m_codes("M10 M11"))
     c_clamp_shapes: tuple[int, ...] = setting((), m_codes("M12"))
     on_abort_command: str = setting("", ValueRule("a block", str))
@@ -108,12 +110,23 @@ class Settings:
         usual = TOLERANCE_INCH if is_inch(millimetres) else TOLERANCE_MM / millimetres
         return self.polar_tolerance or usual
 
+    def drag(self, turn: str) -> tuple[int, ...]:
+        """Return the codes that begin and end the drag of a rotary axis in a section, if any."""
+        if turn != "C":
+            return self.rotary_drag
+        return (*self.c_clamp_shapes, self.c_clamp[1]) if self.c_clamp_shapes else ()
+
+    @property
+    def opening_codes(self) -> tuple[int, ...]:
+        """The codes that open the clamps, for an abort."""
+        return self.c_clamp[1:] + self.rotary_drag[1:]
+
     def unknown_clamp_code(self, m_codes: Container[int]) -> str:
         """Return which code of the clamp the machine does not know, "" if it knows all of them.
 
         ``m_codes`` are those that it has besides LinuxCNC's.
         """
-        for key in ("c_clamp", "c_clamp_shapes"):
+        for key in ("c_clamp", "c_clamp_shapes", "rotary_drag"):
             for code in getattr(self, key):
                 if code not in m_codes and code not in CLAMP_CODES:
                     cure = "a REMAP line" if code < 100 else f"an executable file M{code}"

@@ -18,6 +18,7 @@ MACHINES = [
     )
     for name, marks in (
         ("mill_mm", []),
+        ("mill_a_mm", []),
         ("lathe_mm", []),
         ("lathe_mm_kinematics", [needs_kinematics]),
     )

@@ -13,7 +13,7 @@ from support.operated_machine import Machine
 KINEMATICS = pytest.param("lathe_mm_kinematics", marks=needs_kinematics)
 
 
-@pytest.mark.parametrize("name", ["mill_mm", "lathe_mm", KINEMATICS])
+@pytest.mark.parametrize("name", ["mill_mm", "mill_a_mm", "lathe_mm", KINEMATICS])
 def test_interruptions(name, request):
     ini, overrides = machine_of(name)
     with Machine(ini, overrides=overrides) as machine:

@@ -16,6 +16,7 @@ MM_PER_INCH = 25.4
 SPINDLE = "M3 S1000"
 LATHE_HOME = ["G21 G90 G94 G8 G18 G91.1 G64 P0.01 Q0", "G0 Z20", "G0 X35 C0 Z2"]
 MILL_HOME = ["G21 G90 G94 G8 G17 G91.1 G64 P0.01 Q0", "G0 Z20", "G0 X0 Y0 Z2"]
+ROTARY_HOME = [*MILL_HOME[:2], "G0 X2 Y0 Z2 A0"]
 PATHS = ["G61", "G61.1", "G64 P0.05 Q0.03", "G64 P0.4"]
 POLYGON = [(30, 20), (0, 30), (-25, 10), (-15, -25), (20, -20), (30, 0)]
 SLOT_AROUND = [(-5, 0), (-5, 30), (-15, 30), (-15, 0), (2, 0)]
@@ -70,7 +71,7 @@ class Modes(NamedTuple):
         return lines
 
     def word(self, letter, value):
-        return value / self.unit if letter != "c" else value
+        return value / self.unit if letter not in "ac" else value
 
 
 def any_modes(chance, name):
@@ -82,15 +83,24 @@ def any_modes(chance, name):
 
 
 def machine_of(name):
-    """Return the INI of a machine and its overrides: a lathe's C is wrapped."""
-    wrapped = {"AXIS_C": {"WRAPPED_ROTARY": "1"}} if name.startswith("lathe") else {}
-    return SIM / f"{name}.ini", wrapped
+    """Return the INI of a machine and its overrides: its rotary axis is wrapped."""
+    turn = rotary_axis(name)
+    return SIM / f"{name}.ini", {f"AXIS_{turn}": {"WRAPPED_ROTARY": "1"}} if turn else {}
+
+
+def rotary_axis(name):
+    """Return the letter of a machine's rotary axis, "" without one."""
+    return "C" if name.startswith("lathe") else "A" if name.startswith("mill_a") else ""
 
 
 def programs(name, modes, fails):
     """Return the programs of a machine; ``fails``: a line of the section fails between moves."""
     size = 1 / modes.unit
     failing = [FAILING] * fails
+    if name.startswith("mill_a"):
+        around = modes.moves("Xa", SLOT_AROUND, (2, 0))
+        return {"round": [f"G7.1 A{20 * size:.5f}", *(f"G1{line.upper()}" for line in around),
+                          *failing, "G7.1 A0"]}  # fmt: skip
     if name.startswith("mill"):
         depth = f"Z{(-5 if modes.incremental else -3) * size:.5f}"
         deep = f"Z-{3 * size:.5f}" if not modes.incremental else f"Z-{5 * size:.5f}"
@@ -126,6 +136,8 @@ class Interrupted:
     def __init__(self, machine, name):
         self.machine, self.name = machine, name
         self.home = MILL_HOME if name.startswith("mill") else LATHE_HOME
+        if name.startswith("mill_a"):
+            self.home = ROTARY_HOME
         self.references = {}
         for block in ("T3 M6", SPINDLE):
             machine.mdi(block)
@@ -222,7 +234,7 @@ class Interrupted:
         assert run.error is None, run.error
         axes, moving = run.samples.axes, run.samples.moving()
         corner = np.hypot(axes["X"] - start["X"] - 6, axes[second] - start[second])
-        if self.name.startswith("lathe") and not modes.incremental:
+        if rotary_axis(self.name) and not modes.incremental:
             self.is_wrapped()
         return corner.min(), moving.sum() / 1000
 
@@ -235,7 +247,7 @@ class Interrupted:
         ]
 
     def is_wrapped(self):
-        """Check that C is wrapped, as in the INI: only then this block is refused."""
-        self.machine.mdi("G0 C400")
+        """Check that C or A is wrapped, as in the INI: only then this block is refused."""
+        self.machine.mdi(f"G0 {rotary_axis(self.name)}400")
         said = [error.text for error in self.machine.errors()]
         assert any("wrapped rotary" in text for text in said), said

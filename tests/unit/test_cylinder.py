@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour, PlaneNames, Start
 from g12.cylinder import (
     CYLINDER_WORDS,
+    CYLINDERS,
     Cylinder,
     CylinderSettings,
     plan,
@@ -108,7 +109,7 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
     arc = planned_moves.arc(centre, complex(start), turn * sweep)
-    split = split_on_cylinder(arc, MACHINE._replace(radius=surface), deviation)
+    split = split_on_cylinder(arc, MACHINE._replace(per_radian=surface), deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
     assert places[[0, -1]] == pytest.approx([start, end])
     places -= centre
@@ -136,7 +137,7 @@ def test_the_settings_of_a_section_are_in_program_units():
     lengths = [made.tolerance, *planning[1:4], planning.height_acceleration, rules.radius_tolerance]
     in_mm = [0.005, 0.005, 0.001, 1100, 900, 0.0127]
     assert lengths == pytest.approx([length / 25.4 for length in in_mm])
-    assert (planning.radius, planning.turn_acceleration) == (RADIUS, 3600.0)
+    assert (planning.per_radian, planning.turn_acceleration) == (RADIUS, 3600.0)
 
 
 @pytest.mark.parametrize(
@@ -211,4 +212,95 @@ def test_words_that_are_refused(text, why):
     with pytest.raises(Refusal) as refused:
         check_letters(line, CYLINDER_WORDS, START.location)
         check_codes(line.codes, CYLINDER_WORDS, False, START.location)
+    assert refused.value.message == f"G7.1 line 7: {why}"
+
+
+# ---------------------------------------------------------------- on a mill with A or B
+
+
+ON_MILL = {
+    letter: Axis(-500.0, 500.0, 50.0, acceleration)
+    for letter, acceleration in zip("XYZAB", (900.0, 1000.0, 1100.0, 3600.0, 3600.0))
+}
+AT_AXIS = {"A": {"X": 30.0, "Y": 0.0, "Z": 22.0, "A": 0.0}, "B": {"X": 0.0, "Y": 30.0, "Z": 22.0}}
+
+
+def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B008 - it is frozen
+    position = START.position | AT_AXIS[letter] | found.pop("position", {})
+    start = START._replace(words={letter: RADIUS}, position=position)._replace(**found)
+    return CYLINDERS[letter](start, SectionMachine(letters, settings, ON_MILL))
+
+
+@pytest.mark.parametrize(
+    ("letter", "sense", "per_radian"),
+    [("A", "standard", -20), ("A", "reversed", 20), ("B", "standard", 20), ("B", "reversed", -20)],
+)
+def test_to_the_right_and_upwards_as_the_tool_sees_the_part(letter, sense, per_radian):
+    """Positive A leads to Y-, positive B to X+: LinuxCNC turns by the right-hand rule."""
+    made = on_mill(letter, Settings(rotary_sense=sense))
+    assert made.planning.per_radian == per_radian
+    assert made.rules.turn_scale == pytest.approx(math.radians(per_radian))
+
+
+@pytest.mark.parametrize(("letter", "slide", "first"), [("A", 900.0, False), ("B", 1000.0, True)])
+def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, slide, first):
+    planning = on_mill(letter).planning
+    assert (planning.slide_acceleration, planning.turn_is_first) == (slide, first)
+    assert planning.height_acceleration == 1100.0
+
+
+@pytest.mark.parametrize(
+    ("letter", "found", "rule"),
+    [
+        ("A", {"position": {"Y": 2.5}},
+         "needs Y0: the tool must stand on the axis of rotation, not at Y2.5"),
+        ("B", {"position": {"X": -0.01}},
+         "needs X0: the tool must stand on the axis of rotation, not at X-0.01"),
+        ("A", {"letters": "XYZB"}, "needs a machine with an X, A and a Z axis"),
+        ("B", {"letters": "XYZ"}, "needs a machine with an Y, B and a Z axis"),
+        ("A", {"shifts": {"X": 9.0, "Y": 0.0, "Z": -3.0}},
+         "Z0 must be the axis of rotation: G52 or G92 shifts Z by -3; cancel it with G92.1"
+         " (a Z offset of G54 may stay)"),
+        ("B", {"shifts": {"X": 2.0, "Y": 9.0, "Z": 0.0}},
+         "X0 must be the axis of rotation: G52 or G92 shifts X by 2; cancel it with G92.1"
+         " (an X offset of G54 may stay)"),
+        ("A", {"words": {}}, "needs A, the cylinder's radius; A0 ends a section"),
+        ("B", {"words": {"B": 0.0}},
+         "B0, the cylinder's radius, must be above 0 and at most 1000000"),
+        ("A", {"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+    ],
+)  # fmt: skip
+def test_where_none_begins_on_a_mill(letter, found, rule):
+    with pytest.raises(Refusal) as refused:
+        on_mill(letter, **found)
+    assert refused.value.message == f"G7.1 line 7: {rule}"
+
+
+def test_where_one_begins_on_a_mill():
+    on_mill("A", position={"Y": 1e-9}, shifts={"X": 9.0, "Y": 0.0, "Z": 0.0})
+    on_mill("B", letters="YBZ")
+
+
+WORDS_OF_A, WORDS_OF_B = (
+    f"the section's words are {words}" for words in ("X, A, Z, I and J", "Y, B, Z, I and J")
+)
+
+
+@pytest.mark.parametrize(
+    ("letter", "text", "why"),
+    [
+        *(("A", f"{other}1", f"{other} is refused: {WORDS_OF_A}") for other in "BCUVWHK@^"),
+        *(("B", f"{other}1", f"{other} is refused: {WORDS_OF_B}") for other in "ACUVWHK@^"),
+        ("A", "Y0", "Y is refused: Y stays on the axis of rotation inside the section"),
+        ("B", "X0", "X is refused: X stays on the axis of rotation inside the section"),
+        ("A", "D3", "D is refused: the radius is that of the loaded tool"),
+        ("A", "G90.1", "G90.1 is refused: I and J are always incremental inside the section"),
+    ],
+)
+def test_words_that_are_refused_on_a_mill(letter, text, why):
+    known = CYLINDERS[letter].words
+    line = split_line(text, known)
+    with pytest.raises(Refusal) as refused:
+        check_letters(line, known, START.location)
+        check_codes(line.codes, known, False, START.location)
     assert refused.value.message == f"G7.1 line 7: {why}"

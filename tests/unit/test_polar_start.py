@@ -44,8 +44,8 @@ def at(x):
         ),
         ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
         ({"missing_code": "M133"}, "needs the spindle as C: M133 first"),
-        ({"x_shift": -2.5}, SHIFTED.format(-2.5)),
-        ({"x_shift": -2.5, "diameter": True}, SHIFTED.format(-5)),
+        ({"shifts": {"X": -2.5}}, SHIFTED.format(-2.5)),
+        ({"shifts": {"X": -2.5}, "diameter": True}, SHIFTED.format(-5)),
         ({"position": at(0.0)}, "needs the tool at X above zero, not at 0 (radius)"),
     ],
 )

@@ -37,7 +37,8 @@ class Interpreter:
     def __init__(self, tolerance=0.0, merging=0.0):
         self.active_g_codes = [-1] * 11 + [640, -1, -1, 911, 80]
         self.active_settings = [0, 0, 0, tolerance, merging]
-        self.feed_mode, self.c_axis_wrapped = 0, True
+        self.feed_mode = 0
+        self.a_axis_wrapped = self.b_axis_wrapped = self.c_axis_wrapped = True
         self.call_level, self.motion_mode, self.distance_mode = 1, 0, 0
         self.ijk_distance_mode, self.plane, self.active_spindle, self.length_units = 1, 3, -1, 2
         self.active_m_codes, self.task, self.feed_rate = [-1] * 9, 0, 100.0

@@ -25,6 +25,8 @@ from g12.host.interp import (
     Interp,
     kept,
     millimetres_per_unit,
+    set_wrapped,
+    wrapped_axes,
 )
 from g12.section.block_rules import NO_CODE, GGroup
 from g12.section.effects import SectionModes, decimal
@@ -52,7 +54,7 @@ class Saved(NamedTuple):
     blending: tuple[float, float]  # P and Q of the last G64
     adaptive: bool  # M52
     spindle: int  # in use, which $ names
-    wrapped: bool  # WRAPPED_ROTARY of C
+    wrapped: tuple[bool, ...]  # WRAPPED_ROTARY of A, B and C
     accelerations: tuple[float, ...]  # of X and Y by HAL pins, on a machine with the face
     unit: float
 
@@ -95,7 +97,7 @@ def modes_in_force(interp: Interp) -> Saved:
         blending=(settings[TOLERANCE], settings[MERGING]),
         adaptive=interp.active_m_codes[ADAPTIVE_ACTIVE] == ADAPTIVE_FEED,
         spindle=interp.active_spindle,
-        wrapped=interp.c_axis_wrapped,
+        wrapped=wrapped_axes(interp),
         accelerations=kinematics_switch.accelerations(interp),
         unit=millimetres_per_unit(interp),
     )
@@ -106,8 +108,8 @@ def restore(interp: Interp, saved: Saved, *, feed_set: bool = True) -> None:
 
     ``feed_set``: canonical calls may have set the feed, which the interpreter does not know.
     """
-    interp.c_axis_wrapped, interp.active_spindle = saved.wrapped, saved.spindle
-    interp.motion_mode = saved.motion
+    set_wrapped(interp, saved.wrapped)
+    interp.active_spindle, interp.motion_mode = saved.spindle, saved.motion
     _command(interp, saved)
     kinematics_switch.set_accelerations(saved.accelerations)
     feed = saved.feed * _scale(interp, saved)
@@ -234,7 +236,7 @@ def settle_interrupted(interp: Interp) -> str:
         return ""
     left = stack[0]
     stack.clear()
-    interp.c_axis_wrapped = left.wrapped
+    set_wrapped(interp, left.wrapped)
     kinematics_switch.set_accelerations(left.accelerations)
     return " ".join(missing_modes(interp, left))
 

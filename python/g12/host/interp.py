@@ -27,7 +27,7 @@ WORD_FIELDS = {  # of a block: flag and value
 } | {"D": ("d_flag", "d_number_float")}
 
 
-def words_in(block: ParsedBlock, letters: str) -> dict[str, float]:
+def words_in(block: ParsedBlock, letters: Iterable[str]) -> dict[str, float]:
     """Return those of the words that a block has."""
     fields = ((letter, *WORD_FIELDS[letter]) for letter in letters)
     return {letter: getattr(block, value) for letter, flag, value in fields if getattr(block, flag)}
@@ -54,6 +54,19 @@ def position_of(interp: Interp, letters: Iterable[str]) -> dict[str, float]:
 def set_position(interp: Interp, letters: Iterable[str], values: Iterable[float]) -> None:
     for letter, value in zip(letters, values):
         setattr(interp, POSITION_FIELDS[letter], value)
+
+
+WRAPPED = ("a_axis_wrapped", "b_axis_wrapped", "c_axis_wrapped")  # by WRAPPED_ROTARY in the INI
+
+
+def wrapped_axes(interp: Interp) -> tuple[bool, ...]:
+    """Return whether A, B and C are wrapped."""
+    return tuple(bool(getattr(interp, name)) for name in WRAPPED)
+
+
+def set_wrapped(interp: Interp, wrapped: Iterable[bool]) -> None:
+    for name, value in zip(WRAPPED, wrapped):
+        setattr(interp, name, value)
 
 
 def millimetres_per_unit(interp: Interp) -> float:

@@ -106,8 +106,8 @@ class RunningMachine:
 
     @functools.cached_property
     def axes(self) -> dict[str, Axis]:
-        """The limits of X, Z and C; raises Refusal for a value that no axis can have."""
-        return axes_of(self._ini.find, "XZC")
+        """The limits of the axes; raises Refusal for a value that no axis can have."""
+        return axes_of(self._ini.find, self.coordinates)
 
     @functools.cached_property
     def face(self) -> FaceAxes | None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Execution of a planned section: its moves and actions, in order.
 
-The interpreter executes segments in G90 G94 with C unwrapped, blended in G64.
+The interpreter executes segments in G90 G94 with rotary axes unwrapped, blended in G64.
 `SectionOutput.release` restores the modes that the program commanded (`g12.host.borrowed`),
 wherever the program can read them, or the machine waits. The move before the section would be
 blended into its first segment: a G4 P0 stops it. (Also under G61: a move ends by the path control
@@ -31,6 +31,7 @@ from g12.host.interp import (
     Interp,
     position_of,
     set_position,
+    set_wrapped,
 )
 from g12.host.program_lines import error_text
 from g12.moves.setup import SectionKind
@@ -42,6 +43,7 @@ from g12.section.line import BlockLocation
 
 EXACT_PATHS = EXACT_PATH, EXACT_STOP = "G61", "G61.1"
 STOP_HERE = "G4P0"
+NOT_WRAPPED = (False, False, False)
 INITIAL_TOLERANCE = 0.0254  # mm, of the G64 that LinuxCNC starts with; its Q is 0
 SWITCH_MM, SWITCH_DEGREES = 1e-3, 1e-3  # how far the tool may be from where a section begins
 SAME_TOLERANCE = 1e-9  # program units
@@ -175,7 +177,7 @@ class SectionOutput:
 
     def _set_own_modes(self) -> None:
         interp = self.interp
-        interp.c_axis_wrapped = False
+        set_wrapped(interp, NOT_WRAPPED)
         if interp.distance_mode:
             interp.execute("G90")
         if borrowed.saved_modes(interp).feed_mode == PER_REVOLUTION:

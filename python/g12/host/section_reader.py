@@ -41,7 +41,7 @@ ALL_SPINDLES, MAIN_SPINDLE = -1, 0  # $
 SECTION_MOTIONS = (block_rules.G0, block_rules.G1, block_rules.G2, block_rules.G3)
 WITHOUT_COMPENSATION = 40
 
-SECTION_WORDS, PLAIN_LETTERS = "XCZIJRKFSPQLE", "XCZIJR"
+SECTION_WORDS, PLAIN_LETTERS = "XYZABCIJRKFSPQLE", "XYZABCIJR"
 PLAIN_FIELDS = chain.from_iterable(WORD_FIELDS[letter] for letter in PLAIN_LETTERS)
 plain_words = attrgetter(*WORD_FIELDS["F"], "motion_to_be", *PLAIN_FIELDS)
 PlaneWords = tuple[float | None, float | None, float | None]  # first, second, height
@@ -75,7 +75,7 @@ class SectionReader:
             level,
             code=kind.start.location.code,
             names=PlaneNames._make((*known.plane, known.centre_name)),
-            diameter=rules.diameter if known.plane[0] == "X" else None,
+            diameter=rules.diameter if known.turn_is_length else None,
             radius_tolerance=rules.radius_tolerance,
             start=Start(there[slide], radians(there[turn]), there[height]),
             beside=rules.beside,

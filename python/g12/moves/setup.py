@@ -79,18 +79,19 @@ class SectionKind(ABC):
 
 
 def check_entry(
-    start: SectionStart, letters: Iterable[str], needed: str, rules: Iterable[tuple[bool, str]]
+    start: SectionStart,
+    letters: Iterable[str],
+    needed: str,
+    rules: Iterable[tuple[bool, str]],
+    centred: Iterable[str] = "X",
+    centre: str = "the spindle's axis",
 ) -> None:
     """Refuse to begin a section in modes that none allows, or against its own ``rules``.
 
-    ``letters`` are the machine's axes, ``needed`` those of the section.
+    ``letters`` are the machine's axes, ``needed`` those of the section. ``centred`` are those whose
+    0 is ``centre``.
     """
     beside = "needs a move after G40: the tool is still beside the programmed point"
-    shift = number(start.x_shift * (2 if start.diameter else 1))
-    shifted = (
-        f"X0 must be the spindle's axis: G52 or G92 shifts X by {shift};"
-        " cancel it with G92.1 (an X offset of G54 may stay)"
-    )
     *others, last = tuple(needed)
     for holds, rule in (
         (
@@ -104,11 +105,21 @@ def check_entry(
         (not start.surface_speed, "needs G97: with G96 the speed would change with X"),
         (not start.offset_pending, beside),
         (not start.rotated, "needs an unrotated work offset (G10 L2 R0)"),
-        (abs(start.x_shift) <= ROUNDING_MM * start.millimetre, shifted),
+        *(_unshifted(start, letter, centre) for letter in centred),
         *rules,
     ):
         if not holds:
             raise start.location.refuse(rule)
+
+
+def _unshifted(start: SectionStart, letter: str, centre: str) -> tuple[bool, str]:
+    """Return the rule that an axis has its 0 at the ``centre``."""
+    shift = start.shifts[letter]
+    written = shift * (2 if letter == "X" and start.diameter else 1)
+    return abs(shift) <= ROUNDING_MM * start.millimetre, (
+        f"{letter}0 must be {centre}: G52 or G92 shifts {letter} by {number(written)};"
+        f" cancel it with G92.1 (a{'n' * (letter == 'X')} {letter} offset of G54 may stay)"
+    )
 
 
 class AxisScale(NamedTuple):

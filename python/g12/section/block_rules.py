@@ -79,7 +79,7 @@ GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in code
     G0: GGroup.MOTION
 }
 FEED_CODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
-MOVING_WORDS = ("X", "C", "Z", "I", "J", "K")
+MOVING_WORDS = "XYZABCIJK"
 NO_TOOL_CHANGE = "the tool cannot change inside the section"
 OWN_RADIUS = "the radius is that of the loaded tool"
 REASON_OF_GROUP: dict[int, str] = {

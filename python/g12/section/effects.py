@@ -134,9 +134,9 @@ class SectionStart(NamedTuple):
     the section's words in it, ``alone``: it holds nothing else, ``level`` is its call level.
     ``position`` is by letter: X a radius value, C in degrees. ``machine_unit`` is the length of a
     machine unit, ``millimetre`` that of 1 mm; ``offsets`` convert from program to machine
-    coordinates, ``x_shift`` is what G52 or G92 adds to X, a radius value. ``speeds`` are the
-    commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds per
-    revolution refer to. ``tool_radius`` is None if no tool is loaded.
+    coordinates, ``shifts`` are what G52 or G92 adds to X, Y and Z, of X a radius value. ``speeds``
+    are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds
+    per revolution refer to. ``tool_radius`` is None if no tool is loaded.
     """
 
     location: BlockLocation
@@ -147,7 +147,7 @@ class SectionStart(NamedTuple):
     machine_unit: float
     millimetre: float
     offsets: dict[str, float]
-    x_shift: float
+    shifts: dict[str, float]
     modes: SectionModes
     spindle: int
     speeds: tuple[float, ...]

@@ -32,13 +32,13 @@ def g12_on_abort(interp: Interp) -> None:
 
 
 def restore_all(interp: Interp, reason: int) -> None:
-    """Restore what is borrowed, open the clamp of C, run the user's own command.
+    """Restore what is borrowed, open the clamps, run the user's own command.
 
     None of them depends on the success of another one.
     """
     _attempt(interp, borrowed.after_abort, time.monotonic())
-    if MACHINE.settings.c_clamp:
-        _attempt(interp, units.run_code, f"M{MACHINE.settings.c_clamp[1]}")
+    for code in MACHINE.settings.opening_codes:
+        _attempt(interp, units.run_code, f"M{code}")
     if MACHINE.settings.on_abort_command:
         _attempt(interp, units.run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
 

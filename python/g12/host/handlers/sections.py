@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import emccanon
@@ -12,7 +13,7 @@ from interpreter import MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.cut_report import CutElement, SectionCut, more_text, report_text
-from g12.cylinder import RADIUS, Cylinder
+from g12.cylinder import CYLINDERS
 from g12.errors import Refusal
 from g12.geometry.curve import Arc
 from g12.host import borrowed, kinematics_switch, messages, units
@@ -39,7 +40,7 @@ from g12.host.section_run import Section
 from g12.host.spindle_c import missing_code
 from g12.lengths import DEGREES_PER_TURN
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
-from g12.moves.setup import SectionKind, SectionMachine
+from g12.moves.setup import ROTARY_AXES, SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
 from g12.request.words import YZ
 from g12.section.block_rules import alone
@@ -53,7 +54,9 @@ from g12.section.effects import (
 from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
 
-OTHER_WORDS = "ABDHKTUVWY"
+LINEAR_AXES = "XYZ"
+AXES = LINEAR_AXES + ROTARY_AXES
+OTHER_WORDS = "DHKTUVW"
 G96 = 960
 
 
@@ -69,11 +72,11 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
         words=block_of(block).words,
         alone=is_alone(block, words),
         level=interp.call_level,
-        position=position_of(interp, "XCZ"),
+        position=position_of(interp, AXES),
         machine_unit=units.program_units_per_machine_unit(interp),
         millimetre=1 / millimetres_per_unit(interp),
         offsets=_offsets(interp),
-        x_shift=interp.axis_offset_x,
+        shifts={letter: getattr(interp, f"axis_offset_{letter.lower()}") for letter in LINEAR_AXES},
         modes=SectionModes(
             incremental=interp.distance_mode == MODE_INCREMENTAL,
             per_revolution=interp.feed_mode == PER_REVOLUTION,
@@ -100,12 +103,14 @@ def is_alone(block: ParsedBlock, words: str = "") -> bool:
 
 
 def _offsets(interp: Interp) -> dict[str, float]:
-    """Return the sum of work offset, G92 and tool offset for X, Z and C."""
-    tool = interp.tool_offset
+    """Return the sum of work offset, G92 and tool offset for each axis."""
+    names = {letter: f"{{}}_offset_{letter.lower()}" for letter in LINEAR_AXES}
+    names |= {letter: f"{2 * letter}_{{}}_offset" for letter in ROTARY_AXES}
     return {
-        "X": interp.origin_offset_x + interp.axis_offset_x + tool.x,
-        "Z": interp.origin_offset_z + interp.axis_offset_z + tool.z,
-        "C": interp.CC_origin_offset + interp.CC_axis_offset + tool.c,
+        letter: getattr(interp, name.format("origin"))
+        + getattr(interp, name.format("axis"))
+        + getattr(interp.tool_offset, letter.lower())
+        for letter, name in names.items()
     }
 
 
@@ -205,8 +210,8 @@ def run_section(
         borrowed.begin(interp)
         codes = codes_of(start.location.code)
         yield from _running(interp, section, codes, frame, program).run()
-        if MACHINE.settings.c_clamp_shapes:
-            units.run_code(interp, f"M{MACHINE.settings.c_clamp[1]}")
+        for code in MACHINE.settings.drag(kind.words.axes.turn)[1:]:
+            units.run_code(interp, f"M{code}")
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
@@ -234,7 +239,7 @@ def report_turns(interp: Interp, turned: float) -> None:
 
 
 def check_clamp(refuse: Callable[[str], Refusal]) -> None:
-    """Refuse codes of C's clamp that LinuxCNC would not know when it comes to them."""
+    """Refuse codes of a clamp that LinuxCNC would not know when it comes to them."""
     unknown = MACHINE.settings.unknown_clamp_code(MACHINE.m_codes)
     if unknown:
         raise refuse(unknown)
@@ -253,7 +258,7 @@ def _running(
         frame,
         SectionReader(interp, kind, program),
         SectionOutput(interp, kind, canon=emccanon),
-        first="".join(f"M{code}" for code in MACHINE.settings.c_clamp_shapes),
+        first="".join(f"M{code}" for code in MACHINE.settings.drag(kind.words.axes.turn)[:1]),
         report=lambda contour: begin_report(interp, kind, contour),
     )
 
@@ -324,15 +329,21 @@ def _polar_codes(code: str) -> SectionCodes:
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
     block, code = self.blocks[self.remap_level], messages.code_of_block(self)
-    if not (block.c_flag and block.c_number == 0.0):
+    given = words_in(block, CYLINDERS)
+    letter = next(iter(given), _rotary_axis())
+    if given.get(letter) != 0.0:
         refuse_typed(self)
         messages.settle(self)
-        yield from run_section(
-            self, Cylinder, _cylinder_codes, lambda start: Cylinder(start, section_machine())
-        )
-    elif words_in(block, MOVE_WORDS.replace(RADIUS, "")):
-        raise Refusal(f"{RADIUS}0 must be alone in its block", code)
+        kind, codes = CYLINDERS[letter], partial(_cylinder_codes, letter)
+        yield from run_section(self, kind, codes, lambda start: kind(start, section_machine()))
+    elif words_in(block, MOVE_WORDS.replace(letter, "")):
+        raise Refusal(f"{letter}0 must be alone in its block", code)
 
 
-def _cylinder_codes(code: str) -> SectionCodes:
-    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, RADIUS)
+def _rotary_axis() -> str:
+    """Return the letter of the axis that a cylinder of this machine turns with."""
+    return next((letter for letter in CYLINDERS if letter in MACHINE.coordinates), "C")
+
+
+def _cylinder_codes(letter: str, code: str) -> SectionCodes:
+    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, letter)

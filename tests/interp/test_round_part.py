@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""G7.1 with A and B on a mill: what LinuxCNC reads of the flat drawing is what lies round the part.
+
+The words, refusals and settings that a lathe's cylinder shares are in test_cylinder.py.
+"""
+
+import math
+import random
+from functools import partial
+from itertools import groupby
+
+import pytest
+
+from g12.tools.preview.tracer import Tracer
+from support import polar_programs
+from support.flat_contours import (
+    FIRST,
+    FlatContour,
+    apart,
+    flat_path,
+    flat_program,
+    unrolled_path,
+    wrapped_program,
+)
+from support.sim_machines import SIM, kept_tracer
+
+TOOL = 3.0  # mm, the radius of T3
+TOLERANCE = 0.005  # POLAR_TOLERANCE, mm
+RADII = (3.0, 25.0, 80.0)
+CONTOURS = 60
+WITH_B = {
+    "TRAJ": {"COORDINATES": "X Y Z B"},
+    "KINS": {"KINEMATICS": "trivkins coordinates=XYZB"},
+    "AXIS_B": {"MIN_LIMIT": "-99999", "MAX_LIMIT": "99999", "MAX_VELOCITY": "360",
+               "MAX_ACCELERATION": "3600"},
+}  # fmt: skip
+
+mill = kept_tracer("mill_mm")
+mill_a = kept_tracer("mill_a_mm")
+mill_b = kept_tracer("mill_a_mm", overrides=WITH_B)
+reversed_a = kept_tracer("mill_a_mm", overrides={"G12": {"ROTARY_SENSE": "reversed"}})
+
+
+def check_contours(mill, machine, turn, sense, seed, count):
+    """Compare random contours round a part with what LinuxCNC makes of them in the plane.
+
+    One that crosses itself may gouge the part: LinuxCNC cuts it, and the section refuses it.
+    """
+    judged, number = {40: 0, 41: 0, 42: 0}, 0
+    while min(judged.values()) < count // 4:
+        contour = FlatContour(random.Random(f"{seed} {number}"), TOOL)
+        radius = RADII[number % len(RADII)]
+        number += 1
+        trace = machine.trace_text(wrapped_program(contour, turn, radius, sense))
+        if trace.error and contour.side != 40 and "cannot follow both" in trace.error.text:
+            continue
+        flat = flat_path(mill.trace_text(flat_program(contour)))
+        round_part = unrolled_path(trace, turn, radius, sense)
+        assert apart(flat, round_part) <= TOLERANCE, f"{seed} {number - 1}"
+        across = {"A": 1, "B": 0}[turn]
+        assert {move.end[across] for move in trace.moves} == {0.0}
+        judged[contour.side] += 1
+    return sum(judged.values())
+
+
+def test_a_contour_round_a_is_that_of_the_flat_program(mill, mill_a):
+    check_contours(mill, mill_a, "A", 1.0, "A", CONTOURS)
+
+
+def test_a_contour_round_b_is_that_of_the_flat_program(mill, mill_b):
+    check_contours(mill, mill_b, "B", 1.0, "B", CONTOURS)
+
+
+def test_a_table_that_turns_the_other_way_mirrors_nothing(mill, reversed_a):
+    check_contours(mill, reversed_a, "A", -1.0, "reversed", CONTOURS // 3)
+
+
+# ---------------------------------------------------------------- words, messages, settings
+
+R = 20.0
+section = partial(
+    polar_programs.section, first=FIRST, start="G0 X0 Y0 Z22 A0", tool="T3 M6", feed="F250",
+    on=f"G07.1 A{R:g}", off="G07.1 A0",
+)  # fmt: skip
+
+
+def ends(traced):
+    """Return X, Z and A at the end of each block that moved at a feed."""
+    blocks = groupby(polar_programs.feed_moves(traced), key=lambda move: move.line)
+    last = [list(moves)[-1].end for _, moves in blocks]
+    return [tuple(round(end[axis], 6) + 0.0 for axis in (0, 2, 3)) for end in last]
+
+
+def traced(text, **overrides):
+    with Tracer(SIM / "mill_a_mm.ini", overrides=overrides) as tracer:
+        return tracer.trace_text(text)
+
+
+def test_x_is_a_length_and_a_an_angle_that_goes_on_after_the_section(mill_a):
+    after = ["G90 G1 A5", "G91 A1 X2"]
+    text = section("G1 Z18", "X-10", "A90", "X-20 A-720.5", "G91 A1", "X1 A-1", after=after)
+    assert ends(mill_a.trace_text(text)) == [
+        (0, 18, 0), (-10, 18, 0), (-10, 18, 90), (-20, 18, -720.5), (-20, 18, -719.5),
+        (-19, 18, -720.5), (-19, 18, 5), (-17, 18, 6),
+    ]  # fmt: skip
+
+
+def test_f_is_the_speed_along_the_surface(mill_a):
+    """LinuxCNC takes F for X, and for degrees where X does not move."""
+    moves = polar_programs.feed_moves(mill_a.trace_text(section("G1 A-90", "X10 A-180", "Z30")))
+    assert [move.feed for move in moves] == pytest.approx(
+        [250 * 180 / math.pi / R, 250 * 10 / math.hypot(10, math.pi * R / 2), 250]
+    )
+
+
+def test_position_parameters_and_subs_and_loops_are_read(mill_a):
+    body = ["o1 repeat [3]", "G1 X[#5420 + 1] A[#<_a> - 10]", "o1 endrepeat"]
+    assert ends(mill_a.trace_text(section(*body)))[-1] == (3, 22, -30)
+
+
+def test_wrapped_rotary_turns_on_inside_and_takes_the_short_way_after():
+    text = section("G1 A-400", "A-370", after=["G0 A350", "A10"])
+    wrapped = traced(text, AXIS_A={"WRAPPED_ROTARY": "1"})
+    assert wrapped.error is None
+    turned = [move.end[3] for move in wrapped.moves][-4:]
+    assert turned == pytest.approx([-400, -370, -370, -350])
+
+
+def test_the_radius_is_the_diameter_where_the_machine_says_so():
+    moves = [
+        polar_programs.feed_moves(traced(section("G1 X5 A-9", on=f"G7.1 A{word:g}"), **more))
+        for word, more in ((R, {}), (2 * R, {"G12": {"CYLINDER_WORD": "diameter"}}))
+    ]
+    assert [move.feed for move in moves[0]] == pytest.approx([move.feed for move in moves[1]])
+
+
+def test_inches_on_a_mill_in_mm(mill_a):
+    inches = section("G1 X1 A-45 F10", first="G20 G17 G90 G94", start="G0 X0 Y0 Z.9 A0",
+                     on="G7.1 A.8")  # fmt: skip
+    (move,) = polar_programs.feed_moves(mill_a.trace_text(inches))
+    assert move.end[0] == pytest.approx(25.4) and move.end[3] == -45
+    assert move.feed == pytest.approx(254 * 1 / math.hypot(1, math.pi / 4 * 0.8))
+
+
+CYLINDER = "G7.1 modalgroup=1 python=cylinder_mode"
+
+
+def test_a_drag_of_the_rotary_axis_begins_and_ends_the_section(tmp_path):
+    for code in (12, 11):
+        (tmp_path / f"m{code}.ngc").write_text(
+            f"o<m{code}> sub\n(debug, M{code})\no<m{code}> endsub\n"
+        )
+    codes = [f"M{code} modalgroup=10 ngc=m{code}" for code in (12, 11)]
+
+    def found(remaps):
+        paths = {"REMAP": [*remaps, CYLINDER], "SUBROUTINE_PATH": f"../../ngc:{tmp_path}"}
+        text = section("(debug, in)", "G1 X5", after=["(debug, after)"])
+        return traced(text, RS274NGC=paths, G12={"ROTARY_DRAG": "M12 M11"})
+
+    assert polar_programs.texts(found(codes)) == ["M12", "in", "M11", "after"]
+    unknown = found(codes[1:])
+    assert unknown.error.text == (
+        "G7.1 line 5: [G12] ROTARY_DRAG: M12 is no code of this machine: a REMAP line?"
+    )
+
+
+INSIDE = [
+    ("G0 X12", "G0 is refused: a rapid leaves the contour. Is the section's end missing above? "
+     "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"),
+    ("Y3", "Y is refused: Y stays on the axis of rotation inside the section"),
+    ("G18", "G18 is refused: the section's plane is X-A"),
+    ("C3", "C is refused: the section's words are X, A, Z, I and J"),
+    ("G7.1 A30", "the section is already on: G7.1 A0 ends it"),
+    ("G7.1 C30", "C is refused: the section's words are X, A, Z, I and J"),
+    ("G7.1 A0 Z5", "G7.1 A0 must be alone in its block"),
+    ("G1 Z5 X3", "Z needs a block of its own, or [G12] CYLINDER_X = allow"),
+    ("G2 X5 I2 R3", "G2: either R or I and J, not both"),
+    ("G2 X20 R5", "G2 R5 does not close: the ends are 20 apart, R must be at least 10"),
+    ("G41", "G41 needs a G1 with X or A in its own block"),
+    ("G1 X501", "the X axis would go to 501 mm, beyond its limit 500 mm"),
+    ("G1 A1e5", "the A axis would go to 100000 degrees, beyond its limit 99999 degrees"),
+    ("G12 I5", "G12 is refused: only G1, G2 and G3 move inside the section"),
+    ("G43", "G43 is refused: the tool length offset cannot change inside the section"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("block", "why"), INSIDE)
+def test_refused_inside(mill_a, block, why):
+    text, line = polar_programs.refused(
+        mill_a, section("G1 X0", "A1", "A0", block.replace("1e5", "100000"), "G1 X1")
+    )
+    assert (text, line) == (f"G7.1 line 9: {why}", 9)
+
+
+@pytest.mark.parametrize(
+    ("given", "why"),
+    [
+        ({"on": "G7.1"}, "needs A, the cylinder's radius; A0 ends a section"),
+        ({"on": "G7.1 A20 X5"}, "must be alone in its block"),
+        ({"start": "G0 X5 Y0.5 Z22"},
+         "needs Y0: the tool must stand on the axis of rotation, not at Y0.5"),
+        ({"first": f"{FIRST}\nG92 Z5"},
+         "Z0 must be the axis of rotation: G52 or G92 shifts Z by -5; cancel it with G92.1"
+         " (a Z offset of G54 may stay)"),
+    ],
+)  # fmt: skip
+def test_refused_to_begin(mill_a, given, why):
+    text, _ = polar_programs.refused(mill_a, "\n".join(section("G1 X5", **given)).split("\n"))
+    assert text.endswith(why)
+
+
+@pytest.mark.parametrize("words", ["X7", "C3", "D5"])
+def test_words_beside_the_code_that_ends_no_section(mill_a, words):
+    error = mill_a.trace_text([FIRST, f"G7.1 A0 {words}", "M2"]).error
+    assert error.text.startswith(("G7.1 line 2: A0 must be alone", "Bad character 'c'"))
+
+
+def test_the_codes_that_end_none_do_nothing(mill_a):
+    assert mill_a.trace_text([FIRST, "G7.1 A0", "G1 X5 F100", "M2"]).error is None
+
+
+@pytest.mark.parametrize("name", ["mill_a_mm", "mill_a_inch"])
+def test_the_sample_of_the_simulated_mill_runs(name):
+    with Tracer(SIM / f"{name}.ini") as mill:
+        trace = mill.trace(SIM / "samples" / f"{name}.ngc")
+    assert trace.error is None and trace.messages == []
+    assert {move.end[1] for move in trace.moves} == {0.0}
+    assert min(move.end[3] for move in trace.moves) == -360
