@@ -11,7 +11,8 @@ import pytest
 from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, plan_code
 from g12.cycles.plan import EventPlanes
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
-from g12.request.words import Tool, Words
+from g12.request.words import Words
+from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 
 CODE = "X1 Y2 Z-.5 R1.5 I.1 H2"

@@ -16,7 +16,8 @@ from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import EventPlanes, PocketEntry
 from g12.errors import Refusal
 from g12.request.common import CycleExtent
-from g12.request.words import Tool, Words
+from g12.request.words import Words
+from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 
 NONE = EventPlanes()
@@ -178,7 +179,7 @@ def test_a_mode_that_cannot_work_is_refused(name, modes, rule):
     assert reported(plan, name, VALID[name], **modes) == f"{PLANNERS[name][0]}: {rule}"
 
 
-OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
+OTHER_UNITS = MM._replace(machine_mm=25.4, spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
 
 
 @pytest.mark.parametrize(
@@ -197,7 +198,7 @@ OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inc
 )
 def test_a_tools_size_has_its_unit_where_the_machines_is_another(name, words, text):
     """The table's numbers are the machine's: 0.5 may look right to who does not see the G21."""
-    for found, unit in ((OTHER_UNITS, " mm"), (OTHER_UNITS._replace(unit=""), "")):
+    for found, unit in ((OTHER_UNITS, " mm"), (OTHER_UNITS._replace(machine_mm=1.0), "")):
         try:
             message = plan(name, words, found).message
         except Refusal as refusal:

@@ -47,7 +47,8 @@ from g12.request.common import (
     loaded_tool,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.request.words import Words
+from g12.state import XY, Tool
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7

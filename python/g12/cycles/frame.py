@@ -29,7 +29,8 @@ from g12.request.common import (
     check_count,
     steps_between,
 )
-from g12.request.words import XY, Words
+from g12.request.words import Words
+from g12.state import XY
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
 POCKET, WALL_INSIDE, WALL_OUTSIDE = 0, 1, 2  # H

@@ -41,7 +41,8 @@ from g12.request.common import (
     check_start,
     steps_between,
 )
-from g12.request.words import XY, Words
+from g12.request.words import Words
+from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 

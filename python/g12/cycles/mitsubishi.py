@@ -23,7 +23,8 @@ from g12.request.common import (
     commanded_tool,
     other_cutter,
 )
-from g12.request.words import XY, XZ, YZ, Words
+from g12.request.words import Words
+from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
@@ -46,12 +47,12 @@ def plan_circle(words: Words) -> CyclePlan:
         "centre": getattr(context, FIRST_AXIS[context.plane]),
         "radius": radius,
     }
-    extent = CycleExtent(context.plane, context.position, radius)
+    extent = CycleExtent(context.plane, context.xyz, radius)
 
     def cut() -> PocketCut:
         return PocketCut(
             plane=context.plane,
-            centre=context.position,
+            centre=context.xyz,
             wall=abs(commanded),
             first=abs(commanded),
             step=0.0,

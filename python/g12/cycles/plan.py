@@ -24,7 +24,8 @@ from g12.request.common import (
     other_cutter,
     sound_tool,
 )
-from g12.request.words import Tool, Words
+from g12.request.words import Words
+from g12.state import Tool
 
 
 class EventPlanes(NamedTuple):

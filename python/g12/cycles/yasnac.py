@@ -41,7 +41,8 @@ from g12.request.common import (
     sound_tool,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.request.words import Words
+from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
 
@@ -96,13 +97,13 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
         "circles": circles,
     }
-    extent = CycleExtent(XY, context.position, abs(radius))
+    extent = CycleExtent(XY, context.xyz, abs(radius))
 
     def cut() -> PocketCut:
         first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
         return PocketCut(
             plane=XY,
-            centre=context.position,
+            centre=context.xyz,
             wall=abs(finished),
             first=first + tool.radius,
             step=spiral[1] if spiral else 0.0,

@@ -7,13 +7,13 @@ Lengths are in program units.
 """
 
 import math
-from collections.abc import Collection, Mapping
-from math import cos, hypot, radians, sin
+from collections.abc import Collection, Mapping, Sequence
+from math import hypot
 from typing import NamedTuple
 
 from g12.errors import number
-from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
-from g12.request.words import XY, XZ, YZ, Tool, Words
+from g12.request.words import Words
+from g12.state import LINEAR_AXES, XY, XZ, YZ, SpacePoint, State, Tool, beyond_travel
 
 CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
 CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
@@ -142,8 +142,6 @@ def steps_between(first: float, last: float, step: float, tolerance: float) -> i
     return math.ceil(max(0.0, min((last - first - tolerance) / step, COUNTLESS)))
 
 
-SpacePoint = tuple[float, float, float]  # X, Y, Z
-TRAVEL_AXES = "XYZ"
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
 
@@ -166,59 +164,28 @@ class CycleExtent(NamedTuple):
         return [(x, y, height) for height in self.heights or (z,)]
 
 
-class MachineFrame(NamedTuple):
-    """The transformation from program to machine coordinates.
-
-    Add ``shift`` (G92), rotate about Z by ``rotation`` degrees, add ``offset`` (work and tool
-    offset). All are in program units, which are ``unit`` machine units of ``millimetres`` each.
-    """
-
-    shift: SpacePoint
-    rotation: float
-    offset: SpacePoint
-    unit: float
-    millimetres: float
-
-    def position(self, point: SpacePoint) -> SpacePoint:
-        turned = self._turned(*(value + plus for value, plus in zip(point, self.shift)))
-        x, y, z = (self.unit * (value + plus) for value, plus in zip(turned, self.offset))
-        return x, y, z
-
-    def half_widths(self, extent: CycleExtent) -> list[float]:
-        """Return the path's extent from its centre along each axis, in machine units."""
-        first, second = (self._turned(*axis) for axis in DIRECTIONS[extent.plane])
-        along, across = extent.corners
-        return [
-            self.unit * (extent.radius * hypot(one, two) + abs(one * along) + abs(two * across))
-            for one, two in zip(first, second)
-        ]
-
-    def _turned(self, x: float, y: float, z: float) -> SpacePoint:
-        turn = radians(self.rotation)
-        return x * cos(turn) - y * sin(turn), x * sin(turn) + y * cos(turn), z
-
-
-def check_travel(
-    words: Words,
-    extent: CycleExtent,
-    frame: MachineFrame,
-    limits: Mapping[str, tuple[float, float]],
-) -> None:
+def check_travel(words: Words, extent: CycleExtent, limits: Mapping[str, Sequence[float]]) -> None:
     """Refuse a cycle that leaves the limits of an axis, its lowest and highest machine position."""
-    centres = [frame.position(point) for point in extent.points()]
-    rounding = ROUNDING_MM / frame.millimetres
-    for letter, centre_positions, width in zip(
-        TRAVEL_AXES, zip(*centres), frame.half_widths(extent)
-    ):
-        low, high = limits[letter]
-        for position, limit, side in (
-            (min(centre_positions) - width, low, -1),
-            (max(centre_positions) + width, high, 1),
-        ):
-            if side * (position - limit) > rounding:
-                raise words.refuse(_beyond(letter, position, limit, frame))
+    state = words.context
+    centres = zip(*map(state.point_on_machine, extent.points()))
+    beyond = beyond_travel(
+        state,
+        limits,
+        [
+            (axis, min(centre) - half, max(centre) + half)
+            for axis, centre, half in zip(LINEAR_AXES, centres, half_widths(state, extent))
+        ],
+    )
+    if beyond:
+        raise words.refuse(beyond.rule)
 
 
-def _beyond(letter: str, position: float, limit: float, frame: MachineFrame) -> str:
-    name = "in" if is_inch(frame.millimetres) else "mm"
-    return beyond_limit(letter, position, limit, name, converted=converts(frame.unit))
+def half_widths(state: State, extent: CycleExtent) -> list[float]:
+    """Return the path's extent from its centre along each axis, in machine units."""
+    first, second = (state.turned(*axis) for axis in DIRECTIONS[extent.plane])
+    along, across = extent.corners
+    return [
+        (extent.radius * hypot(one, two) + abs(one * along) + abs(two * across))
+        / state.machine_unit
+        for one, two in zip(first, second)
+    ]

@@ -12,14 +12,8 @@ import re
 from math import inf
 from typing import NamedTuple
 
-from interpreter import MODE_INCREMENTAL
-
 from g12.cycles.plan import EventPlanes
 from g12.host.interp import (
-    INCH_UNITS,
-    INVERSE_TIME,
-    PER_REVOLUTION,
-    PLANE_CODES,
     Interp,
     ParsedBlock,
     kept,
@@ -28,17 +22,12 @@ from g12.host.interp import (
 )
 from g12.host.machine import MACHINE
 from g12.host.messages import code_of_block, in_mdi, main_program
-from g12.host.units import (
-    millimetres_per_machine_unit,
-    program_units_per_machine_unit,
-    spindle_speed,
-    tool_in_spindle,
-    tool_of_entry,
-)
-from g12.lengths import ROUNDING_MM, converts
-from g12.request.common import CycleExtent, MachineFrame, check_travel
-from g12.request.words import Context, Tool, Words
+from g12.host.state import read_state, tool_of_entry
+from g12.lengths import ROUNDING_MM
+from g12.request.common import CycleExtent, check_travel
+from g12.request.words import Words
 from g12.section.block_rules import NO_CODE, GGroup
+from g12.state import State, Tool
 
 READING_WORDS = (  # codes that read words of a cycle's block
     (GGroup.TOOL_LENGTH, 430, "H"),
@@ -157,33 +146,12 @@ def remember_planes(interp: Interp, planes: EventPlanes) -> None:
     commanded_of(interp).remember_planes(in_mm, place_of_block(interp))
 
 
-def snapshot(interp: Interp) -> Context:
-    return Context(
-        inch=interp.length_units == INCH_UNITS,
-        x=interp.current_x,
-        y=interp.current_y,
-        z=interp.current_z,
-        incremental=interp.distance_mode == MODE_INCREMENTAL,
-        plane=PLANE_CODES.get(interp.plane, "G17.1, G18.1 or G19.1"),
-        inverse_time=interp.feed_mode == INVERSE_TIME,
-        per_revolution=interp.feed_mode == PER_REVOLUTION,
-        speed=spindle_speed(interp),
-        feed=interp.feed_rate,
-        compensated=interp.cutter_comp_side != 0,
-        offset_pending=bool(interp.arc_not_allowed),
-        spindle_tool=tool_in_spindle(interp),
+def snapshot(interp: Interp) -> State:
+    return read_state(interp)._replace(
         last_cutter=last_cutter(interp),
         d_is_earlier=functools.partial(d_is_earlier, interp),
         tool_in_table=functools.partial(tool_in_table, interp),
-        unit=other_unit(interp),
     )
-
-
-def other_unit(interp: Interp) -> str:
-    """Return the program's unit of length where the machine's is another, else ""."""
-    if not converts(program_units_per_machine_unit(interp)):
-        return ""
-    return "in" if interp.length_units == INCH_UNITS else "mm"
 
 
 def is_strict(interp: Interp) -> bool:
@@ -198,22 +166,7 @@ def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> Non
     Not in a preview, which also shows programs before the work offset is set.
     """
     if interp.task:
-        check_travel(words, extent, machine_frame(interp), MACHINE.travel)
-
-
-def machine_frame(interp: Interp) -> MachineFrame:
-    tool = interp.tool_offset
-    return MachineFrame(
-        shift=(interp.axis_offset_x, interp.axis_offset_y, interp.axis_offset_z),
-        rotation=interp.rotation_xy,
-        offset=(
-            interp.origin_offset_x + tool.x,
-            interp.origin_offset_y + tool.y,
-            interp.origin_offset_z + tool.z,
-        ),
-        unit=1 / program_units_per_machine_unit(interp),
-        millimetres=millimetres_per_machine_unit(),
-    )
+        check_travel(words, extent, MACHINE.travel)
 
 
 # What a cycle commands for later blocks of the program, and where it did so. LinuxCNC tells no

@@ -18,7 +18,6 @@ from g12.host.call_frame import set_locals_at
 from g12.host.handlers import cycle_state
 from g12.host.interp import PER_REVOLUTION, Interp
 from g12.host.machine import MACHINE
-from g12.host.units import program_units_per_machine_unit
 from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE
 from g12.request.words import Words
 
@@ -74,7 +73,7 @@ def prepare_yasnac(interp: Interp, arc: int) -> int:
         words,
         yasnac.plan_circle(words),
         arc=arc,
-        traverse=MACHINE.settings.yasnac_traverse * program_units_per_machine_unit(interp),
+        traverse=MACHINE.settings.yasnac_traverse * words.context.machine_unit,
         feed=interp.feed_rate,
         per_revolution=interp.feed_mode == PER_REVOLUTION,
     )
