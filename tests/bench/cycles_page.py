@@ -8,8 +8,8 @@ import threading
 import time
 
 from bench import Figure
+from g12.tools.cycles_page.machine import MachineState
 from g12.tools.cycles_page.page import Page
-from g12.tools.cycles_page.sketch import MachineState
 from support.sim_machines import SIM
 
 MACHINES = "mill_mm", "mill_yasnac_mm", "mill_mitsubishi_mm", "lathe_mm"

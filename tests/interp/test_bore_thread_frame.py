@@ -75,20 +75,12 @@ def test_a_wrong_word_is_refused_and_nothing_moves(metric, good, wrong, rule):
     assert traced.error.text.startswith(f"{code} line 4: ")
 
 
-@settings(max_examples=60, deadline=None)
+@KINDS
+@settings(max_examples=30, deadline=None)
 @given(seed=SEEDS)
-def test_any_block_with_a_wrong_mode_or_word_moves_nothing(metric, seed):
-    chance = random.Random(seed)
-    block = chance.choice([*hole_blocks.MAKERS.values()])(chance)
-    mode, text = chance.choice((
-        ("G18", ""), ("G93", "F9"), ("F0", ""), ("", "U1"), ("", "@1"),
-        ("", "D77"), ("", "Z99"), ("", "I-3"), ("", "I.01"),
-    ))  # fmt: skip
-    words = [word for word in block.text.split() if word[0] != text[:1]]
-    before = [*block.before, *filter(None, [mode])]
-    alone = metric.trace_text([*before, "M2"])
-    traced = metric.trace_text([*before, " ".join([*words, text]), "M2"])
-    assert traced.error is not None and len(traced.moves) == len(alone.moves)
+def test_any_wrong_block_moves_and_changes_nothing(metric, kind, seed):
+    before, block = hole_blocks.wrong(random.Random(seed), kind)
+    mode_matrix.check_refused(metric, before, block, f"{block.split()[0]}: ")
 
 
 def written(code, scale, incremental, numbers="", **values):

@@ -37,9 +37,9 @@ def living(session):
 def until(condition, seconds):
     """Wait up to so many seconds for a condition; return whether it holds."""
     end = time.monotonic() + seconds
-    while not condition() and time.monotonic() < end:
+    while not (held := condition()) and time.monotonic() < end:
         time.sleep(0.1)
-    return bool(condition())
+    return bool(held)
 
 
 def kill_session(process):

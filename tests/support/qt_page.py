@@ -37,6 +37,6 @@ view.findChild(QLineEdit, "i").setText("5,5")
 wait(lambda: view.page.texts["i"] == "5,5" and view.page.sketch.lines)
 view._add()
 assert view.steps.count() == 1
-wait(lambda: view.drawing.sketch is view.page.sketch)
+wait(lambda: view.said.text() == view.page.sketch.text)
 assert view.grab().save(picture)
-view.close()
+view.page.close()

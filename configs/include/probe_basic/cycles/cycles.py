@@ -7,7 +7,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[4] / "python"))
 
-from g12.tools.cycles_page.opening import open_in_linuxcnc
+from g12.tools.cycles_page.machine import open_in_linuxcnc
 from g12.tools.cycles_page.qt_view import CyclesView
 
 

@@ -22,8 +22,9 @@ from g12.tools.commands.arguments import (
     one_line,
 )
 from g12.tools.progress import working
+from g12.tools.regress.differences import TOLERANCE, Tolerance
 from g12.tools.regress.record_and_check import RecordRequest, check, record
-from g12.tools.regress.recorder import FAILED, SAME, Recorders, Result, Terms
+from g12.tools.regress.recorder import FAILED, SAME, Result, Terms
 from g12.tools.regress.report import json_report, text_report
 
 DESCRIPTION = __doc__.partition("\n\n")[2].replace("`", "")
@@ -77,8 +78,8 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     directory: dict[str, Any] = {"type": Path, "required": True, "metavar": "DIR"}
     parser.add_argument("-d", "--directory", **directory, help="the recordings")
     for name, default, metavar, text in (
-        ("--tolerance", Terms.ends, "LENGTH", "of ends, in machine units and degrees"),
-        ("--feed-tolerance", Terms.feeds, "PERCENT", "of feeds"),
+        ("--tolerance", TOLERANCE.ends, "LENGTH", "of ends, in machine units and degrees"),
+        ("--feed-tolerance", TOLERANCE.feeds, "PERCENT", "of feeds"),
         ("--timeout", Terms.timeout, "SECONDS", "for each program"),
     ):
         help_ = f"{text} (default {default:g})"
@@ -92,27 +93,24 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 @one_line("regress")
 def main(arguments: list[str]) -> int:
     options = command_parser().parse_args(arguments)
+    tolerance = Tolerance(options.tolerance, options.feed_tolerance)
     pictures = getattr(options, "picture", None)
-    values = (options.tolerance, options.feed_tolerance, options.timeout, options.jobs, pictures)
-    with working("") as report, Recorders() as recorders:
-        found, notes, good = options.run(options, Terms(*values, report), recorders)
+    with working("") as report:
+        terms = Terms(tolerance, options.timeout, options.jobs, pictures, report)
+        found, notes, good = options.run(options, terms)
     print(json_report(found, notes, good) if options.json else "\n".join(text_report(found, notes)))
     return GOOD if good else FINDING
 
 
-def run_record(
-    options: argparse.Namespace, terms: Terms, recorders: Recorders
-) -> tuple[list[Result], list[str], bool]:
+def run_record(options: argparse.Namespace, terms: Terms) -> tuple[list[Result], list[str], bool]:
     """Record programs; return results, no notes, and whether all succeeded."""
     what = RecordRequest(options.programs, options.ini, options.tools, options.var)
-    found = record(options.directory, what, terms, recorders)
+    found = record(options.directory, what, terms)
     return found, [], all(result.verdict != FAILED for result in found)
 
 
-def run_check(
-    options: argparse.Namespace, terms: Terms, recorders: Recorders
-) -> tuple[list[Result], list[str], bool]:
+def run_check(options: argparse.Namespace, terms: Terms) -> tuple[list[Result], list[str], bool]:
     """Compare programs with their recordings; return results, notes and whether all are equal."""
     others = {"programs": options.programs, "ini": options.ini, "tools": options.tools}
-    found, notes = check(options.directory, options.names, recorders, **others, terms=terms)
+    found, notes = check(options.directory, options.names, **others, terms=terms)
     return found, notes, all(result.verdict == SAME for result in found)

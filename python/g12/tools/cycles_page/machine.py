@@ -1,21 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The machine that a screen is at: its tools, its work offsets and where it stands."""
+"""The machine that a screen is at: its tools, where it stands, and its Open."""
 
+import contextlib
 import os
 import re
+import subprocess
+from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.machine_ini import AXIS_LETTERS
-from g12.tools.cycles_page.sketch import MachineState
-from g12.tools.machine.ini import Ini
+from g12.tools.errors import UsageError
+from g12.tools.machine.ini import Ini, read_ini
+from g12.tools.machine.stored_positions import stored_values
 
-OFFSETS = 5201  # parameter of X of the work offset number 0; each is 20 further on
-PER_OFFSET, ROTATION = 20, 9  # of a work offset: parameters, the rotation about Z after the axes
-ACTIVE_OFFSET, G92_ON, G92 = 5220, 5210, 5211
+OFFSETS, PER_OFFSET = 5201, 20  # parameters: X of the work offset number 0, and how many each has
+ROTATION, ACTIVE_OFFSET, G92_ON, G92 = 9, 5220, 5210, 5211  # the first counts within an offset
+AXIS, AXIS_REMOTE = "axis", "axis-remote"  # AXIS draws what it is told to open
 WORD = re.compile(r"([TD])([-+]?(?:\d{1,9}(?:\.\d*)?|\.\d+))", re.IGNORECASE | re.ASCII)
-PARAMETER = re.compile(r"\s*(\d{1,4})\s+([-+]?(?:\d+\.?\d*|\.\d+))\s*", re.ASCII)
 
 
 class Tool(NamedTuple):
@@ -25,13 +28,21 @@ class Tool(NamedTuple):
     remark: str
 
 
+class MachineState(NamedTuple):
+    """The machine as it stands, in machine units and degrees."""
+
+    parameters: Mapping[int, float]  # work offsets, as the var file numbers them
+    tool: int  # in the spindle, 0 for none
+    position: Sequence[float]  # of the axes, in the order of AXIS_LETTERS
+
+
 def tools_of(ini: Ini) -> dict[int, Tool]:
     """Return the tools of the machine's table, in its order."""
-    table = ini.file("EMCIO", "TOOL_TABLE")
-    if table is None or not table.is_file():
-        return {}
-    tools = {}
-    for line in table.read_text(encoding="utf-8", errors="replace").splitlines():
+    tools, text = {}, ""
+    with contextlib.suppress(OSError):  # the interpreter says what is wrong with it
+        table = ini.file("EMCIO", "TOOL_TABLE")
+        text = table.read_text(encoding="utf-8", errors="replace") if table else ""
+    for line in text.splitlines():
         words, _, remark = line.partition(";")
         found = {letter.upper(): float(value) for letter, value in WORD.findall(words)}
         if found.get("T", 0) > 0:
@@ -45,45 +56,45 @@ def machine_state(ini: Ini) -> MachineState:
     LinuxCNC tells its screens by INI_FILE_NAME which machine is theirs.
     """
     screen = os.environ.get("INI_FILE_NAME")
-    running = _status() if screen and Path(screen).resolve() == Path(ini.path).resolve() else None
-    if running is not None:
-        return _state_of(running)
-    return MachineState(_saved(ini), 0, (0.0,) * len(AXIS_LETTERS))
-
-
-def _status():
-    """Return LinuxCNC's status, None where none is running."""
-    try:
-        linuxcnc = import_module("linuxcnc")
-    except ImportError:
-        return None
-    try:
-        status = linuxcnc.stat()
-        status.poll()
-    except (linuxcnc.error, RuntimeError, SystemError):
-        return None
-    return status
-
-
-def _state_of(status) -> MachineState:
-    """Return the state that a status of LinuxCNC shows."""
+    status = linuxcnc_status() if screen and Path(screen).resolve() == ini.path.resolve() else None
+    if status is None:
+        saved = stored_values(ini.file("RS274NGC", "PARAMETER_FILE"))
+        return MachineState(saved, 0, (0.0,) * len(AXIS_LETTERS))
     first = OFFSETS + PER_OFFSET * status.g5x_index
-    offset = {first + axis: value for axis, value in enumerate(status.g5x_offset)}
-    g92 = {G92 + axis: value for axis, value in enumerate(status.g92_offset)}
     parameters = {
         ACTIVE_OFFSET: float(status.g5x_index),
         G92_ON: float(any(status.g92_offset)),
         first + ROTATION: status.rotation_xy,
-        **offset,
-        **g92,
+        **dict(enumerate(status.g5x_offset, first)),
+        **dict(enumerate(status.g92_offset, G92)),
     }
     return MachineState(parameters, status.tool_in_spindle, status.position)
 
 
-def _saved(ini: Ini) -> dict[int, float]:
-    path = ini.file("RS274NGC", "PARAMETER_FILE")
-    if path is None or not Path(path).is_file():
-        return {}
-    lines = Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    rows = filter(None, map(PARAMETER.fullmatch, lines))
-    return {int(row[1]): float(row[2]) for row in rows}
+def linuxcnc_status():
+    """Return LinuxCNC's status, None where none is running."""
+    try:
+        linuxcnc = import_module("linuxcnc")
+        status = linuxcnc.stat()
+        status.poll()
+    except (ImportError, RuntimeError, SystemError):  # linuxcnc.error is a RuntimeError
+        return None
+    return status
+
+
+def open_in_linuxcnc(path: str) -> None:
+    """Open a program on the screen that runs; refuse while a program runs."""
+    status = linuxcnc_status()
+    if status is None:
+        raise UsageError("LinuxCNC does not answer: the program is saved, not open")
+    linuxcnc = import_module("linuxcnc")
+    if status.interp_state != linuxcnc.INTERP_IDLE:
+        raise UsageError("a program runs: stop it, then open this one")
+    screen = read_ini(os.environ["INI_FILE_NAME"]).get("DISPLAY", "DISPLAY", "").split()
+    if screen and os.path.basename(screen[0]) == AXIS:
+        subprocess.Popen([AXIS_REMOTE, path])
+        return
+    command = linuxcnc.command()
+    command.mode(linuxcnc.MODE_AUTO)
+    command.wait_complete()
+    command.program_open(path)

@@ -6,40 +6,29 @@ is there. The interpreter works in that thread and in a process of its own, neve
 """
 
 import contextlib
-import json
 import os
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
-from g12.lengths import is_inch
 from g12.machine_ini import remap_lines
 from g12.settings import INI_SECTION, LIVE_TOOL
-from g12.tools.cycles_page.machine import Tool, machine_state, tools_of
-from g12.tools.cycles_page.sketch import REFUSED, MachineState, Sketch, Sketcher
-from g12.tools.cycles_page.steps import (
-    Step,
-    number_text,
-    program_text,
-    read_entry,
-    read_program,
-)
+from g12.tools.cycles_page.machine import MachineState, Tool, machine_state, tools_of
+from g12.tools.cycles_page.sketch import REFUSED, Sketch
+from g12.tools.cycles_page.steps import Step, number_text, program_text, read_entry, read_program
 from g12.tools.errors import UsageError
-from g12.tools.forms.table import CHOICE, FORMS, TOOL, Entry, Form
+from g12.tools.forms.table import FORMS, HANDLERS, TOOL, Entry, Form
 from g12.tools.machine.files import write
-from g12.tools.machine.ini import read_ini
+from g12.tools.machine.ini import Ini, IniError, read_ini
+from g12.tools.units import name_of_unit
 
-HANDLERS = {  # of a REMAP line: the feature whose forms it makes possible
-    "g12_haas": "haas",
-    "g12_yasnac": "yasnac",
-    "g12_mitsubishi": "mitsubishi",
-    "circle_mill_pocket": "circle-mill",
-    "g12_bore": "bore",
-    "g12_thread": "thread",
-    "g12_frame": "frame",
-    "polar_shape": "polar-shapes",
-}
-KEPT = "g12/cycles-page.json"  # below XDG_STATE_HOME
+KEPT = "g12/cycles-page.ngc"  # below XDG_STATE_HOME
+NICE = 5  # of the sketches: LinuxCNC's own threads and the screen come first
+INTERPRETER = "g12.tools.cycles_page.interpreter"
+LONGEST = 300  # letters of a sentence, of an interpreter that dies
+NO_FORM = Sketch(REFUSED, "no cycle is set up in this machine: see check")
 
 
 class Page:
@@ -51,16 +40,20 @@ class Page:
         changed: Callable[[], None],
         state: Callable[[], MachineState] | None = None,
     ) -> None:
-        self.ini = read_ini(ini_path)
-        self.unit = "inch" if is_inch(self.ini.mm) else "mm"
-        self.forms = forms_of_machine(self.ini)
-        self.tools = tools_of(self.ini)
+        self.unit, self.sketch = "mm", NO_FORM
+        self.forms: Sequence[Form] = ()
+        self.entries: Sequence[Entry] = ()
+        try:
+            self.ini = read_ini(ini_path)
+            self.unit, self.forms = name_of_unit(self.ini.mm), forms_of_machine(self.ini)
+        except IniError as problem:
+            self.ini = Ini(Path(ini_path), ())
+            self.sketch = Sketch(REFUSED, str(problem))
         self.steps: list[Step] = []
-        self.sketch = Sketch(REFUSED, "no cycle is set up in this machine: see check")
         self._state = state or (lambda: machine_state(self.ini))
-        self._kept = _read_kept()
+        self._kept = read_kept()
         self._changed = changed
-        self._sketcher = Sketcher(self.ini)
+        self._sketcher: Any = None
         self._wanted: tuple[Form, str] | None = None
         self._wake, self._ended = threading.Condition(), False
         self._thread = threading.Thread(target=self._work, name="cycles page", daemon=True)
@@ -73,47 +66,44 @@ class Page:
             self._ended = True
             self._wake.notify()
         self._thread.join(timeout=5)
-        self._sketcher.close()
 
     # The form.
 
     def select(self, form: Form, step: Step | None = None) -> None:
         """Show a form, with its last values or those of a step."""
-        self.form = form
-        if step:
-            self.texts = {name: number_text(value) for name, value in step.values.items()}
-        else:
-            kept = self._kept.get(f"{form.name}_{self.unit}", {})
-            self.texts = {
-                entry.name: str(kept.get(entry.name, self.default(entry))) for entry in form.entries
-            }
+        self.form, self.entries = form, form.entries
+        step = step or self._kept.get((form.name, self.unit))
+        self.texts = {
+            entry.name: number_text(step.values[entry.name]) if step else self.default(entry)
+            for entry in form.entries
+        }
         self._ask()
 
     def default(self, entry: Entry) -> str:
         """Return the text that an entry begins with on this machine."""
+        tools = tools_of(self.ini)
+        number = self._default_tool(tools)
         if entry.kind == TOOL:
-            return number_text(self._default_tool())
-        tool = self.tools.get(self._default_tool())
-        if entry.of_tool and tool and tool.diameter > 0:
-            return f"{entry.of_tool * tool.diameter:.3g}"
+            return number_text(number)
+        if entry.of_tool and number in tools and tools[number].diameter > 0:
+            return f"{entry.of_tool * tools[number].diameter:.3g}"
         live = (self.ini.get(INI_SECTION, LIVE_TOOL) or "").upper().replace("M", " ").split()
         if entry.name in ("on", "off") and len(live) == 2:
             return live[("on", "off").index(entry.name)]
         return number_text(entry.default(self.unit))
 
-    def _default_tool(self) -> int:
+    def _default_tool(self, tools: Mapping[int, Tool]) -> int:
         """Return the loaded tool, else the first of the table that has a diameter."""
         loaded = self._state().tool
-        if loaded in self.tools:
+        if loaded in tools:
             return loaded
-        return next((tool for tool, row in self.tools.items() if row.diameter > 0), 1)
+        return next((number for number, tool in tools.items() if tool.diameter > 0), 1)
 
     def tool(self) -> Tool | None:
         """Return the line of the tool table of the tool that is typed."""
-        try:
-            return self.tools.get(int(self.values()["tool"]))
-        except UsageError:
-            return None
+        with contextlib.suppress(ValueError):
+            return tools_of(self.ini).get(int(self.texts["tool"]))
+        return None
 
     def type(self, name: str, text: str) -> None:
         """Take what the operator has typed into an entry."""
@@ -122,35 +112,33 @@ class Page:
 
     def values(self) -> dict[str, float]:
         """Return the numbers of the form; refuse the first that is none."""
-        return {
-            entry.name: read_entry(entry, self.texts[entry.name]) for entry in self.form.entries
-        }
+        return {entry.name: read_entry(entry, self.texts[entry.name]) for entry in self.entries}
 
     def shown(self, entry: Entry) -> bool:
         """Return whether an entry matters as the others stand."""
-        return not (entry.name == "q" and self.texts.get("k") in ("0", ""))
+        return not entry.needs or self.texts[entry.needs].strip() not in ("0", "")
 
     # The steps.
 
     def add(self, at: int | None = None) -> None:
         """Add the form to the program, or put it in place of the step ``at``."""
-        step = Step(self.form, self.unit, self.values())
         if self.sketch.state == REFUSED:
             raise UsageError(self.sketch.text)
+        step = Step(self.form, self.unit, self.values())
         if at is None:
             self.steps.append(step)
         else:
             self.steps[at] = step
-        self._keep(step)
+        self._kept[step.form.name, step.unit] = step
+        with contextlib.suppress(OSError):  # a home that cannot be written: kept until the end
+            kept_path().parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            write(kept_path(), program_text([*self._kept.values()]).encode())
 
     def move(self, at: int, by: int) -> int:
         """Move a step up or down; return its new place."""
         new = min(max(at + by, 0), len(self.steps) - 1)
         self.steps.insert(new, self.steps.pop(at))
         return new
-
-    def delete(self, at: int) -> None:
-        del self.steps[at]
 
     def load(self, path: Path) -> None:
         """Take the steps of a program of the page."""
@@ -168,74 +156,66 @@ class Page:
 
     def program_path(self) -> Path:
         """Return where Open writes: PROGRAM_PREFIX, else the config's folder."""
-        prefix = self.ini.get("DISPLAY", "PROGRAM_PREFIX")
-        folder = self.ini.directory / Path(prefix).expanduser() if prefix else self.ini.directory
-        return (folder if folder.is_dir() else self.ini.directory) / "cycles.ngc"
+        prefix = self.ini.file("DISPLAY", "PROGRAM_PREFIX")
+        return (prefix if prefix and prefix.is_dir() else self.ini.directory) / "cycles.ngc"
 
     # The sketch.
 
     def _ask(self) -> None:
         """Have the form as it is drawn; a request that has not begun is dropped."""
         try:
-            step = Step(self.form, self.unit, self.values())
+            text = Step(self.form, self.unit, self.values()).call
         except UsageError as problem:
             with self._wake:
-                self._wanted = None
-                self.sketch = Sketch(REFUSED, str(problem))
+                self._wanted, self.sketch = None, Sketch(REFUSED, str(problem))
             self._changed()
             return
         with self._wake:
-            self._wanted = (self.form, step.call + "\n")
+            self._wanted = self.form, text
             self._wake.notify()
 
     def _work(self) -> None:
+        os.setpriority(os.PRIO_PROCESS, 0, NICE)  # of this thread, and of the interpreter it starts
         while True:
             with self._wake:
                 self._wake.wait_for(lambda: self._ended or self._wanted)
                 if self._ended:
-                    return
+                    break
                 (form, text), self._wanted = self._wanted, None
-            sketch = self._sketcher.sketch(form, text, self._state())
+            sketch = self._sketched(form, text)
             with self._wake:
-                if self._wanted is None:
-                    self.sketch = sketch
+                if self._wanted:  # by now, and so another one
+                    continue
+                self.sketch = sketch
             self._changed()
+        if self._sketcher:
+            self._sketcher.close()
 
-    def _keep(self, step: Step) -> None:
-        """Keep the values for the next time."""
-        self._kept[f"{step.form.name}_{step.unit}"] = {
-            name: number_text(value) for name, value in step.values.items()
-        }
-        with contextlib.suppress(OSError):  # a home that cannot be written: kept until the end
-            path = _kept_path()
-            path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            write(path, json.dumps(self._kept, indent=1).encode())
+    def _sketched(self, form: Form, text: str) -> Sketch:
+        """Return a sketch, of a new interpreter where the last one failed."""
+        try:
+            # here, for its libraries take time to load, and one may be missing
+            self._sketcher = self._sketcher or import_module(INTERPRETER).Sketcher(self.ini)
+            return self._sketcher.sketch(form, text, self._state())
+        except Exception as problem:  # whatever it is, the page goes on
+            if self._sketcher:
+                self._sketcher.close()
+            return Sketch(REFUSED, str(problem)[:LONGEST] or type(problem).__name__)
+
+
+def kept_path() -> Path:
+    return Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / KEPT
+
+
+def read_kept() -> dict[tuple[str, str], Step]:
+    """Return the last steps, by form and unit, none where a stranger wrote the file."""
+    with contextlib.suppress(OSError, UsageError):
+        steps = read_program(kept_path().read_text(encoding="utf-8", errors="replace"))
+        return {(step.form.name, step.unit): step for step in steps}
+    return {}
 
 
 def forms_of_machine(ini) -> Sequence[Form]:
     """Return the forms whose codes the machine has."""
     handlers = {name for remap in remap_lines(ini.all) for name in remap.handlers}
-    features = {feature for handler, feature in HANDLERS.items() if handler in handlers}
-    return [form for form in FORMS if form.feature in features]
-
-
-def choice_of(entry: Entry, text: str) -> int:
-    """Return the place of an entry's text among its choices, -1 for another number."""
-    assert entry.kind == CHOICE
-    values = [number_text(value) for value, _ in entry.choices]
-    return values.index(text) if text in values else -1
-
-
-def _kept_path() -> Path:
-    state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(state) / KEPT
-
-
-def _read_kept() -> dict[str, dict[str, str]]:
-    """Return the values kept by form; whatever else the file holds is no value."""
-    try:
-        kept = json.loads(_kept_path().read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
-        return {}
-    forms = kept.items() if isinstance(kept, dict) else ()
-    return {name: values for name, values in forms if isinstance(values, dict)}
+    return [form for form in FORMS if HANDLERS[form.feature] in handlers]

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What both views show alike: colours, labels, pictures."""
+"""What both views show alike, and what their buttons do."""
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
+from g12.tools.cycles_page.steps import number_text
 from g12.tools.errors import UsageError
 from g12.tools.forms.table import ANGLE, FEED, LENGTH, SECONDS, SPEED, Entry, Form
 
@@ -19,65 +22,70 @@ COLOURS = {
     "path": "#ffffff",
     "rapid": "#d9534f",
 }
-KEYS = ("7", "8", "9"), ("4", "5", "6"), ("1", "2", "3"), ("-", "0", "."), ("⌫", "C")  # of a keypad
+SENTENCES = READY, MESSAGE, REFUSED
+KEYS = "789", "456", "123", "-0.", "⌫C"  # of a keypad, row by row
 UNITS = {
-    LENGTH: {"mm": "mm", "inch": "in"},
-    FEED: {"mm": "mm/min", "inch": "in/min"},
-    ANGLE: {"mm": "°", "inch": "°"},
-    SPEED: {"mm": "1/min", "inch": "1/min"},
-    SECONDS: {"mm": "s", "inch": "s"},
+    "mm": {LENGTH: "mm", FEED: "mm/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
+    "inch": {LENGTH: "in", FEED: "in/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
 }
 
 
 def pressed(text: str, key: str) -> str:
     """Return the text of an entry after a key of the keypad."""
-    if key == "⌫":
-        return text[:-1]
-    if key == "C":
-        return ""
+    if key in "⌫C":
+        return text[:-1] if key == "⌫" else ""
     if key == "-":
         return text[1:] if text.startswith("-") else f"-{text}"
     return text + key
 
 
-def label_of(entry: Entry, unit: str) -> str:
-    """Return what stands beside an entry: words and unit."""
-    measured = UNITS.get(entry.kind, {}).get(unit)
-    return f"{entry.label}, {measured}" if measured else entry.label
-
-
-def hint_of(entry: Entry) -> str:
-    """Return what an entry's 0 leaves out."""
-    return f"0: {entry.zero}" if entry.zero else ""
-
-
-def picture_of(form: Form, unit: str) -> Path:
-    return NGC / f"form_{form.name}_{unit}.png"
-
-
-def tool_text(page: Page) -> str:
-    """Return the tool that is typed: its diameter and its name in the table."""
-    if not page.forms:
-        return ""
-    tool = page.tool()
-    if tool is None:
-        return f"T{page.texts['tool']}: not in the tool table"
-    named = f", {tool.remark}" if tool.remark else ""
-    return f"T{page.texts['tool']}: ⌀ {tool.diameter:g} {UNITS[LENGTH][page.unit]}{named}"
-
-
-class StepButtons:
-    """What the buttons of a view do: it shows the steps and says a sentence itself."""
+class View:
+    """A page's view: it shows the steps and says a sentence in its toolkit's way."""
 
     page: Page
     opened: Callable[[str], None]  # called with the path of a program to open
     edited: int | None = None  # the step that is shown
+    widgets: dict[str, Any]  # of the entries, by name
+    _say: Callable[[str, str], None]  # a state and its sentence
+    _show_form: Callable[[], None]
+    _list_steps: Callable[[list[str], int], None]  # the titles, and the place of the selected one
+    _ask_file: Callable[[str, Path], str | None]  # the button's name and the path proposed
 
-    def _say(self, state: str, text: str) -> None:
-        raise NotImplementedError
+    def _label(self, entry: Entry) -> str:
+        """Return what stands beside an entry: words and unit."""
+        return ", ".join(filter(None, (entry.label, UNITS[self.page.unit].get(entry.kind))))
 
-    def _show_steps(self, row: int) -> None:
-        raise NotImplementedError
+    def _hint(self, entry: Entry) -> str:
+        """Return what an entry's 0 leaves out."""
+        return f"0: {entry.zero}" if entry.zero else ""
+
+    def _place(self, entry: Entry) -> int:
+        """Return the place of an entry's text among its choices, -1 for another number."""
+        values = [number_text(value) for value, _ in entry.choices]
+        return (
+            values.index(self.page.texts[entry.name])
+            if self.page.texts[entry.name] in values
+            else -1
+        )
+
+    def _picture(self, form: Form) -> str:
+        return str(NGC / f"form_{form.name}_{self.page.unit}.png")
+
+    def _tool(self) -> str:
+        """Return the tool that is typed: its diameter and its name in the table."""
+        tool = self.page.tool()
+        if tool is None:
+            return "not in the tool table" if self.page.forms else ""
+        return f"⌀ {tool.diameter:g} {UNITS[self.page.unit][LENGTH]} {tool.remark}"
+
+    def _buttons(self) -> tuple[dict[str, Callable[[], None]], ...]:
+        """Return what each button does: those of the form, of the steps, of the files."""
+        up, down = partial(self._move, -1), partial(self._move, 1)
+        return (
+            {"Add": self._add, "Replace": self._replace},
+            {"▲": up, "▼": down, "✕": self._delete},
+            {"Load": self._load, "Save": self._save, "Open": self._open},
+        )
 
     def _try(self, action: Callable[[], None], *_clicked) -> None:
         """Do what a button says; show why it cannot be."""
@@ -86,25 +94,54 @@ class StepButtons:
         except (UsageError, OSError) as problem:
             self._say(REFUSED, str(problem))
 
+    def _select(self, row: int) -> None:
+        self.page.select(self.page.forms[row])
+        self._show_form()
+
+    def _choose(self, entry: Entry, row: int) -> None:
+        self.page.type(entry.name, number_text(entry.choices[row][0]))
+
+    def _edit(self, row: int) -> None:
+        self.edited = row
+        self.page.select(self.page.steps[row].form, self.page.steps[row])
+        self._show_form()
+
+    def _show_steps(self, row: int | None) -> None:
+        """Show the list of steps, that of the row selected."""
+        self.edited = row if self.page.steps else None
+        titles = [f"{at}  {step.form.title}" for at, step in enumerate(self.page.steps, 1)]
+        self._list_steps(titles, -1 if self.edited is None else self.edited)
+
     def _add(self) -> None:
         self.page.add()
         self._show_steps(len(self.page.steps) - 1)
 
-    def _replace(self) -> None:
+    def _of_selected(self) -> int:
         if self.edited is None:
-            self._say(MESSAGE, "select a step first")
-            return
-        self.page.add(self.edited)
+            raise UsageError("select a step first")
+        return self.edited
+
+    def _replace(self) -> None:
+        self.page.add(self._of_selected())
         self._show_steps(self.edited)
 
     def _move(self, by: int) -> None:
-        if self.edited is not None:
-            self._show_steps(self.page.move(self.edited, by))
+        self._show_steps(self.page.move(self._of_selected(), by))
 
     def _delete(self) -> None:
-        if self.edited is not None:
-            self.page.delete(self.edited)
-            self._show_steps(min(self.edited, len(self.page.steps) - 1))
+        del self.page.steps[self._of_selected()]
+        self._show_steps(min(self._of_selected(), len(self.page.steps) - 1))
+
+    def _load(self) -> None:
+        name = self._ask_file("Load", self.page.program_path())
+        if name:
+            self.page.load(Path(name))
+            self._show_steps(None)
+
+    def _save(self) -> None:
+        name = self._ask_file("Save", self.page.program_path())
+        if name:
+            self.page.save(Path(name))
 
     def _open(self) -> None:
         self.opened(str(self.page.save(self.page.program_path())))

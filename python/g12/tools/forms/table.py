@@ -10,7 +10,17 @@ from typing import NamedTuple
 LENGTH, FEED, ANGLE, COUNT, RATIO, CHOICE, TOOL, SPEED, SECONDS = (
     *("length", "feed", "angle", "count", "ratio", "choice", "tool", "speed", "seconds"),
 )
-MILL, FACE = "mill", "face"  # where a form cuts: decides its start, its end and its machine
+MILL, FACE, ROUND = "from above", "on the face", "on the unrolled surface"  # how a form is seen
+HANDLERS = {  # of each feature with forms: one that the REMAP lines of a machine with it name
+    "haas": "g12_haas",
+    "yasnac": "g12_yasnac",
+    "mitsubishi": "g12_mitsubishi",
+    "circle-mill": "circle_mill_pocket",
+    "bore": "g12_bore",
+    "thread": "g12_thread",
+    "frame": "g12_frame",
+    "polar-shapes": "polar_shape",
+}
 
 
 class Entry(NamedTuple):
@@ -26,6 +36,7 @@ class Entry(NamedTuple):
     zero: str = ""  # what 0 leaves out; empty where 0 is a value like another
     omitted: bool = False  # 0 becomes -9999 in the call
     of_tool: float = 0.0  # the page proposes this share of the tool's diameter
+    needs: str = ""  # an entry that must not be 0 for this one to matter
 
     def default(self, unit: str) -> float:
         """Return the default of a form of ``unit``, mm or inch."""
@@ -40,7 +51,7 @@ class Form(NamedTuple):
     title: str  # on the page
     info: str  # above ngcgui's entries; {lengths} is the unit
     source: str  # of the entries' meaning, a page or a sub
-    place: str  # MILL or FACE
+    place: str  # MILL, FACE or ROUND: decides its start, its end, its machine and its view
     entries: tuple[Entry, ...]
     start: str  # arguments of the start after its common ones, names of entries
     body: str  # from the start's call to the end's
@@ -137,7 +148,7 @@ CIRCLE_FORMS = (
             CODE,
             length("i", "I first radius", "first radius I", 10, 0.4)._replace(of_tool=0.8),
             length("k", "K radius, 0: none", "finished radius K", 30, 1.2, "one circle"),
-            length("q", "Q ring to ring", "stepover Q", 8, 0.35)._replace(of_tool=0.7),
+            length("q", "Q ring to ring", "stepover Q", 8, 0.35)._replace(of_tool=0.7, needs="k"),
         ),
         "x y retract top z",
         NO_CODE + whole("levels", "L") + """\
@@ -163,7 +174,7 @@ o<clearing> endif
             length("i", "I radius, signed", "radius I, its sign the side", 50, 2),
             length("r", "R rapid, 0: none", "bored radius R", 0, 0, "no rapid: into the full"),
             length("k", "K first, 0: none", "first radius K", 12, 0.6, "no spiral"),
-            length("q", "Q growth per turn", "growth a turn Q", 8, 0.4),
+            length("q", "Q growth per turn", "growth a turn Q", 8, 0.4)._replace(needs="k"),
             levels("circles", "L circles", "finished circles", 1),
         ),
         "x y retract top z",
@@ -477,7 +488,7 @@ o<face_holes> call ENTRIES
     Form(
         "side_holes", "polar-shapes", "Holes round a bar",
         f"Holes round a bar. {SHAPE_INFO}",
-        "holes; its entries as in ngc/holes.md", FACE,
+        "holes; its entries as in ngc/holes.md", ROUND,
         (
             *on_a_face(3, 2000, "Z in front of bar", "Z in front of the bar"),
             length("clear", "X clear, diameter", "X clear, a diameter", 60, 2.4),

@@ -21,13 +21,13 @@ SWITCHED_OFF = ("", "0", "NO", "FALSE", "OFF")
 
 def unset_positions(ini: Ini) -> tuple[str, ...]:
     """Return those of G28 and G30 whose position is machine zero: G28.1 or G30.1 was never used."""
-    values = _values_of(ini.file("RS274NGC", "PARAMETER_FILE"))
+    values = stored_values(ini.file("RS274NGC", "PARAMETER_FILE"))
     return tuple(code for code, first in FIRST.items() if not any(_axes_from(first, values)))
 
 
 def offset_at_start(parameters: Path | None, ini: Ini) -> str:
     """Return a sentence on the G92 or G52 that a var file puts in force, "" if there is none."""
-    shift = shift_at_start(_values_of(parameters), ini)
+    shift = shift_at_start(stored_values(parameters), ini)
     if not shift:
         return ""
     return (
@@ -49,6 +49,7 @@ def _axes_from(first: int, values: Mapping[int, float]) -> list[float]:
     return [values.get(first + at, 0.0) for at in range(len(AXIS_LETTERS))]
 
 
-def _values_of(path: Path | None) -> dict[int, float]:
+def stored_values(path: Path | None) -> dict[int, float]:
+    """Return the numbered parameters of a var file, none where it is missing."""
     text = path.read_text(errors="replace") if path and path.is_file() else ""
     return {int(number): float(value) for number, value in STORED_VALUE.findall(text)}

@@ -16,14 +16,15 @@
 """
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from g12.tools.errors import UsageError
+from g12.tools.regress.differences import TOLERANCE, Tolerance
 from g12.tools.regress.record_and_check import check
-from g12.tools.regress.recorder import SAME, Recorders, Terms
+from g12.tools.regress.recorder import SAME, Terms
 from g12.tools.regress.recordings import load
 from g12.tools.regress.report import text_report
 from g12.tools.system import COMMAND
@@ -33,17 +34,8 @@ def recorded_programs(directory: str | os.PathLike) -> list[str]:
     return load(Path(directory).absolute()).names()
 
 
-@pytest.fixture(scope="session")
-def gcode_recorders() -> Iterator[Recorders]:
-    """Yield the interpreters, which all tests of the session share."""
-    with Recorders() as recorders:
-        yield recorders
-
-
 @pytest.fixture
-def gcode_regression(
-    request: pytest.FixtureRequest, gcode_recorders: Recorders
-) -> Callable[..., None]:
+def gcode_regression(request: pytest.FixtureRequest) -> Callable[..., None]:
     """Compare programs with their recordings; the test fails with the differences.
 
     ``gcode_regression(directory, *programs, tolerance=, feed_tolerance=, programs_in=)``: the
@@ -55,16 +47,14 @@ def gcode_regression(
     def compare(
         directory: str | os.PathLike,
         *programs: str,
-        tolerance: float = Terms.ends,
-        feed_tolerance: float = Terms.feeds,
+        tolerance: float = TOLERANCE.ends,
+        feed_tolerance: float = TOLERANCE.feeds,
         programs_in: str | os.PathLike | None = None,
     ) -> None:
         folder = here / programs_in if programs_in else None
-        terms = Terms(tolerance, feed_tolerance)
+        terms = Terms(Tolerance(tolerance, feed_tolerance))
         try:
-            results, notes = check(
-                here / directory, programs, gcode_recorders, programs=folder, terms=terms
-            )
+            results, notes = check(here / directory, programs, programs=folder, terms=terms)
         except UsageError as error:
             pytest.fail(str(error), pytrace=False)
         if any(result.verdict != SAME for result in results):

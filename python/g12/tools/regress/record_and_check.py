@@ -2,34 +2,24 @@
 """The work of ``g12 regress``: recording programs in a directory, checking them against it."""
 
 import os
-from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
 
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import read_ini, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.regress.recorder import (
-    ADDED,
-    CHANGED,
-    MISSING,
-    SAME,
-    Job,
-    Recorders,
-    Result,
-    Terms,
-    machine_of,
-    results,
-)
+from g12.tools.regress.recorder import ADDED, MISSING, Job, Result, Terms, results
 from g12.tools.regress.recordings import (
     ABOUT,
     PROGRAM_SUFFIXES,
     Baseline,
-    common_folder,
     load,
     program_names,
 )
+
+PROGRAM = attrgetter("program")
 
 
 @dataclass(frozen=True)
@@ -40,28 +30,25 @@ class RecordRequest:
     var: Path | None = None
 
 
-def record(
-    directory: Path, request: RecordRequest, terms: Terms, recorders: Recorders
-) -> list[Result]:
+def record(directory: Path, request: RecordRequest, terms: Terms) -> list[Result]:
     """Record programs, by default all recorded ones; return their results."""
     named = [_existing(program) for program in request.programs]
     known = (directory / ABOUT).exists()
-    start = _known if known else _new
-    baseline = _as_requested(start(directory.absolute(), request, named), request, named)
+    start = (_known if known else _new)(directory.absolute(), request, named)
+    baseline = _as_requested(start, request, named)
     names = _names(baseline, named)
-    files = _tools_and_parameters(baseline, request, everything=not (known and named))
-    machine = machine_of(baseline.ini, *files)
-    job = Job(baseline, machine, baseline.programs, terms, keep=True)
-    found = results(job, names, recorders)
-    baseline.take_copies(files)
+    table, var = _tools_and_parameters(baseline, request, everything=not (known and named))
+    ini = read_ini(baseline.ini)
+    job = Job(baseline, baseline.programs, ini, table, var, terms, keep=True)
+    found = results(job, names)
+    baseline.take_copies([table, var])
     baseline.save()
-    return _sorted([*found, *([] if named else _dropped(baseline))])
+    return sorted(found if named else [*found, *_dropped(baseline)], key=PROGRAM)
 
 
 def check(
     directory: Path,
     names: Sequence[str],
-    recorders: Recorders,
     *,
     programs: Path | None = None,
     ini: Path | None = None,
@@ -74,41 +61,28 @@ def check(
     recorded. Returns the results, and notes on changed files.
     """
     baseline = load(directory.absolute())
-    folder = _folder(programs) if programs else baseline.programs
+    folder = _existing(programs) if programs else baseline.programs
     recorded = [_recorded(baseline, name) for name in names] or baseline.names()
     if not recorded:
         raise UsageError(f"{directory}: no program is recorded there")
     (_, table), (_, parameters) = baseline.copies
     table = _absolute(tool_table(tools)) if tools else table
-    machine = machine_of(_machine(ini or baseline.ini), table, parameters)
+    machine = read_ini(_machine(ini or baseline.ini))
     present = [name for name in recorded if (folder / name).is_file()]
-    job = Job(baseline, machine, folder, terms or Terms())
-    found = results(job, present, recorders)
+    job = Job(baseline, folder, machine, table, parameters, terms or Terms())
+    found = results(job, present)
     found += [Result(name, MISSING) for name in recorded if name not in present]
     new = [] if names else {*baseline.in_folders(folder)} - {*recorded}
     found += [Result(name, ADDED) for name in new]
-    notes = _common_notes(found) + ([] if tools else _outdated(baseline))
-    return _sorted(found), notes
-
-
-def _sorted(found: Sequence[Result]) -> list[Result]:
-    return sorted(found, key=lambda result: result.program)
-
-
-def _common_notes(found: Sequence[Result]) -> list[str]:
-    """Return the other changes since the recordings, with the number of programs if not all."""
-    compared = [result for result in found if result.verdict in (SAME, CHANGED)]
-    counts = Counter(note for result in compared for note in result.notes)
-    everyone = len(compared)
-    return [
-        note if count == everyone else f"{note} ({count} of {everyone} programs)"
-        for note, count in counts.items()
+    notes = [note for result in found for note in result.notes]
+    return sorted(found, key=PROGRAM), [
+        *dict.fromkeys(notes + ([] if tools else _outdated(baseline)))
     ]
 
 
 def _existing(path: Path) -> Path:
     if not path.exists():
-        raise UsageError(f"{path}: no such file")
+        raise UsageError(f"{path}: no such file or folder")
     return _absolute(path)
 
 
@@ -121,28 +95,21 @@ def _machine(path: Path) -> Path:
     return _absolute(path)
 
 
-def _folder(path: Path) -> Path:
-    if not path.is_dir():
-        raise UsageError(f"{path}: no such folder")
-    return _absolute(path)
-
-
 def _new(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
     if directory.exists() and not directory.is_dir():
         raise UsageError(f"{directory}: not a directory")
-    if not named:
-        raise UsageError(f"{directory}: nothing is recorded there; name the programs")
-    if not request.ini:
-        raise UsageError(f"{directory}: nothing is recorded there; name the machine, --ini")
-    return Baseline(directory, request.ini, common_folder(named))
+    if not (named and request.ini):
+        missing = "the machine, --ini" if named else "the programs"
+        raise UsageError(f"{directory}: nothing is recorded there; name {missing}")
+    folders = [path if path.is_dir() else path.parent for path in named]
+    return Baseline(directory, request.ini, Path(os.path.commonpath(folders)))
 
 
 def _known(directory: Path, request: RecordRequest, named: list[Path]) -> Baseline:
     baseline = load(directory)
     if request.ini and named and _machine(request.ini) != baseline.ini:
         raise UsageError(
-            f"{directory} is recorded on {baseline.ini}: use another -d, or name no programs to "
-            f"record all of it anew on {request.ini}"
+            f"{directory} is recorded on {baseline.ini}: name no programs to record it"
         )
     return baseline
 
@@ -164,17 +131,15 @@ def _as_requested(baseline: Baseline, request: RecordRequest, named: list[Path])
 
 
 def _names(baseline: Baseline, named: list[Path]) -> list[str]:
-    if not named:
-        names = {*baseline.names(), *baseline.in_folders(baseline.programs)}
-        return sorted(name for name in names if (baseline.programs / name).is_file())
-    found = [_programs(baseline, path) for path in named]
-    return sorted({name for names in found for name in names})
+    names = {name for path in named for name in _programs(baseline, path)}
+    names = names or {*baseline.names(), *baseline.in_folders(baseline.programs)}
+    return sorted(name for name in names if (baseline.programs / name).is_file())
 
 
 def _programs(baseline: Baseline, path: Path) -> list[str]:
-    names = [baseline.name_of(path)]
-    if path.is_dir():
-        names = program_names(baseline.programs, path)
+    if not path.is_dir():
+        return [baseline.name_of(path)]
+    names = program_names(baseline.programs, path)
     if not names:
         raise UsageError(f"{path}: no programs in this folder ({', '.join(PROGRAM_SUFFIXES)})")
     return names
@@ -206,7 +171,7 @@ def _recorded(baseline: Baseline, name: str) -> str:
 def _dropped(baseline: Baseline) -> list[Result]:
     missing = [name for name in baseline.names() if not (baseline.programs / name).is_file()]
     for name in missing:
-        baseline.drop(name)
+        baseline.trace_file(name).unlink()
     return [Result(name, MISSING) for name in missing]
 
 

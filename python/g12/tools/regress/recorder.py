@@ -3,24 +3,24 @@
 
 import contextlib
 import hashlib
+import threading
 import time
-from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Self
+from typing import Any
 
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.filter import opened_program
-from g12.tools.machine.ini import Ini, read_ini
+from g12.tools.machine.ini import Ini
 from g12.tools.path.part import part_of
 from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Report, silent
-from g12.tools.regress.differences import Difference, Tolerance, differences
+from g12.tools.regress.differences import TOLERANCE, Difference, Tolerance, differences
 from g12.tools.regress.recording_text import (
     Recording,
     TraceTextError,
@@ -39,49 +39,31 @@ KILL_PERIOD = 0.1  # s
 
 @dataclass(frozen=True)
 class Terms:
-    """Tolerances, timeout and output of a check.
+    """The tolerance and output of a check, the timeout of each program in seconds.
 
-    ``ends`` is the tolerance of ends in machine units and degrees, ``feeds`` that of feeds in per
-    cent; ``timeout`` is in seconds a program. ``pictures`` is a folder for pictures of changes,
-    ``report`` is called with the progress.
+    ``pictures`` is a folder for pictures of changes, ``report`` is called with the progress.
     """
 
-    ends: float = 1e-6
-    feeds: float = 0.01
+    tolerance: Tolerance = TOLERANCE
     timeout: float = 600.0
     jobs: int = 1
     pictures: Path | None = None
     report: Report = silent
-
-    def tolerance(self, unit: float) -> Tolerance:
-        """Return the tolerance of a machine whose unit is ``unit`` mm long."""
-        return Tolerance(self.ends * unit, self.ends, self.feeds / 100)
-
-
-@dataclass(frozen=True)
-class TracedMachine:
-    """The machine of traces.
-
-    ``contents`` is a hash of INI and tool table: changed files need another interpreter.
-    """
-
-    ini: Path
-    tools: Path | None
-    parameters: Path | None
-    linuxcnc: str
-    contents: str
 
 
 @dataclass(frozen=True)
 class Job:
     """The programs of a folder to trace on a machine and to compare with their recordings.
 
-    ``keep`` makes the traces the recordings.
+    ``tools`` and ``parameters`` are the tool table and var file to use. ``keep`` makes the traces
+    the recordings.
     """
 
     baseline: Baseline
-    machine: TracedMachine
     folder: Path
+    ini: Ini
+    tools: Path | None
+    parameters: Path | None
     terms: Terms
     keep: bool = False
 
@@ -102,88 +84,61 @@ class Result:
     picture: str | None = None
 
 
-def machine_of(ini: Path, tools: Path | None, parameters: Path | None) -> TracedMachine:
-    contents = text_bytes(read_ini(ini)) + (tools.read_bytes() if tools else b"")
-    return TracedMachine(ini, tools, parameters, linuxcnc_version(), hash_of(contents))
+class Recorders:
+    """The interpreters that make a job's recordings, one for each thread."""
 
+    def __init__(self, job: Job) -> None:
+        self._job, self._own = job, threading.local()
+        self._linuxcnc = linuxcnc_version()
+        self._tracers: list[Tracer] = []
 
-def text_bytes(ini: Ini) -> bytes:
-    return ini.text.encode(errors="surrogateescape")
+    def result(self, name: str) -> Result:
+        """Return the result of a program's trace; store it if the job keeps it."""
+        tracer = self._tracer()
+        try:
+            now = self._text(name, tracer)
+        except TraceFailure as failure:
+            text = f"no trace: {str(failure).splitlines()[0]}"
+            return Result(name, FAILED, [Difference("failed", text)])
+        result = _compared(self._job, name, now)
+        if self._job.keep:
+            self._job.baseline.keep(name, now)
+        return result
 
-
-class Recorder:
-    """A running interpreter that makes recordings on one machine."""
-
-    def __init__(self, machine: TracedMachine) -> None:
-        self._machine = machine
-        self.ini = ini = read_ini(machine.ini)
-        self.part = part_of(ini)
-        self._tracer = Tracer(ini, tools=machine.tools)
-        self._check_python()
-        self._facts = {
-            "machine": f"{ini.path.name} {hash_of(text_bytes(ini))}",
-            "linuxcnc": machine.linuxcnc,
+    def _text(self, name: str, tracer: Tracer) -> str:
+        job, program, ini = self._job, self._job.folder / name, self._job.ini
+        facts = {
+            "program": f"{name} {hash_of(program.read_bytes())}",
+            "machine": f"{ini.path.name} {hash_of(ini.text.encode(errors='surrogateescape'))}",
+            "linuxcnc": self._linuxcnc,
             "units": name_of_unit(ini.mm),
         }
-
-    def kill(self) -> None:
-        """End the interpreter's work at a program: its text becomes a TraceFailure."""
-        self._tracer.kill()
-
-    def close(self) -> None:
-        self._tracer.close()
-
-    def _check_python(self) -> None:
-        """Refuse a machine without its Python modules: it would only trace other errors."""
-        error = python_error(self._tracer.printed)
-        if error:
-            self.close()
-            raise TraceFailure(f"{self._machine.ini}: its Python modules do not load: {error}")
-
-    def text(self, name: str, program: Path, timeout: float) -> str:
-        """Return the recording of a program as text; ``timeout`` is in seconds."""
-        facts = {"program": f"{name} {hash_of(program.read_bytes())}", **self._facts}
-        parameters = self._machine.parameters
+        options: dict[str, Any] = {"parameters": job.parameters, "timeout": job.terms.timeout}
         try:
-            with opened_program(program, self.ini) as opened:
-                trace = self._tracer.trace(
-                    opened.path, parameters=parameters, timeout=timeout, alone=True
-                )
-                return text_of(recording_of(trace_in_source(trace, opened), opened.listed, facts))
+            with opened_program(program, ini) as opened:
+                trace = trace_in_source(tracer.trace(opened.path, alone=True, **options), opened)
+                return text_of(recording_of(trace, opened.listed, facts))
         except ProgramError as problem:
             raise TraceFailure(str(problem)) from None
 
-
-class Recorders:
-    """The running interpreters, as many of a machine as work in parallel.
-
-    All of them end with the ``with`` block.
-    """
-
-    def __init__(self) -> None:
-        self._idle: defaultdict[TracedMachine, list[Recorder]] = defaultdict(list)
-        self._all: list[Recorder] = []
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_exception: object) -> None:
-        for recorder in self._all:
-            recorder.close()
+    def _tracer(self) -> Tracer:
+        """Return this thread's interpreter; refuse a machine whose Python modules do not load."""
+        if not hasattr(self._own, "tracer"):
+            self._own.tracer = Tracer(self._job.ini, tools=self._job.tools)
+            self._tracers.append(self._own.tracer)
+            error = python_error(self._own.tracer.printed)
+            if error:
+                raise UsageError(f"{self._job.ini.path}: its Python modules do not load: {error}")
+        return self._own.tracer
 
     def kill(self) -> None:
-        for recorder in self._all:
-            recorder.kill()
+        """End the work at programs, each a TraceFailure."""
+        for tracer in self._tracers:
+            tracer.kill()
 
-    @contextlib.contextmanager
-    def one_of(self, machine: TracedMachine) -> Iterator[Recorder]:
-        try:
-            recorder = self._idle[machine].pop()
-        except IndexError:
-            recorder = Recorder(machine)
-            self._all.append(recorder)
-        yield recorder
-        self._idle[machine].append(recorder)
+    def close(self) -> None:
+        for tracer in self._tracers:
+            tracer.close()
 
 
 def hash_of(content: bytes) -> str:
@@ -191,28 +146,13 @@ def hash_of(content: bytes) -> str:
     return f"sha256:{hashlib.sha256(content).hexdigest()[:HASH_DIGITS]}"
 
 
-def trace_and_compare(job: Job, name: str, recorders: Recorders) -> Result:
-    """Return the result of a program's trace; store it if the job keeps it."""
-    with recorders.one_of(job.machine) as recorder:
-        try:
-            now = recorder.text(name, job.folder / name, job.terms.timeout)
-        except TraceFailure as failure:
-            text = f"no trace: {str(failure).splitlines()[0]}"
-            return Result(name, FAILED, [Difference("failed", text)])
-        result = _compared(job, name, now, recorder)
-    if job.keep:
-        job.baseline.keep(name, now)
-    return result
-
-
-def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
-    path = job.baseline.trace_file(name)
+def _compared(job: Job, name: str, now: str) -> Result:
+    path, terms = job.baseline.trace_file(name), job.terms
     if not path.exists():
         return Result(name, NEW, summary=_summary(read_recording(now)))
     try:
         was = path.read_bytes().decode(errors="surrogateescape")
-        facts, body = split_facts(was)
-        new_facts, new_body = split_facts(now)
+        (facts, body), (new_facts, new_body) = split_facts(was), split_facts(now)
         notes = tuple(_notes(facts, new_facts))
         if body == new_body:
             return Result(name, SAME, notes=notes)
@@ -221,13 +161,13 @@ def _compared(job: Job, name: str, now: str, recorder: Recorder) -> Result:
         if job.keep:
             return Result(name, NEW, summary=_summary(read_recording(now)))
         raise UsageError(f"{path}: not a trace, or one that was edited: {problem}") from None
-    tolerance = job.terms.tolerance(recorder.ini.mm)
-    found = differences(*recordings, tolerance, recorder.part)
-    picture = None
-    if found and job.terms.pictures:
-        picture = _picture(job.terms.pictures, name, *recordings, found, recorder)
-    verdict = CHANGED if found else SAME
-    return Result(name, verdict, found, _summary(recordings[1]), notes, picture)
+    part = part_of(job.ini)
+    found = differences(*recordings, terms.tolerance, part)
+    picture = terms.pictures / f"{name}.png" if found and terms.pictures else None
+    if picture:
+        _draw(picture, *recordings, found, part)
+    verdict, drawn = CHANGED if found else SAME, str(picture) if picture else None
+    return Result(name, verdict, found, _summary(recordings[1]), notes, drawn)
 
 
 def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
@@ -235,8 +175,6 @@ def _notes(was: dict[str, str], now: dict[str, str]) -> Iterator[str]:
         yield f"LinuxCNC {was['linuxcnc']} when recorded, {now['linuxcnc']} now"
     if was["machine"] != now["machine"]:
         yield f"{now['machine'].rpartition(' ')[0]} has changed since the recording"
-    if was["units"] != now["units"]:
-        yield f"machine units {was['units']} when recorded, {now['units']} now"
 
 
 def _summary(recording: Recording) -> str:
@@ -245,24 +183,22 @@ def _summary(recording: Recording) -> str:
     return f"refused at line {error.line}: {error.rule}" if error else counted_as(moves, "move")
 
 
-def _picture(
-    folder: Path, name: str, was: Recording, now: Recording, found, recorder: Recorder
-) -> str:
-    """Draw the differences; matplotlib takes a while to load."""
-    from g12.tools.plot.style import save
+def _draw(picture: Path, *overlay: Any) -> None:
+    from g12.tools.plot.style import save  # matplotlib takes a while to load
     from g12.tools.regress.overlay import draw_overlay
 
-    path = folder / f"{name}.png"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    save(draw_overlay(was, now, found, recorder.part), path)
-    return str(path)
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    save(draw_overlay(*overlay), picture)
 
 
-def results(job: Job, names: Sequence[str], recorders: Recorders) -> list[Result]:
+def results(job: Job, names: Sequence[str]) -> list[Result]:
     largest_first = sorted(names, key=lambda name: -(job.folder / name).stat().st_size)
     found = {}
-    with ThreadPoolExecutor(job.terms.jobs) as pool:
-        futures = [pool.submit(trace_and_compare, job, name, recorders) for name in largest_first]
+    with (
+        contextlib.closing(Recorders(job)) as recorders,
+        ThreadPoolExecutor(job.terms.jobs) as pool,
+    ):
+        futures = [pool.submit(recorders.result, name) for name in largest_first]
         try:
             for done, future in enumerate(as_completed(futures), start=1):
                 result = future.result()
@@ -270,13 +206,8 @@ def results(job: Job, names: Sequence[str], recorders: Recorders) -> list[Result
                 job.terms.report(f"{done} of {len(names)}: {result.program}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
-            _kill_running(futures, recorders)
+            while any(future.running() for future in futures):
+                recorders.kill()  # again: an interpreter may just be starting
+                time.sleep(KILL_PERIOD)
             raise
     return [found[name] for name in names]
-
-
-def _kill_running(futures: Sequence[Future], recorders: Recorders) -> None:
-    """End unfinished jobs; an interpreter may just be starting."""
-    while any(future.running() for future in futures):
-        recorders.kill()
-        time.sleep(KILL_PERIOD)

@@ -28,13 +28,15 @@ between builds of LinuxCNC.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.machine_ini import AXIS_LETTERS
-from g12.tools.preview.moves import IS_LENGTH, Error, Modes, Move, Position, Trace
-from g12.tools.units import UNITS
+from g12.tools.preview.moves import IS_LENGTH, Error, Move, Position, Trace
+from g12.tools.units import UNITS, Unit
 
+STILL: Position = (0.0,) * 9
 HEAD = "g12 trace 1"
 FACTS = ("program", "machine", "linuxcnc", "units")
 FOLDERS = re.compile(r"(?<![\w.])/(?:[^\s/:'\"<>()]+/)+")
@@ -80,19 +82,18 @@ class Recording:
     end: str = ""
 
     @property
-    def unit(self) -> float:
-        return UNITS[self.facts["units"]].mm
+    def unit(self) -> Unit:
+        return UNITS[self.facts["units"]]
 
 
 def recording_of(trace: Trace, program: Path, facts: dict[str, str]) -> Recording:
-    steps = list(_steps(trace, UNITS[facts["units"]].mm))
+    steps = [step for _, step in sorted(_steps(trace, UNITS[facts["units"]].mm), key=itemgetter(0))]
     lines = program.read_bytes().decode(errors="replace").split("\n")
-    numbers = {step.block for step in steps} | ({trace.error.line} if trace.error else set())
+    error = trace.error and Error(without_folders(trace.error.rule), trace.error.line)
+    numbers = {step.block for step in steps} | ({error.line} if error else set())
     blocks = {line: lines[line - 1].strip() for line in numbers if 0 < line <= len(lines)}
-    if trace.error:
-        error = Error(without_folders(trace.error.rule), trace.error.line)
-        return Recording(facts, steps, blocks, error)
-    return Recording(facts, steps, blocks, end=_end(trace.modes))
+    end = "" if error else " ".join((*trace.modes.gcodes, *trace.modes.mcodes))
+    return Recording(facts, steps, blocks, error, end)
 
 
 def without_folders(text: str) -> str:
@@ -100,31 +101,17 @@ def without_folders(text: str) -> str:
     return FOLDERS.sub("", " ".join(text.split()))
 
 
-def _steps(trace: Trace, unit: float) -> Iterator[RecordedStep]:
-    events = iter(trace.events)
-    event = next(events, None)
-    offset = (0.0,) * 9
+def _steps(trace: Trace, unit: float) -> Iterator[tuple[int, RecordedStep]]:
+    """Yield events, tool offsets and moves, each with the index of its move."""
+    for event in trace.events:
+        yield event.at, Note(event.line, without_folders(event.text))
+    offset = STILL
     for index, move in enumerate(trace.moves):
-        while event and event.at <= index:
-            yield Note(event.line, without_folders(event.text))
-            event = next(events, None)
         if move.tool_offset != offset:
             offset = move.tool_offset
-            yield Note(move.block, f"tool offset {_offset(offset, unit)}")
-        yield move
-    while event:
-        yield Note(event.line, without_folders(event.text))
-        event = next(events, None)
-
-
-def _offset(offset: Position, unit: float) -> str:
-    values = zip(AXIS_LETTERS, offset, IS_LENGTH)
-    texts = [(axis, number_text(v / unit if linear else v)) for axis, v, linear in values]
-    return " ".join(f"{axis}{text}" for axis, text in texts if text != "0") or "0"
-
-
-def _end(modes: Modes) -> str:
-    return " ".join((*modes.gcodes, *modes.mcodes))
+            words = [word for word in position_words(offset, unit) if word[1:] != "0"]
+            yield index, Note(move.block, f"tool offset {' '.join(words) or '0'}")
+        yield index, move
 
 
 def number_text(value: float) -> str:
@@ -133,73 +120,71 @@ def number_text(value: float) -> str:
     return "0" if text == "-0" else text
 
 
+def in_machine_units(position: Sequence[float], unit: float) -> list[float]:
+    """Return a position with its lengths in units of ``unit`` mm."""
+    return [at / unit if linear else at for at, linear in zip(position, IS_LENGTH)]
+
+
+def position_words(position: Sequence[float], unit: float) -> list[str]:
+    places = zip(AXIS_LETTERS, in_machine_units(position, unit))
+    return [f"{axis}{number_text(at)}" for axis, at in places]
+
+
+def feed_unit(move: Move, unit: float) -> float:
+    """Return the unit of a move's feed in mm, 1 for the degrees of rotary axes that move alone."""
+    ends = zip(move.start, move.end, IS_LENGTH)
+    is_linear = move.kind == "arc" or any(linear and a != b for a, b, linear in ends)
+    return unit if is_linear else 1.0
+
+
 class RecordingWriter:
     """Writes steps as lines; ``unit`` is the machine unit in mm."""
 
     def __init__(self, unit: float) -> None:
-        self._scales = [1 / unit if linear else 1.0 for linear in IS_LENGTH]
-        self._at: Sequence[float] = (0.0,) * 9
-        self._texts_at = ["0"] * 9
-        self._feed = ("", "G94")
+        self._unit = unit
+        self._at = position_words(STILL, unit)
+        self._feed, self._mode = "", "G94"
 
     def line(self, step: RecordedStep) -> str:
         return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
 
-    def _move(self, move: Move) -> list[str]:
-        end = self._texts(move.end)
-        words = [move.kind, *_changed(self._texts_at, end)]
+    def _move(self, move: Move) -> Iterator[str]:
+        before, self._at = self._at, position_words(move.end, self._unit)
+        yield move.kind
+        yield from _changed(before, self._at)
         if move.kind == "arc":
-            words += self._arc(move)
+            centre = _changed(before, position_words(move.centre, self._unit))
+            yield from ("centre", *centre, "turns", str(move.turns))
+            if move.plane != 17:
+                yield f"G{move.plane}"
+                yield from ("rotation", number_text(move.rotation)) if move.rotation else ()
         if move.kind != "rapid":
-            words += self._feed_words(move)
-        self._at, self._texts_at = move.end, end
-        return words
-
-    def _texts(self, position: Sequence[float]) -> list[str]:
-        """Return the numbers of a position; most are the last one's, already as text."""
-        known = zip(position, self._at, self._texts_at, self._scales)
-        return [text if value == at else number_text(value * scale)
-                for value, at, text, scale in known]  # fmt: skip
-
-    def _arc(self, move: Move) -> list[str]:
-        centre = _changed(self._texts_at, self._texts(move.centre))
-        words = ["centre", *centre, "turns", str(move.turns)]
-        if move.plane != 17:
-            words += [f"G{move.plane}"]
-            words += ["rotation", number_text(move.rotation)] if move.rotation else []
-        return words
-
-    def _feed_words(self, move: Move) -> list[str]:
-        scale = 1.0 if turns_only(move) else self._scales[0]
-        feed = (number_text(move.feed * scale), move.feed_mode or "G94")
-        known, self._feed = self._feed, feed
-        return [f"F{feed[0]}"] * (feed != known) + [feed[1]] * (feed[1] != known[1])
+            before = [self._feed, self._mode]
+            self._feed = f"F{number_text(move.feed / feed_unit(move, self._unit))}"
+            self._mode = move.feed_mode or "G94"
+            yield from _changed(before, [self._feed, self._mode])
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
-    return [f"{axis}{new}" for axis, old, new in zip(AXIS_LETTERS, before, after) if old != new]
-
-
-def turns_only(move: Move) -> bool:
-    """Return whether only rotary axes move, at a feed in degrees."""
-    ends = zip(move.start, move.end, IS_LENGTH)
-    return move.kind != "arc" and not any(linear and a != b for a, b, linear in ends)
+    return [new for old, new in zip(before, after) if old != new]
 
 
 def text_of(recording: Recording) -> str:
     lines = [HEAD, *(f"{key} {recording.facts[key]}" for key in FACTS)]
-    writer = RecordingWriter(recording.unit)
-    block = None
+    writer, block, error = RecordingWriter(recording.unit.mm), None, recording.error
     for step in recording.steps:
         if step.block != block:
             block = step.block
-            lines += ["", f"{block}: {recording.blocks.get(block, '')}".rstrip()]
+            lines += _block_lines(recording, block)
         lines.append(writer.line(step))
-    error = recording.error
     if error and error.line != block and error.line in recording.blocks:
-        lines += ["", f"{error.line}: {recording.blocks[error.line]}".rstrip()]
+        lines += _block_lines(recording, error.line)
     last = f"error at {error.line}: {error.text}" if error else f"end: {recording.end}"
     return "\n".join([*lines, "", last, ""])
+
+
+def _block_lines(recording: Recording, block: int) -> tuple[str, str]:
+    return "", f"{block}: {recording.blocks.get(block, '')}".rstrip()
 
 
 class RecordingReader:
@@ -212,9 +197,9 @@ class RecordingReader:
         self.steps: list[RecordedStep] = []
         self.blocks: dict[int, str] = {}
         self.ending: tuple[Error | None, str] | None = None
-        self._scales = [unit if linear else 1.0 for linear in IS_LENGTH]
+        self._unit = unit
         self._block = 0
-        self._at: Position = (0.0,) * 9
+        self._at = STILL
         self._feed, self._mode = 0.0, "G94"
 
     def take(self, line: str) -> None:
@@ -234,13 +219,10 @@ class RecordingReader:
 
     def _move(self, line: str) -> Move:
         words = MOVE.fullmatch(line)
-        if not words:
+        if not words or (words[1] == "arc") != (words[3] is not None):
             raise TraceTextError("neither a move nor a note")
         kind, ends, centre, turns, plane, rotation, feed, mode = words.groups()
-        if (kind == "arc") != (centre is not None):
-            raise TraceTextError("an arc has a centre, other moves have none")
-        start = self._at
-        self._at = self._position(ends)
+        start, self._at = self._at, self._position(ends, self._at)
         self._feed, self._mode = float(feed or self._feed), mode or self._mode
         move = Move(
             kind,
@@ -252,21 +234,19 @@ class RecordingReader:
             feed_mode="" if kind == "rapid" else self._mode,
             plane=int(plane or 17),
             tool=-1,
-            tool_offset=(0.0,) * 9,
+            tool_offset=STILL,
             centre=self._position(centre, start)[:3] if centre is not None else None,
             turns=int(turns or 0),
             rotation=float(rotation or 0.0),
         )
-        return move if kind == "rapid" else move._replace(feed=self._feed_in_mm(move))
+        is_rapid = kind == "rapid"
+        return move if is_rapid else move._replace(feed=self._feed * feed_unit(move, self._unit))
 
-    def _feed_in_mm(self, move: Move) -> float:
-        return self._feed * (1.0 if turns_only(move) else self._scales[0])
-
-    def _position(self, words: str, start: Position | None = None) -> Position:
-        position = list(start or self._at)
+    def _position(self, words: str, start: Position) -> Position:
+        position = list(start)
         for word in words.split():
             axis = AXIS_LETTERS.index(word[0])
-            position[axis] = float(word[1:]) * self._scales[axis]
+            position[axis] = float(word[1:]) * (self._unit if IS_LENGTH[axis] else 1.0)
         return tuple(position)
 
 

@@ -57,30 +57,18 @@ class Baseline:
         if not path.exists() or path.read_bytes() != content:
             write(path, content)
 
-    def drop(self, name: str) -> None:
-        """Remove the trace of a program, and its folder if nothing else is in it."""
-        path = self.trace_file(name)
-        path.unlink()
-        while path.parent != self.directory and not any(path.parent.iterdir()):
-            path = path.parent
-            path.rmdir()
-
     def in_folders(self, programs: Path) -> list[str]:
         """Return the present programs in the folders recorded as a whole."""
         names = (program_names(programs, programs / folder) for folder in self.folders)
         return sorted({name for found in names for name in found})
 
     def name_of(self, program: Path) -> str:
-        try:
-            return program.relative_to(self.programs).as_posix()
-        except ValueError:
-            raise UsageError(
-                f"{program}: not in {self.programs}, the programs of {self.directory}; "
-                "use another -d for it"
-            ) from None
+        if not program.is_relative_to(self.programs):
+            where = f"{self.programs}, the programs of {self.directory}"
+            raise UsageError(f"{program}: not in {where}; use another -d for it")
+        return program.relative_to(self.programs).as_posix()
 
     def save(self) -> None:
-        self.directory.mkdir(parents=True, exist_ok=True)
         about = {
             "format": FORMAT,
             "ini": self._relative(self.ini),
@@ -109,14 +97,12 @@ def load(directory: Path) -> Baseline:
         values = json.loads(about.read_text(encoding="utf-8"))
         known, folders = values.pop("format") == FORMAT, tuple(values.pop("folders"))
         paths = {key: _absolute(directory, value) for key, value in values.items()}
-        if not (paths["ini"] and paths["programs"] and all(isinstance(f, str) for f in folders)):
-            raise TypeError
-        baseline = Baseline(directory, folders=folders, **paths)
+        named = known and paths["ini"] and paths["programs"]
+        if not (named and all(isinstance(folder, str) for folder in folders)):
+            raise ValueError
+        return Baseline(directory, folders=folders, **paths)
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise UsageError(f"{about}: not a file of g12 regress") from None
-    if not known:
-        raise UsageError(f"{about}: written by another version of g12")
-    return baseline
+        raise UsageError(f"{about}: not a file of g12 regress, or of another version") from None
 
 
 def _absolute(directory: Path, name: str | None) -> Path | None:
@@ -127,9 +113,3 @@ def program_names(root: Path, folder: Path) -> list[str]:
     """Return the programs in a folder and below, by their paths below ``root``."""
     found = (path for path in folder.rglob("*") if path.suffix.lower() in PROGRAM_SUFFIXES)
     return sorted(path.relative_to(root).as_posix() for path in found if path.is_file())
-
-
-def common_folder(programs: Iterable[Path]) -> Path:
-    """Return the deepest folder that holds all programs and folders given."""
-    folders = [path if path.is_dir() else path.parent for path in programs]
-    return Path(os.path.commonpath(folders))

@@ -7,18 +7,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 
 from g12.tools.regress.differences import Difference
-from g12.tools.regress.recorder import (
-    ADDED,
-    CHANGED,
-    FAILED,
-    MISSING,
-    NEW,
-    SAME,
-    Result,
-)
+from g12.tools.regress.recorder import ADDED, CHANGED, FAILED, MISSING, NEW, SAME, Result
 from g12.tools.units import counted_as
 
-VERDICTS = (NEW, SAME, CHANGED, ADDED, MISSING, FAILED)
+VERDICTS = {verdict: verdict for verdict in (NEW, SAME, CHANGED, ADDED, MISSING, FAILED)}
+VERDICTS[SAME] = "as recorded"
 REASONS = {ADDED: "it is not recorded", MISSING: "it was recorded"}
 MOST_FINDINGS = 20  # of a program, in text; JSON has every one
 MOST_NAMED_LINES = 4
@@ -30,8 +23,7 @@ def text_report(results: Sequence[Result], notes: Sequence[str]) -> Iterator[str
     for result in results:
         yield from lines_of_result(result)
     counts = Counter(result.verdict for result in results)
-    texts = ((verdict, "as recorded" if verdict == SAME else verdict) for verdict in VERDICTS)
-    listed = [f"{counts[verdict]} {text}" for verdict, text in texts if counts[verdict]]
+    listed = [f"{counts[verdict]} {text}" for verdict, text in VERDICTS.items() if counts[verdict]]
     yield f"{counted_as(len(results), 'program')}: {', '.join(listed)}"
 
 
@@ -60,20 +52,15 @@ def _where(finding: Difference) -> str:
     if not finding.lines and not finding.recorded_lines:
         return ":"
     first, *others = finding.lines or finding.recorded_lines
-    shown = ", ".join(map(str, others[:MOST_NAMED_LINES]))
-    more = f" and {len(others) - MOST_NAMED_LINES} more" if len(others) > MOST_NAMED_LINES else ""
-    also = f" (also {shown}{more})" if others else ""
+    shown = [*map(str, others[:MOST_NAMED_LINES]), *("…" for _ in others[MOST_NAMED_LINES:][:1])]
+    also = f" (also {', '.join(shown)})" if others else ""
     return f":{first}{'' if finding.lines else ' as recorded'}:{also}"
 
 
 def json_report(results: Sequence[Result], notes: Sequence[str], good: bool) -> str:
-    programs = [_as_json(result) for result in results]
+    programs = [asdict(result) for result in results]
+    for program in programs:
+        del program["notes"]
+        for finding in program["findings"]:
+            del finding["was"], finding["now"]
     return json.dumps({"good": good, "notes": list(notes), "programs": programs}, indent=2)
-
-
-def _as_json(result: Result) -> dict:
-    values = asdict(result)
-    values.pop("notes")
-    for finding in values["findings"]:
-        del finding["was"], finding["now"]
-    return values

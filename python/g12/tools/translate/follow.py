@@ -3,29 +3,25 @@
 
 A block that is reached again in another state is translated again in what both have in common, so
 the last translation of each block holds on every way. A mode can only become unsure: it ends.
-
-A program that is called in different modes is copied for each, where one of its blocks depends on
-the mode. The usual case are the holes that two drilling cycles share: X and Y words alone.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Any
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
-from g12.tools.translate.blocks.modal import GROUP_OF, UNSURE, ModalState, merged
-from g12.tools.translate.jumps import OPENING
+from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
+from g12.tools.translate.macros import STATEMENTS
 from g12.tools.translate.on_lathe.sections import before_loop
 from g12.tools.translate.phases import translate_words
 from g12.tools.translate.rules.modes import keep_modes
 from g12.tools.translate.rules.motion import is_plain
-from g12.tools.translate.statements import STATEMENTS
-from g12.tools.translate.structure import MAIN, Structure, find_ends, ways_from
+from g12.tools.translate.structure import MAIN, OPENING, Structure, ways_from
 
 Progress = Callable[[int], None]
 
@@ -33,9 +29,8 @@ Progress = Callable[[int], None]
 class FollowedProgram:
     """The drafts of a program's blocks, None where a block is never reached.
 
-    ``falls_off`` are the blocks after which a program is over without an end of its own,
-    ``has_end``: an end is reached, ``kinds`` how each program is called, ``callers`` by which
-    blocks.
+    ``falls_off`` are the blocks after which a program is over without an end of its own, ``kinds``
+    how each program is called, ``callers`` by which blocks.
     """
 
     def __init__(self, structure: Structure, control: Control, progress: Progress) -> None:
@@ -43,7 +38,6 @@ class FollowedProgram:
         count = len(structure.blocks)
         self.drafts: list[Draft | None] = [None] * count
         self.falls_off: set[int] = set()
-        self.has_end = False
         self.kinds: dict[int, str] = {}
         self.callers: dict[int, set[int]] = defaultdict(set)
         self._states: list[ModalState | None] = [None] * count
@@ -78,9 +72,6 @@ class FollowedProgram:
             index=index,
             programs=structure.entries,
             program=self._blocks_of[structure.programs[index]],
-            called_as=structure.called_as.get(index, 0),
-            compared=structure.compared,
-            jumps=index in structure.jumps.targets,
         )
         try:
             problem = block.problem or structure.problems.get(index)
@@ -92,7 +83,6 @@ class FollowedProgram:
                 statement(draft, structure)
             else:
                 self._translate_words(draft)
-                draft.after += structure.jumps.at.get(index, ())
         except NotTranslated as refusal:
             draft.refusal = refusal
             keep_modes(draft)
@@ -103,8 +93,7 @@ class FollowedProgram:
         index, number = draft.index, self.structure.programs[draft.index]
         is_macro = self.kinds.get(number) == "macro"
         if is_macro:
-            last = self.structure.last_returns.get(number) == index and not self._parted(index)
-            draft.return_text = f"o<macro_{number}> {'endsub' if last else 'return'}"
+            draft.return_text = f"o<macro_{number}> return"
         begins = index in self.structure.starts or draft.begins_program()
         begun = self.structure.starts.get(index, MAIN)
         word = draft.take("O") if begins else None
@@ -117,48 +106,31 @@ class FollowedProgram:
         elif begins:
             draft.head = f"o<macro_{number}> sub" if is_macro else f"O{number}"
 
-    def _parted(self, index: int) -> bool:
-        """Whether a block is in what jumps part or a condition rules: no program ends so."""
-        partners, spans = self.structure.partners.items(), self.structure.jumps.spans
-        ruled = any(start < index < end for start, end in partners)
-        return ruled or any(first <= index <= last for first, last in spans)
-
     def ends_of_macros(self) -> dict[int, str]:
-        """Return the end that a macro needs after its last block, if that is no return."""
-        ends = {}
-        for number in (n for n, kind in self.kinds.items() if kind == "macro"):
-            last = self.structure.last_returns.get(number, -1)
-            if self._parted(last):
-                following = self.structure.end_of(self.structure.entries[number])
-                ends[following - 1] = f"o<macro_{number}> endsub"
-        return ends
+        """Return the line that ends each macro, by the index of its last block."""
+        entries = {
+            n: self.structure.entries[n] for n, kind in self.kinds.items() if kind == "macro"
+        }
+        end_of = self.structure.end_of
+        return {end_of(at) - 1: f"o<macro_{n}> endsub" for n, at in entries.items()}
 
     def _leave(self, index: int, draft: Draft) -> None:
         if draft.call:
             self._call(index, draft, draft.call)
         elif draft.returns:
             self._return(self.structure.programs[index], draft.state)
-        elif draft.ends:
-            self.has_end = True
         elif draft.follows is not None:
             self._arrive(draft.follows - 1, draft.follows, draft.state)
-        else:
+        elif not draft.ends:
             self._go_on(index, draft.state)
 
     def _go_on(self, index: int, state: ModalState) -> None:
-        block = self.structure.blocks[index]
-        condition = block.expression if block.kind in ("goto", *OPENING) else None
         for last, following in ways_from(self.structure, index):
-            then = state
-            if condition:
-                is_true = (following == index + 1) == (block.kind in OPENING)
-                then = state.giving(condition.set_if_true if is_true else condition.set_if_false)
-            self._arrive(last, following, then)
+            self._arrive(last, following, state)
 
     def _arrive(self, index: int, following: int, state: ModalState) -> None:
         if following == index + 1 and self.structure.is_over(following):
             self.falls_off.add(index)
-            self.has_end = self.has_end or self.structure.programs[index] == MAIN
         else:
             self._pending.append((following, state))
 
@@ -197,7 +169,6 @@ class FollowedProgram:
 
     def _return(self, number: int, state: ModalState) -> None:
         if number == MAIN:
-            self.has_end = True
             self._pending.append((self.structure.main, state))  # M99 there: from the top again
             return
         known = self._exits.get(number)
@@ -218,53 +189,3 @@ class FollowedProgram:
 def _start_state(control: Control) -> ModalState:
     known: dict[str, Any] = {GROUP_OF[code]: code for code in control.start if code in GROUP_OF}
     return ModalState(**known)
-
-
-DEEPEST_CALLS = 8  # calls within calls, each of which can need a round
-MOST_COPIES = 100
-MOST_BLOCKS = 200_000  # with the copies
-
-
-def followed_program(structure: Structure, control: Control, progress: Progress) -> FollowedProgram:
-    for _ in range(DEEPEST_CALLS):
-        followed = FollowedProgram(structure, control, progress)
-        if not _add_copies(followed):
-            return followed
-        find_ends(structure, control)
-    return FollowedProgram(structure, control, progress)
-
-
-def _add_copies(followed: FollowedProgram) -> bool:
-    structure = followed.structure
-    added = False
-    for number, groups in list(_differing_calls(followed)):
-        for calls in groups[1:]:
-            if len(structure.copies) >= MOST_COPIES or len(structure.blocks) >= MOST_BLOCKS:
-                return added
-            structure.add_copy(number, calls)
-            added = True
-    return added
-
-
-def _differing_calls(followed: FollowedProgram) -> Iterator[tuple[int, list[list[int]]]]:
-    """Yield programs with an unsure block, and their calls grouped by those modes."""
-    programs = followed.structure.programs
-    pending = [
-        (programs[draft.index], draft.refusal.modes)
-        for draft in followed.drafts
-        if draft and draft.refusal and draft.refusal.modes
-    ]
-    visited = {(MAIN, modes) for _, modes in pending}
-    while pending:
-        number, modes = pending.pop()
-        if (number, modes) in visited:
-            continue
-        visited.add((number, modes))
-        groups: dict[tuple, list[int]] = {}
-        for index in sorted(followed.callers[number]):
-            values = tuple(getattr(followed.drafts[index].state, mode) for mode in modes)
-            groups.setdefault(values, []).append(index)
-            if UNSURE in values:
-                pending.append((programs[index], modes))
-        if len(groups) > 1:
-            yield number, list(groups.values())

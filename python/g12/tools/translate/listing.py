@@ -25,8 +25,6 @@ def _head(control: Control) -> Iterator[str]:
     yield from (f"  source: {text}" for text in control.sources)
     yield from (f"  our reading: {text}" for text in control.readings)
     yield f"  holds at the start: {' '.join(control.start)}"
-    if control.is_lathe:
-        yield f"  F of a block with C and a slide: {control.feed_of_c}"
     yield f"  numbers without a point: {control.decimals or 'refused where it matters'}"
 
 

@@ -31,7 +31,6 @@ def on_machine(control: Control, ini: Ini) -> Control:
     own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
     live = ini.get(INI_SECTION, LIVE_SPINDLE) or ""
     holes: dict[str, Any] = {"clamp": " ".join(clamp)} if clamp else {}
-    holes |= {"spindle": int(live)} if live else {}
     of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}
     m_codes = m_codes_of(ini.get, remaps, ini.directory)
     polar = (_code_of(remaps, "polar_on", "G"), _code_of(remaps, "polar_off", "G"))

@@ -9,24 +9,22 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import (
     ALL,
-    NAMED_PROGRAMS,
     ForeignBlock,
     blocks_of,
     remarks_of,
     source_lines,
 )
-from g12.tools.translate.follow import FollowedProgram, followed_program
+from g12.tools.translate.follow import FollowedProgram
+from g12.tools.translate.macros import unset_variables
 from g12.tools.translate.native import (
     Construct,
     lacking_constructs,
     own_constructs,
     with_message,
 )
-from g12.tools.translate.order import written_order
-from g12.tools.translate.output import lines_of, output_lines
+from g12.tools.translate.output import lines_of, output_lines, written_order
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
 from g12.tools.translate.structure import MAIN, structure_of
-from g12.tools.translate.variables import unset_locals
 from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
@@ -59,7 +57,7 @@ def translate_program(
     blocks = _read_blocks(rows, control, progress)
     control = control_of_program(control, blocks)
     structure = structure_of(blocks, control)
-    followed = followed_program(
+    followed = FollowedProgram(
         structure,
         control,
         lambda index: progress(READ + FOLLOWED * min(1, index / len(blocks))),
@@ -121,11 +119,10 @@ def _refusals(followed: FollowedProgram) -> Iterator[RefusedBlock]:
         sentence = _missing_end(followed, index)
         if sentence and not followed.drafts[index].refusal:
             yield RefusedBlock(followed.structure.blocks[index].line, sentence)
-    if followed.structure.jumps.targets and not followed.has_end:
-        block = followed.structure.blocks[max(followed.structure.jumps.targets)]
-        yield RefusedBlock(block.line, "the program never ends: no jump leads to its end")
-    for line, sentence in unset_locals(followed):
-        yield RefusedBlock(line, sentence)
+    for number, draft in zip(followed.structure.programs, followed.drafts):
+        is_macro = followed.kinds.get(number) == "macro"
+        for sentence in unset_variables(draft, number if is_macro else 0) if draft else ():
+            yield RefusedBlock(draft.block.line, sentence)
 
 
 def _unwritable(draft: Draft) -> NotTranslated | None:
@@ -140,7 +137,7 @@ def _unwritable(draft: Draft) -> NotTranslated | None:
 def _missing_end(followed: FollowedProgram, index: int) -> str | None:
     number = followed.structure.programs[index]
     following = followed.structure.starts.get(index + 1, 0)
-    if LOCAL_BLOCKS <= following < NAMED_PROGRAMS:
+    if following >= LOCAL_BLOCKS:
         return f"N{following - LOCAL_BLOCKS} is called by M97 and also reached from above it"
     if number == MAIN:
         return None

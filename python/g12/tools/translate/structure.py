@@ -1,29 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which blocks of a file are its main program and which its subprograms, and who calls them."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import count
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import ENDS
-from g12.tools.translate.blocks.lexer import NAMED_PROGRAMS, ForeignBlock, program_name
-from g12.tools.translate.jumps import OPENING, Jumps, find_jumps
+from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
 TEXT = ("words", "tape")  # kinds of blocks that do nothing if they have no words
 LOCAL_SUBPROGRAM = "local subprogram"
 CALLS = frozenset(("subprogram", "macro call"))
-COPIES = 10_000_000  # the first copy of O100 is O10000100
+OPENING = ("while", "if")  # kinds of blocks that a partner closes
 
 
 @dataclass
 class Structure:
-    """The blocks of a file up to its end, by index; the blocks of copies are after its ``own``.
-
-    A copy is a program that is called in different modes, once for each.
-    """
+    """The blocks of a file up to its end, by index."""
 
     blocks: list[ForeignBlock]
     behind_tape: Collection[int]  # numbers of the programs after the closing ``%``
@@ -34,14 +29,6 @@ class Structure:
     programs: list[int] = field(default_factory=list)  # the program of each block
     partners: dict[int, int] = field(default_factory=dict)  # WHILE and END, condition and end
     problems: dict[int, str] = field(default_factory=dict)
-    last_returns: dict[int, int] = field(default_factory=dict)  # the last M99 of each program
-    jumps: Jumps = field(default_factory=Jumps)
-    compared: dict[int, frozenset[int]] = field(default_factory=dict)  # with #0, by program
-    copies: dict[int, int] = field(default_factory=dict)  # the original of each copy
-    called_as: dict[int, int] = field(default_factory=dict)  # the copy that a block calls
-
-    def __post_init__(self) -> None:
-        self.own = len(self.blocks)
 
     def add_entry(self, number: int, index: int) -> None:
         if number in self.entries:
@@ -50,25 +37,10 @@ class Structure:
             self.entries[number] = index
             self.starts[index] = number
 
-    def add_copy(self, number: int, calls: Iterable[int]) -> None:
-        """Add a copy of a program, for some of the blocks that call it."""
-        start = self.entries[number]
-        blocks = self.blocks[start : self.end_of(start)]
-        base = len(self.blocks)
-        copy = next(n for k in count(1) if (n := number + k * COPIES) not in self.entries)
-        self.blocks += blocks
-        self.add_entry(copy, base)
-        self.copies[copy] = self.copies.get(number, number)
-        for index in range(start, start + len(blocks)):
-            if index in self.called_as:
-                self.called_as[base + index - start] = self.called_as[index]
-        self.called_as.update(dict.fromkeys(calls, copy))
-
     def end_of(self, start: int) -> int:
         """Return the index after the last block of the program that begins at a block."""
         end = min((index for index in self.starts if index > start), default=len(self.blocks))
-        tape = end == self.own and self.blocks[end - 1].kind == "tape"
-        return end - tape
+        return end - (self.blocks[end - 1].kind == "tape")
 
     def is_over(self, index: int) -> bool:
         """Whether a program is over before a block: after its last one."""
@@ -76,9 +48,7 @@ class Structure:
 
     def name_of(self, number: int) -> str:
         """Return a program's number as in the file: O100, or N100 for a block that M97 calls."""
-        number = self.copies.get(number, number)
-        local = LOCAL_BLOCKS <= number < NAMED_PROGRAMS
-        return f"N{number - LOCAL_BLOCKS}" if local else program_name(number)
+        return f"N{number - LOCAL_BLOCKS}" if number >= LOCAL_BLOCKS else f"O{number}"
 
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
@@ -93,44 +63,14 @@ def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
         elif structure.entries:
             structure.starts[index], structure.main = MAIN, index
     _add_local_programs(structure, heads, control)
-    find_ends(structure, control)
-    return structure
-
-
-def find_ends(structure: Structure, control: Control) -> None:
     _pair_loops(structure)
     structure.programs = _carried_on(structure.starts, len(structure.blocks), MAIN)
-    returns = _codes_meaning(control, "return")
-    for index, (number, block) in enumerate(zip(structure.programs, structure.blocks)):
-        if block.has_code(returns):
-            structure.last_returns[number] = index
-        if block.compared:
-            known = structure.compared.get(number, frozenset())
-            structure.compared[number] = known | block.compared
-    numbers = dict(_jump_numbers(structure, control))
-    structure.jumps = find_jumps(structure.blocks, structure.programs, structure.partners, numbers)
-    structure.problems.update(structure.jumps.problems)
+    return structure
 
 
 def _carried_on(starts: Mapping[int, int], count: int, value: int) -> list[int]:
     """Return the value of the last start for each block, ``value`` before the first."""
     return [value := starts.get(index, value) for index in range(count)]
-
-
-def _jump_numbers(structure: Structure, control: Control) -> Iterator[tuple[int, int]]:
-    """Yield the blocks that jump (GOTO, the main program's M99 P) and their N numbers."""
-    returns = _codes_meaning(control, "return")
-    targets = _numbers_of_returns(structure, returns)
-    for index, block in enumerate(structure.blocks):
-        if block.kind == "goto":
-            yield index, int(block.label)
-        elif structure.programs[index] == MAIN and block.has_code(returns):
-            yield from ((index, number) for number in block.numbers("P"))
-        else:
-            called = _called_in(block, control, structure.entries)[:1]
-            if index in structure.called_as:
-                called = [structure.called_as[index]]
-            yield from ((index, number) for one in called for number in targets.get(one, ()))
 
 
 def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
@@ -140,30 +80,11 @@ def ways_from(structure: Structure, index: int) -> Iterator[tuple[int, int]]:
     written before a loop's head is run once. A condition leads to its end, too.
     """
     kind, partner = structure.blocks[index].kind, structure.partners.get(index)
-    target = structure.jumps.targets.get(index)
-    if target is not None:
-        yield index, target
-    if partner is not None and kind == "end":
-        yield partner, partner + 1
-        yield index, index + 1
-    elif target is None or structure.blocks[index].expression:
-        yield index, index + 1
-    if partner is not None and kind == "while":
+    yield index, index + 1
+    if partner is not None and kind in ("while", "end"):
         yield partner, partner + 1
     if partner is not None and kind == "if":
         yield index, partner
-
-
-def _numbers_of_returns(structure: Structure, returns: frozenset[str]) -> dict[int, set[int]]:
-    """Return the N numbers to which each program returns by M99 P."""
-    targets: dict[int, set[int]] = {}
-    for index, block in enumerate(structure.blocks):
-        number = structure.programs[index]
-        if number != MAIN and block.has_code(returns):
-            named = block.numbers("P")
-            if targets.setdefault(number, named) != named:
-                structure.problems[index] = "M99 with and without P in one program, or two P"
-    return targets
 
 
 def _called_in(block: ForeignBlock, control: Control, numbers: Collection[int]) -> list[int]:
@@ -175,10 +96,6 @@ def _called_in(block: ForeignBlock, control: Control, numbers: Collection[int]) 
         return []
     programs = [called_program(n, control, numbers)[0] for n in block.numbers("P")]
     return programs or [LOCAL_BLOCKS + number for number in block.numbers("Q")]
-
-
-def _codes_meaning(control: Control, *meanings: str) -> frozenset[str]:
-    return frozenset(code for code, meaning in control.meanings.items() if meaning in meanings)
 
 
 def _program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:

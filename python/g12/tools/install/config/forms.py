@@ -12,11 +12,12 @@ from itertools import chain
 from pathlib import Path
 
 from g12.lengths import is_inch
+from g12.tools.forms.table import FORMS, HANDLERS
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 from g12.tools.install.config.screen import (
     AXIS,
-    FORMS,
+    NGCGUI_PAGE,
     QTVCP,
     glade_files,
     screen_of,
@@ -26,20 +27,8 @@ from g12.tools.install.config.screen import (
 )
 
 FORMS_OF = {  # the forms of a feature
-    "haas": ("form_haas",),
-    "yasnac": ("form_yasnac",),
-    "mitsubishi": ("form_mitsubishi",),
-    "circle-mill": ("form_circle_mill",),
-    "bore": ("form_bore",),
-    "thread": ("form_thread",),
-    "frame": ("form_frame",),
-    "polar-shapes": (
-        "form_polygon",
-        "form_slot",
-        "form_face_pocket",
-        "form_face_holes",
-        "form_side_holes",
-    ),
+    feature: tuple(f"form_{form.name}" for form in FORMS if form.feature == feature)
+    for feature in HANDLERS
 }
 UNIT_NAMES = ("inch", "mm")
 FORM_SUBS = ("form_start", "form_end")  # subs that forms call
@@ -103,8 +92,8 @@ def screen_lines(config: Config, prefix: str) -> dict[str, list[str]]:
 def ngcgui_page(config: Config, prefix: str) -> dict[str, list[str]]:
     """Return the lines, by section, of the page that contains GladeVCP's ngcgui."""
     if screen_of(config) == QTVCP:
-        return window_line(FORMS, prefix)
-    return tab_or_window(config, FORMS, prefix)
+        return window_line(NGCGUI_PAGE, prefix)
+    return tab_or_window(config, NGCGUI_PAGE, prefix)
 
 
 def packages(config: Config) -> list[str]:

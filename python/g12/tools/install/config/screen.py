@@ -41,7 +41,7 @@ class OwnKey(NamedTuple):
 
 
 INCLUDE = INCLUDES.relative_to(ROOT).as_posix()
-FORMS = Page("Forms", f"{INCLUDE}/forms.ui")
+NGCGUI_PAGE = Page("Forms", f"{INCLUDE}/forms.ui")
 CYCLES = Page("Cycles", f"{INCLUDE}/cycles.ui", "python/g12/tools/cycles_page/gtk_view.py")
 FACE = Page("Face", f"{INCLUDE}/face_view.ui")
 AXIS, QTVCP, PROBE_BASIC = "axis", "qtvcp", "probe_basic"

@@ -24,16 +24,12 @@ from typing import Any, NamedTuple
 from g12.tools.translate.blocks.expressions import OWN
 
 CONTROL_FOLDER = Path(__file__).parents[1] / "controls"
-HOLE_MEANINGS = (  # cycles of a lathe
-    "hole", "bore", "face tap right", "face tap left",
-    *(f"{where} {what}" for where in ("face", "side")
-      for what in ("hole", "bore", "tap", "live tap right", "live tap left")),
-)  # fmt: skip
+HOLE_MEANINGS = ("face hole", "face bore", "side hole", "side bore")  # cycles of a lathe
 MEANINGS = {
     "G": (
         "dwell", "polar on", "polar off", "cylinder", "speed limit or origin",
         "numbered offset", "offset by program", "exact stop", "macro call", "cancel cycle",
-        "drilling cycle", "roughing along Z", "roughing along X", "pattern repeating", "finishing",
+        "drilling cycle", "roughing along Z", "roughing along X", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
         "circle of holes", "arc of holes", "row of holes",
@@ -41,7 +37,7 @@ MEANINGS = {
         "radius or diameter",
     ),
     "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
-        "no thread chamfer", "rigid tapping", "tool change",
+        "no thread chamfer", "tool change",
     ),
 }  # fmt: skip
 PLACES = ("clamp C", "unclamp C", "C axis on", "C axis off")  # of M codes: `on_machine`
@@ -70,7 +66,7 @@ TOP = {
         "[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be extensions in small letters such as nc tap"
     ),
     "start": TextRule(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
-    "decimals": ("least", "whole"), "feed_of_c": ("mm and degrees", "degrees", "mm", "say"),
+    "decimals": ("least", "whole"), "feed_of_c": ("mm",),
     "at_zero": str, "remarks": bool, "sources": list, "readings": list,
 }  # fmt: skip
 TABLES: dict[str, Any] = {
@@ -85,15 +81,14 @@ TABLES: dict[str, Any] = {
     },
     "tools": {
         "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO", listed=True),
-        "size": ("diameter", "radius"), "pocket": ("last", "own"),
+        "pocket": ("last", "own"),
     },
     "reference": {"cancels_length": bool},
     "polar": {
-        "x": ("diameter", "radius", "inherit", "say"), "c": ("radius", "diameter"),
-        "rapid": ("refuse", "keep", "feed"),
+        "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
         "rapid_feed_mm": float, "rapid_feed_inch": float,
     },
-    "cylinder": {"word": ("radius", "diameter", "mapped")},
+    "cylinder": {"word": ("radius", "mapped")},
     "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
     "offsets": {"first_parameter": int},
     "variables": TextRule(
@@ -107,8 +102,7 @@ TABLES: dict[str, Any] = {
            for name in ("depth", "retract", "thread_least", "thread_allowance")},
     },
     "holes": {
-        "r": ("from start", "level", "none"), "q": ("increments", "lengths"),
-        "peck_word": ("Q", "D"), "out": ("full", "chip"), "clamp": str, "spindle": int,
+        "r": ("from start", "level"), "q": ("increments", "lengths"), "clamp": str,
     },
     "words": TextRule("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
     "spindles": TextRule("main|live", "must be a P word, and main or live", "P[0-9]+"),
@@ -145,7 +139,7 @@ class Control:
     meanings: Mapping[str, str]  # by code
     start: tuple[str, ...] = ()  # codes that hold when a program begins
     decimals: str = ""  # numbers without a point: ``least`` increments, ``whole`` units, "" unknown
-    feed_of_c: str = "say"  # the path of F where C and a slide move together, ``say``: unknown
+    feed_of_c: str = ""  # ``mm``: F is along the slides alone where C moves beside them
     at_zero: str = ""  # axes that the machine lacks and whose words may be 0
     extensions: tuple[str, ...] = ("nc",)  # of its programs' files, the usual one first
     remarks: bool = False  # text after ``;`` is a remark

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One block while the rules process it: its remaining words, and the lines that it becomes."""
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import Control
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock, ForeignWord
 from g12.tools.translate.blocks.modal import MOVES, UNSURE, ModalState
 
@@ -38,9 +38,6 @@ class Draft:
     index: int = 0  # of the block, unique in the file
     programs: Container[int] = ()  # numbers of the file's programs
     program: Sequence[tuple[int, ForeignBlock]] = ()  # the blocks of its program, with indices
-    called_as: int = 0  # the copy that its call is for, 0: none
-    compared: Mapping[int, frozenset[int]] = field(default_factory=dict)  # with #0, by program
-    jumps: bool = False  # another block than the next one follows
     return_text: str = "M99"
     head: str = ""  # the line that begins a program
     before: list[str] = field(default_factory=list)  # further lines
@@ -145,7 +142,7 @@ class Draft:
         value = getattr(self.state, group)
         if value == UNSURE:
             name = group.replace("_", " ")
-            raise NotSure(f"{why}, but the {name} here is not the same on every way", group)
+            raise NotTranslated(f"{why}, but the {name} here is not the same on every way")
         return value
 
     def written(self) -> str:

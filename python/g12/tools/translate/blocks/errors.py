@@ -7,16 +7,6 @@ LONGEST_EXCERPT = 24
 class NotTranslated(ValueError):
     """A word or a code that is not understood; the message is a sentence without the line."""
 
-    modes: tuple[str, ...] = ()  # that cause it: they differ between ways to the block
-
-
-class NotSure(NotTranslated):
-    """A block whose meaning depends on ``modes`` that are not the same on every way to it."""
-
-    def __init__(self, sentence: str, *modes: str) -> None:
-        super().__init__(sentence)
-        self.modes = modes
-
 
 def excerpt(text: str) -> str:
     return text if len(text) <= LONGEST_EXCERPT else f"{text[: LONGEST_EXCERPT - 1]}…"

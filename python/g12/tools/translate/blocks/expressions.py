@@ -6,7 +6,7 @@ What differs from LinuxCNC and is written anew or refused:
 - FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
 - MOD has the sign of what is divided there, none here: written with ABS and a sign.
 - AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
-- #0, the empty variable, has no counterpart: a macro can ask whether one of its own is EMPTY.
+- #0, the empty variable, has no counterpart.
 """
 
 import re
@@ -23,14 +23,11 @@ LONGER_NAMES = {"SQR": "SQRT"}
 COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
 JOINING = frozenset(("AND", "OR", "XOR"))
 DEEPEST_BRACKETS = 8  # brackets within brackets
-LOCAL_VARIABLES = range(1, 34)  # of one call, as LinuxCNC keeps them up to #30
-SHARED = frozenset((31, 32, 33))  # which LinuxCNC has once for all calls
-EMPTY = "-9999999"  # passed to a macro for an empty variable that it compares with #0
-EMPTY_QUESTION = re.compile(r"(EQ|NE)#0+(?![0-9.])")
+LOCAL_VARIABLES = range(1, 31)  # of one call
 MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
 OTHER_MEANING = (
-    "means something else on LinuxCNC: variables are #1 to #33, #100 to #199 and #500 to #999"
+    "means something else on LinuxCNC: variables are #1 to #30, #100 to #199 and #500 to #999"
 )
 POSITION_VARIABLES = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
 NONE: frozenset[int] = frozenset()
@@ -43,9 +40,6 @@ class Expression(NamedTuple):
     read: frozenset[int]  # variables in it
     is_condition: bool
     end: int  # index after it in the text
-    compared: frozenset[int] = NONE  # local variables that it compares with #0
-    set_if_true: frozenset[int] = NONE  # those of them that then have a value
-    set_if_false: frozenset[int] = NONE
 
 
 def value_from(text: str, start: int) -> Expression:
@@ -70,9 +64,6 @@ def whole_expression(text: str, start: int) -> Expression:
 def expression_from(text: str, start: int, depth: int = 0) -> Expression:
     """Return values with operators between them, as far as they go."""
     first = _operand(text, start, depth)
-    question = EMPTY_QUESTION.match(text, first.end)
-    if question and first.text in {f"#{n}" for n in first.read.intersection(LOCAL_VARIABLES)}:
-        return _empty_question(first, question)
     parts, operators, at = [first], [], first.end
     while operator := OPERATOR.match(text, at):
         parts.append(_operand(text, operator.end(), depth))
@@ -93,7 +84,7 @@ def _operand(text: str, start: int, depth: int) -> Expression:
 
 def _value(of: Expression, text: str) -> Expression:
     """Return an expression that is worked out from another's value: no condition."""
-    return Expression(text, of.read, False, of.end, of.compared)
+    return Expression(text, of.read, False, of.end)
 
 
 def _unsigned(text: str, at: int, depth: int) -> Expression:
@@ -132,7 +123,8 @@ def variable_number(digits: str) -> int:
     number = int(digits[:9])
     if number == 0:
         raise NotTranslated(
-            "#0, the empty variable, is translated in #… EQ #0 and #… NE #0 only, for #1 to #33"
+            "#0, the empty variable: LinuxCNC has none: give each argument in G65, and take the "
+            "question out"
         )
     if not _is_kept(number) and number not in POSITION_VARIABLES:
         say = f'say under [variables] what it is, {digits[:9]} = "…"'
@@ -164,21 +156,8 @@ def _function(name: str, text: str, at: int, depth: int) -> Expression:
     if not text.startswith("/[", argument.end):
         return _value(argument, f"ATAN{argument.text}/[1]")
     below = _brackets(text, argument.end + 1, depth)
-    read, compared = argument.read | below.read, argument.compared | below.compared
-    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end, compared)
-
-
-def _empty_question(variable: Expression, question: re.Match[str]) -> Expression:
-    own, is_equal = variable.read, question[1] == "EQ"
-    return Expression(
-        f"{variable.text} {question[1]} {EMPTY}",
-        NONE,
-        True,
-        question.end(),
-        own,
-        set_if_true=NONE if is_equal else own,
-        set_if_false=own if is_equal else NONE,
-    )
+    read = argument.read | below.read
+    return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end)
 
 
 def _joined(parts: list[Expression], operators: list[str]) -> Expression:
@@ -186,15 +165,11 @@ def _joined(parts: list[Expression], operators: list[str]) -> Expression:
     if operators == ["MOD"]:
         a, b = (part.text for part in parts)
         text = f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"
-    is_all, is_any = "AND" in operators, "OR" in operators
     return Expression(
         text,
         NONE.union(*(part.read for part in parts)),
         not (COMPARING | JOINING).isdisjoint(operators),
         parts[-1].end,
-        NONE.union(*(part.compared for part in parts)),
-        NONE.union(*(part.set_if_true for part in parts if is_all)),
-        NONE.union(*(part.set_if_false for part in parts if is_any)),
     )
 
 

@@ -40,9 +40,8 @@ HEADER = re.compile(r"\$.*%")  # of a file of an Okuma
 LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
 STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
-NAMED_PROGRAM = re.compile(r"O([A-PR-Z][A-PR-Z0-9]{1,3})$")  # Q is how often, in a call
-CALLED_PROGRAM = re.compile(r"O([0-9]{1,8}|[A-PR-Z][A-PR-Z0-9]{1,3})(?:Q([0-9]{1,4}))?")
-NAMED_PROGRAMS = 5_000_000  # O and a name of up to four characters is a number above this
+CALLED_PROGRAM = re.compile(r"O([0-9]{1,8})(?:Q([0-9]{1,4}))?")
+NO_JUMPS = "LinuxCNC has no jumps: write IF […] before each block, or WHILE […] DO and END"
 ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
 VARIABLE = re.compile("#([0-9]{1,9})")
 STOP_MACROS = ("3000", "3006")  # an alarm, a stop with a message
@@ -52,16 +51,13 @@ OBEYED_COMMENT = re.compile(
 BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
 BRACKET = re.compile("[(){}]")
 OTHER_CHARACTERS = str.maketrans("\N{MINUS SIGN}", "-", "\ufeff\u200b\0")
-DIGITS_AND_LETTERS = "0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 MOST_DIGITS = 24
 OTHER_TEXTS = {
     re.compile(r"^\$.*"): "begins the program of one of two channels: translate one channel's "
     "blocks, in a file of its own",
     re.compile("^[A-Z_][A-Z0-9_]*:"): "is a label, which these controls do not have: take out the "
     "colon",
-    re.compile(
-        "^O[A-Z][A-Z0-9]{4,}$"
-    ): "is a name: of O and up to four letters and digits here, or a number, as O1",
+    re.compile("^O[A-Z][A-Z0-9]*$"): "is a name: programs have numbers here, as O1",
     re.compile("[0-9],[0-9]+"): "has a decimal comma: write a point",
     re.compile(rf"(?<![A-Z]){OWN_NAME}="): "sets a variable of the control's own: set it on the "
     "machine, and take this out",
@@ -126,7 +122,7 @@ class ForeignBlock(NamedTuple):
     """One block of a program, or a statement in its place.
 
     ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, ``if`` and ``endif``
-    around the blocks that a condition rules, ``stop`` or ``goto``.
+    around the blocks that a condition rules, or ``stop``.
     """
 
     line: int  # from 1
@@ -136,7 +132,7 @@ class ForeignBlock(NamedTuple):
     skipped: bool = False
     expression: Expression | None = None  # the condition, or the value of ``assign``
     variable: int = 0  # that ``assign`` sets
-    label: str = ""  # the number of DO, END and GOTO
+    label: str = ""  # the number of DO and END
     problem: str | None = None  # why it could not be read
 
     @property
@@ -144,10 +140,6 @@ class ForeignBlock(NamedTuple):
         """The number after the N that a block begins with, an O before it aside, if it is whole."""
         first = next((word for word in self.words if word.letter != "O"), None)
         return int(first.value) if first and first.letter == "N" and first.value.isdigit() else None
-
-    @property
-    def compared(self) -> frozenset[int]:
-        return self.expression.compared if self.expression else frozenset()
 
     @property
     def read(self) -> frozenset[int]:
@@ -304,9 +296,6 @@ def _statement(line: int, text: str) -> list[ForeignBlock]:
     statement = STATEMENT.match(rest)
     if statement:
         block, *ruled = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
-    elif NAMED_PROGRAM.match(rest):
-        word = ForeignWord("O", program_number(rest[1:]))
-        block, ruled = ForeignBlock(line, words=(word,), comments=(rest,)), []
     elif match := ASSIGNMENT.match(rest):
         block, ruled = _assignment(line, match, whole_expression), []
     else:
@@ -329,7 +318,7 @@ def _if(line: int, text: str) -> list[ForeignBlock]:
     condition = bracketed_from(text, 0)
     rest = text[condition.end :].removeprefix("THEN")
     if rest.startswith("GOTO"):
-        return [block._replace(expression=condition) for block in _goto(line, rest[4:])]
+        return _goto(line, rest[4:])
     head = ForeignBlock(line, "if", expression=condition)
     return [head, *_ruled(line, rest), ForeignBlock(line, "endif")]
 
@@ -344,7 +333,7 @@ def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     if text:
         block, *_ = _parsed(line, text)
         if block.kind not in ("words", "stop") or block.skipped:
-            raise NotTranslated("after IF […] only GOTO, #… = … and words are translated")
+            raise NotTranslated("after IF […] only #… = … and words are translated")
         yield block
 
 
@@ -367,9 +356,7 @@ def _end(line: int, text: str) -> list[ForeignBlock]:
 
 
 def _goto(line: int, text: str) -> list[ForeignBlock]:
-    if not re.fullmatch("[0-9]{1,9}", text):
-        raise NotTranslated(f"GOTO {excerpt(text)}: only a number of a block is translated")
-    return [ForeignBlock(line, "goto", label=text)]
+    raise NotTranslated(f"GOTO {excerpt(text)}: {NO_JUMPS}")
 
 
 def _call(line: int, text: str) -> list[ForeignBlock]:
@@ -377,7 +364,7 @@ def _call(line: int, text: str) -> list[ForeignBlock]:
     match = CALLED_PROGRAM.fullmatch(text)
     if not match:
         raise NotTranslated(f"CALL{excerpt(text)}: only a program and Q, how often, are translated")
-    words = [ForeignWord("M", "98"), ForeignWord("P", program_number(match[1]))]
+    words = [ForeignWord("M", "98"), ForeignWord("P", match[1])]
     words += [ForeignWord("L", match[2])] if match[2] else []
     return [ForeignBlock(line, words=tuple(words))]
 
@@ -385,20 +372,6 @@ def _call(line: int, text: str) -> list[ForeignBlock]:
 def _return(line: int, text: str) -> list[ForeignBlock]:
     """Read RTS of an Okuma control as M99."""
     return [ForeignBlock(line, words=(ForeignWord("M", "99"),))]
-
-
-def program_number(name: str) -> str:
-    """Return the number of a program by its name; names of letters are numbers, too."""
-    return name if name.isdigit() else str(NAMED_PROGRAMS + int(name, 36))
-
-
-def program_name(number: int) -> str:
-    """Return a program's number as a sentence says it, with the name that it may stand for."""
-    digits, rest = "", number - NAMED_PROGRAMS
-    while rest > 0:
-        digits, rest = DIGITS_AND_LETTERS[rest % 36] + digits, rest // 36
-    named = NAMED_PROGRAM.match(f"O{digits}")
-    return f"O{number} (O{digits})" if named else f"O{number}"
 
 
 STATEMENT_READERS = {
@@ -446,8 +419,6 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
             f"{letter}: ROUND in a word rounds to the least increment there, to whole numbers on "
             "LinuxCNC: take it out, nothing needs it"
         )
-    if value.compared:
-        raise NotTranslated(f"{letter}: #0, the empty variable, is translated in conditions only")
     kind = "number" if re.fullmatch(r"-?[0-9.]+", value.text) else "expression"
     return ForeignWord(letter, value.text, kind, value.read), value.end
 

@@ -11,6 +11,7 @@ from typing import NamedTuple, Self
 UNSURE = "?"  # different on different ways
 UNKNOWN = ""  # no value yet
 AS_PROGRAMMED = "="  # LinuxCNC is in the mode that the program is in
+IN_CYCLE = "cycle"  # and in the program's drilling cycle, with all of its words
 
 GROUPS = {
     "motion": ("G0", "G1", "G2", "G3"),
@@ -60,7 +61,6 @@ class ModalState(NamedTuple):
     own_motion: str = AS_PROGRAMMED  # LinuxCNC's mode where it is not the program's
     own_distance: str = AS_PROGRAMMED
     own_feed: str = AS_PROGRAMMED
-    held: tuple = ()  # slides that LinuxCNC has not moved yet, each with its position
     turning_cycle: str = UNKNOWN  # the turning cycle that X and Z repeat
     kept: tuple = ()  # values of the first blocks of cycles
     pass_words: tuple = ()  # the words of ``turning_cycle``
@@ -71,13 +71,9 @@ class ModalState(NamedTuple):
     spindle: str = UNKNOWN  # the M3 or M4 of the first spindle
     waiting: tuple | str = ()  # X and Y of a mill's program on a lathe at its next cut
     section: int | str = UNKNOWN  # the program in which a section on a lathe has begun
-    tap_speed: str = UNKNOWN  # the speed of a rigid tap
-    tap_top: float | str = UNKNOWN  # the Z level to which it returns
-    sizes: tuple = ()  # diameters that G10 L12 has set, by tool
     known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way
-    corner: bool | str = False  # the program's point is a corner that LinuxCNC has cut off
     at_x: float | str | None = None  # the program's point (`positions`)
     at_y: float | str | None = None
     at_z: float | str | None = None

@@ -28,7 +28,6 @@ STAYING = frozenset(  # codes that move nothing and leave the origin, or set it 
         "orientation",
         "thread chamfer",
         "no thread chamfer",
-        "rigid tapping",
     )
 )
 

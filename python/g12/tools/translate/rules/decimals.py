@@ -8,14 +8,13 @@ from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 
-LENGTH_WORDS = frozenset((*"XYZUVWIJKRQE", ",C", ",R"))
-ANGLE_WORDS = frozenset((*"ABC", ",A"))
+LENGTH_WORDS = frozenset("XYZUVWIJKRQE")
+ANGLE_WORDS = frozenset("ABC")
 COUNTING = {  # words of turning cycles that count or name, or are read with their cycle
-    "pattern repeating": "PQR",
     "threading": "PQA",
     **dict.fromkeys(("finishing", "pecking along Z", "pecking along X", "thread pass"), "PQ"),
     **dict.fromkeys(("roughing along Z", "roughing along X", "thread"), "PQ"),
-    **dict.fromkeys(HOLE_MEANINGS, "QD"),
+    **dict.fromkeys(HOLE_MEANINGS, "Q"),
 }
 UNIT = {"G20": "inch", "G21": "mm"}
 

@@ -8,7 +8,7 @@ them, which saves most of the time.
 import re
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
@@ -19,8 +19,9 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.positions import FIELDS, end_of_word
+from g12.tools.translate.blocks.positions import FIELDS, axis_of, end_of_word, is_unmoved
 
+SLIDES = frozenset("XYZ")
 INDIFFERENT = frozenset("NMSTFHD$")
 
 
@@ -29,7 +30,7 @@ def motion_mode(draft: Draft) -> None:
     if "G53" in codes or draft.state.cycle or draft.has_motion:
         return
     motion = next((code for code in codes if code in MOTIONS), "")
-    _refuse_rounding(draft, motion or draft.state.motion)
+    _refuse_corners(draft, motion or draft.state.motion)
     consumed = not CONSUMERS.isdisjoint(codes)
     if motion and consumed and (draft.axis_words() or not REFERENCES.isdisjoint(codes)):
         _take_motion(draft, motion)
@@ -39,11 +40,15 @@ def motion_mode(draft: Draft) -> None:
         _bare_words(draft)
 
 
-def _refuse_rounding(draft: Draft, motion: str) -> None:
-    """Refuse the R of a straight line, by which some controls round the corner."""
+def _refuse_corners(draft: Draft, motion: str) -> None:
+    """Refuse the words of a straight line by which some controls break or round its corner."""
     straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
-    if straight and "R" in draft.letters() and draft.axis_words():
-        raise NotTranslated(f"R beside {motion}: write the arc of the corner as a block")
+    words = "IKR" if draft.control.is_lathe else "R"
+    found = sorted(letter for letter in draft.letters() if letter[0] == "," or letter in words)
+    if straight and found and draft.axis_words():
+        raise NotTranslated(
+            f"{found[0]} beside {motion}: write the corner's line or arc as a block"
+        )
 
 
 def _moves(draft: Draft) -> bool:
@@ -68,7 +73,7 @@ def _bare_words(draft: Draft) -> None:
     if state.own_motion == AS_PROGRAMMED:
         return
     if state.motion == UNSURE:
-        raise NotSure("words without G0 or G1, which is not the same on every way here", "motion")
+        raise NotTranslated("words without G0 or G1, which is not the same on every way here")
     draft.put_first(state.motion)
     draft.change(own_motion=AS_PROGRAMMED)
 
@@ -114,6 +119,28 @@ def exact_stop(draft: Draft, code: ForeignWord) -> None:
     else:
         draft.comments.append(code.code)
         draft.after.append("G4 P0")
+
+
+def refuse_feed_of_c(draft: Draft) -> None:
+    """Refuse C beside a slide at a feed outside a section, but where F is the slides' alone.
+
+    On a Fanuc F is along the path of millimetres (X as a radius) and degrees together, on others
+    C's alone; LinuxCNC takes it along X, Y and Z and would turn C too fast.
+    """
+    axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
+    moved = {axis for axis in axes if not is_unmoved(draft, axis)}
+    as_here = draft.control.feed_of_c == "mm" or draft.state.feed_mode == "G93"
+    if "C" in moved and moved.intersection(SLIDES) and _is_feed(draft) and not as_here:
+        raise NotTranslated(
+            "C beside a slide at a feed: F has another path here: write G93 and F, 1 / minutes, "
+            "or say feed_of_c = \"mm\" in a control of your own, where F is X's and Z's alone"
+        )
+
+
+def _is_feed(draft: Draft) -> bool:
+    other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
+    codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
+    return draft.motion() not in ("G0", UNKNOWN) and not other and not codes
 
 
 PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point

@@ -1,10 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Polar interpolation: G112, G137 and their like as G12.1 and G13.1.
+"""Polar and cylindrical interpolation: G112, G137 as G12.1 and G13.1, G107, G132 as G7.1.
 
 X in polar mode is a diameter on most controls and a radius on some: where it is not as outside, G7
 or G8 is written before the section, and the other after it. Y is C and V is H. The control's file
 defines a rapid in polar mode.
+
+Most controls give a cylinder's radius as C (or H) and angles as C. Haas maps an axis of lengths
+onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the length along its surface.
 """
+
+from math import degrees
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -24,12 +29,11 @@ from g12.tools.translate.blocks.positions import (
     axis_of,
     is_unmoved,
     known_position,
-    value_text,
 )
 from g12.tools.translate.rules.decimals import UNIT
 
+ANGLE_LETTERS = {"Y": "C", "V": "H"}
 IN_PLANE = frozenset("XCUH")
-MOVING = frozenset("XYZABCUVWHF")
 SECTION_NAMES = {
     "on": "in polar mode",
     "cylinder": "on a cylinder",
@@ -115,16 +119,10 @@ def inside_polar(draft: Draft) -> None:
             raise NotTranslated(f"{letter} and its other name in one block")
     _offset_number(draft)
     if is_polar:
-        if draft.control.value("polar", "c") == "diameter":
-            draft.words = [_halved(w) if w.letter in "CH" else w for w in draft.words]
         if draft.letters() & IN_PLANE and is_unmoved(draft, "Z"):
             draft.comment_out("Z")
         _delay_compensation(draft)
     rapid(draft)
-
-
-def _halved(word: ForeignWord) -> ForeignWord:
-    return ForeignWord(word.letter, f"[{word.value} / 2]", "expression")
 
 
 def _delay_compensation(draft: Draft) -> None:
@@ -195,17 +193,14 @@ def feed_of_rapids(draft: Draft) -> float:
 
 
 def feed_again(draft: Draft) -> None:
-    """Write the feed that holds on the control where LinuxCNC has another: G93, a polar rapid's."""
+    """Write the feed that holds on the control where LinuxCNC has a polar rapid's."""
     needless = draft.has_feed or draft.state.own_feed == AS_PROGRAMMED
-    if needless or not draft.letters() & MOVING or _goes_by_rapid(draft):
+    moves = draft.axis_words() or draft.increments() or draft.word("F")
+    if needless or not moves or _goes_by_rapid(draft):
         return
-    if draft.state.held:
-        draft.before += own_feed_ended(draft)
-        draft.change(own_motion="G1")
-    else:
-        own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
-        draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
-    draft.change(own_feed=AS_PROGRAMMED, held=())
+    own = {*draft.codes(), *(word.text for word in draft.words if word.letter == "F")}
+    draft.words += [word_of(text) for text in _programs_feed(draft) if text not in own]
+    draft.change(own_feed=AS_PROGRAMMED)
 
 
 def _goes_by_rapid(draft: Draft) -> bool:
@@ -213,7 +208,7 @@ def _goes_by_rapid(draft: Draft) -> bool:
 
     A drilling cycle cuts, and a block that repeats one, also where G0 is the mode.
     """
-    if draft.state.own_feed == "G93" or draft.state.held or "F" in draft.letters():
+    if "F" in draft.letters():
         return False
     codes = set(draft.codes())
     if set(draft.meanings) - STAYING:
@@ -227,9 +222,8 @@ def own_feed_ended(draft: Draft) -> list[str]:
     """Return the line that gives LinuxCNC the control's feed, if it has another."""
     if draft.state.own_feed == AS_PROGRAMMED:
         return []
-    words = [*_held_slides(draft), *_programs_feed(draft)]
-    draft.change(own_feed=AS_PROGRAMMED, held=())
-    return [" ".join(words)]
+    draft.change(own_feed=AS_PROGRAMMED)
+    return [" ".join(_programs_feed(draft))]
 
 
 def _programs_feed(draft: Draft) -> list[str]:
@@ -240,16 +234,48 @@ def _programs_feed(draft: Draft) -> list[str]:
     return [f"F{feed}", *([mode] if mode else [])]
 
 
-def _held_slides(draft: Draft) -> list[str]:
-    """Return the words of slides that were held back (`turning/feed_of_c`)."""
-    why = "a slide of LinuxCNC's is behind the program's"
-    words = []
-    for axis, _ in draft.sure("held", why):
-        point = known_position(draft.start, axis)
-        if point is None:
-            raise NotTranslated(
-                f"{why}, and the position of {axis} is not known here: beside C let it move by at "
-                "least 0.001 mm, or not at all"
-            )
-        words.append(f"{axis}{value_text(point)}")
-    return ["G1", *words] if words else []
+def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
+    if draft.control.value("cylinder", "word") == "mapped":
+        radius = _mapped_radius(draft, code.code)
+        draft.change(mapped=radius)
+    else:
+        radius = _named_radius(draft, code.code)
+    name, word = draft.control.cylinder_code
+    value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
+    feed = own_feed_ended(draft) if radius else []
+    own_block(draft, code.code, [*feed, f"{name} C{value}"])
+    draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
+
+
+def _named_radius(draft: Draft, code: str) -> str:
+    """Return the radius that C or H says, "" for the end of the cylinder."""
+    word = draft.take("C") or draft.take("H")
+    if not word:
+        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
+    if word.is_zero:
+        return ""
+    return word.value
+
+
+def _mapped_radius(draft: Draft, code: str) -> str:
+    """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
+    sizes, axes = draft.take_each("RQ"), draft.take_each("YC")
+    if not sizes and not axes:
+        return ""
+    if len(sizes) != 1 or len(axes) != 2 or not all(word.is_zero for word in axes):
+        raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
+    (size,) = sizes
+    return size.value if size.letter == "R" else f"[{size.value} / 2]"
+
+
+def on_the_surface(draft: Draft) -> None:
+    """Write lengths along the surface of a mapped cylinder as angles."""
+    if draft.state.polar != "cylinder" or draft.state.mapped == UNKNOWN:
+        return
+    radius = draft.sure("mapped", "Y is mapped onto a cylinder")
+    if draft.letters() & {"C", "H"}:
+        raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
+    for at, word in enumerate(draft.words):
+        if word.letter in ANGLE_LETTERS:
+            angle = f"[[{word.value}] * {degrees(1):.12f} / {radius}]"
+            draft.words[at] = ForeignWord(ANGLE_LETTERS[word.letter], angle, "expression")

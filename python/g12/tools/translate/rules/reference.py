@@ -13,7 +13,6 @@ from g12.tools.translate.blocks.draft import PARTNERS, Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, MOVES, REFERENCES
-from g12.tools.translate.blocks.positions import known_position, value_text
 
 
 def reference_point(draft: Draft) -> None:
@@ -88,8 +87,7 @@ def incremental_words(draft: Draft) -> None:
         own = "UH" if draft.state.polar == "on" else "UWH"
         found = [word for word in found if word.letter not in own]
         if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
-            _depth_in_section(draft, found[0])
-            return
+            raise NotTranslated(f"{found[0].text} beside other axes in a section: write Z")
     for word in found:
         if PARTNERS[word.letter] in draft.letters():
             raise NotTranslated(f"{word.text} and {PARTNERS[word.letter]} in one block")
@@ -105,17 +103,3 @@ def incremental_words(draft: Draft) -> None:
     if not incremental:
         draft.change(own_distance="G91")
         draft.put_first("G91")
-
-
-def _depth_in_section(draft: Draft, word: ForeignWord) -> None:
-    """Write W beside X and C of a section as Z, which is not in the section's plane."""
-    if word.letter != "W" or "Z" in draft.letters():
-        raise NotTranslated(f"{word.text} beside other axes in a section")
-    depth = known_position(draft.state, "Z")
-    if draft.sure("distance", f"{word.text} is an increment") == "G91":
-        draft.replace(word, word._replace(letter="Z"))
-    elif depth is None:
-        value = f"[{position('Z')} + [{word.value}]]"
-        draft.replace(word, ForeignWord("Z", value, "expression"))
-    else:
-        draft.replace(word, ForeignWord("Z", value_text(depth)))

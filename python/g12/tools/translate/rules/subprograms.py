@@ -11,11 +11,10 @@ from collections.abc import Container
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import Draft, SubprogramCall, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.expressions import EMPTY
-from g12.tools.translate.blocks.lexer import ForeignWord
+from g12.tools.translate.blocks.lexer import NO_JUMPS, ForeignWord
 
 ARGUMENTS = dict(zip("ABCIJKDEFHMQRSTUVWXYZ", (*range(1, 10), 11, 13, *range(17, 27))))
-LOCAL_BLOCKS = 1_000_000  # a block called by M97 P100 is program O1000100
+LOCAL_BLOCKS = 100_000_000  # a block called by M97 P100 is program O100000100
 
 
 def _called_number(draft: Draft, code: str, word: ForeignWord | None) -> int:
@@ -32,8 +31,10 @@ def call_macro(draft: Draft) -> None:
         code = draft.meanings.pop(meaning, None)
         if code:
             draft.call = _subprogram_call(draft, code.code, meaning)
-    if draft.meanings.pop("return", None):
-        draft.returns = not (draft.take("P") and draft.jumps)
+    if code := draft.meanings.pop("return", None):
+        if word := draft.take("P"):
+            raise NotTranslated(f"{code.code} {word.text}: {NO_JUMPS}")
+        draft.returns = True
 
 
 def _subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
@@ -83,10 +84,6 @@ def _macro_call(draft: Draft) -> SubprogramCall:
 
 def finish_call(draft: Draft) -> None:
     """Write the lines of a call or a return after the block's other words."""
-    if draft.call and draft.called_as:
-        draft.call = draft.call._replace(number=draft.called_as)
-    if draft.call and draft.call.repeats and draft.jumps:
-        raise NotTranslated("the called program returns by M99 P: it can be called once only")
     lines = _call_lines(draft) if draft.call else []
     if draft.returns:
         lines.append(draft.return_text)
@@ -107,8 +104,7 @@ def _call_lines(draft: Draft) -> list[str]:
     call = draft.call
     if call.kind == "sub":
         return [f"M98 P{call.number}{f' L{call.repeats}' if call.repeats else ''}"]
-    empty = dict.fromkeys(draft.compared.get(call.number, ()), EMPTY)
-    given = {**empty, **dict(call.arguments)}
+    given = dict(call.arguments)
     values = "".join(f" [{given.get(n, '0')}]" for n in range(1, max(given, default=0) + 1))
     line = f"o<macro_{call.number}> call{values}"
     if not call.repeats:

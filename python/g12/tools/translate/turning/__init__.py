@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a lathe's program needs worked out: feeds with C, contours, turning cycles."""
+"""What a lathe's program needs worked out: contours, turning cycles, holes with C."""

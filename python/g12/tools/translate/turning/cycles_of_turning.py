@@ -6,10 +6,8 @@ modal: blocks of X, Z, U and W alone repeat them from the same start.
 """
 
 from collections.abc import Callable, Sequence
-from functools import cache
 from typing import Any
 
-from g12.tools.translate.blocks.control import read_control
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import (
@@ -23,7 +21,6 @@ from g12.tools.translate.blocks.positions import FIELDS
 from g12.tools.translate.rules.motion import in_absolute_words, needs_g90
 from g12.tools.translate.rules.polar import own_feed_ended
 from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
-from g12.tools.translate.turning.feed_of_c import number_of_feed
 from g12.tools.translate.turning.given_words import (
     named_blocks,
     read_contour,
@@ -42,17 +39,14 @@ from g12.tools.translate.turning.moves import (
     finishing_cut,
     lines_of_moves,
     pecks,
-    repeated_cuts,
     turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
 from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
-CODE_SYSTEMS = ("fanuc-lathe", "fanuc-lathe-b", "fanuc-lathe-c")
 TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
-METHODS = {1: (False, False), 2: (True, False), 3: (False, True), 4: (True, True)}  # Haas's P
 
 
 def no_pass_yet(draft: Draft) -> None:
@@ -169,7 +163,7 @@ def roughing(draft: Draft, meaning: str) -> None:
             f"{code} needs a depth of cut above 0: {depth_word} in its first block, or D"
         )
     segments, _ = read_contour(draft, indices, start)
-    given = RoughCuts(depth, retract, allowance, along_x, segments[0].motion)
+    given = RoughCuts(depth, retract, allowance, along_x, segments[0].block.motion)
     _write_uncompensated(draft, rough(start, segments, given), start)
     draft.follows = follows
 
@@ -194,24 +188,6 @@ def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: comple
     if on in COMPENSATION_ON:
         radius = (word.text for word in offsets_radius(draft))
         draft.after = ["G40", *draft.after, " ".join([on, *radius])]
-
-
-def _pattern_repeating(draft: Draft, meaning: str) -> None:
-    """G73: two blocks, or one with I, K and D."""
-    if draft.letters().isdisjoint("PQ"):
-        relief = {"x": take_number(draft, "U"), "z": take_number(draft, "W")}
-        keep(draft, meaning, **relief, passes=take_whole(draft, "R"))
-        return
-    start, (indices, follows) = start_point(draft), _contour_named(draft)
-    own = (take_number(draft, "I"), take_number(draft, "K"), take_whole(draft, "D"))
-    x, z, passes = (
-        _kept_value(draft, meaning, name) if value is None else value
-        for name, value in zip(("x", "z", "passes"), own)
-    )
-    segments, _ = read_contour(draft, indices, start)
-    moves = repeated_cuts(start, segments, complex(z, x), _take_allowance(draft), int(passes))
-    _write_uncompensated(draft, moves, start)
-    draft.follows = follows
 
 
 def finishing(draft: Draft, meaning: str) -> None:
@@ -283,13 +259,11 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     return start, complex(words["Z"], words["X"]), words.get("R", 0.0)
 
 
-@cache
 def _other_meaning(code: str, meaning: str) -> str:
     """Return why a single pass is refused whose code is a mode in other G code systems."""
-    others = [name for name in CODE_SYSTEMS if read_control(name).meanings.get(code) == "same"]
-    mode = f": where it is a mode, the control is {' or '.join(others)}; else take it out"
     return (
-        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1{mode * bool(others)}"
+        f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it is a mode, "
+        "the control is another of fanuc-lathe, fanuc-lathe-b and fanuc-lathe-c; else take it out"
     )
 
 
@@ -302,7 +276,14 @@ def _one_thread_pass(draft: Draft, meaning: str) -> None:
 
 
 def _lead_of(draft: Draft) -> float:
-    return number_of_feed(draft, "a thread needs F, its lead, as a number")
+    missing = "a thread needs F, its lead, as a number"
+    try:
+        lead = float(draft.sure("feed", missing))
+    except ValueError:
+        lead = 0.0
+    if lead <= 0:
+        raise NotTranslated(missing)
+    return lead
 
 
 def _chamfer_of(draft: Draft) -> float:
@@ -348,14 +329,14 @@ def _fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
 
 
 def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return the same for Haas's K, D, A, P (method) and Q (start angle)."""
+    """Return the same for Haas's K, D, A and Q (start angle)."""
     height, first = take_number(draft, "K") or 0.0, take_increments(draft, "D") or 0.0
     angle, method = take_number(draft, "A") or 0.0, take_whole(draft, "P") or 1
-    if method not in METHODS:
-        raise NotTranslated(f"G76 P{method}: the methods of cutting are P1 to P4")
+    if method != 1:
+        raise NotTranslated(f"G76 P{method}: write P1: one flank, the same chip in each pass")
     turn = take_turn(draft)
     least, allowance = (stored_setting(draft, f"thread_{n}") for n in ("least", "allowance"))
-    infeed = Infeed(height, first, least, allowance, 1, angle, *METHODS[method])
+    infeed = Infeed(height, first, least, allowance, 1, angle)
     return infeed, _chamfer_of(draft), turn
 
 
@@ -386,7 +367,6 @@ def _thread_move(draft: Draft, meaning: str) -> None:
 CYCLES: dict[str, Callable[[Draft, str], None]] = {
     "roughing along Z": roughing,
     "roughing along X": roughing,
-    "pattern repeating": _pattern_repeating,
     "finishing": finishing,
     "pecking along Z": pecking,
     "pecking along X": pecking,

@@ -12,7 +12,7 @@ from g12.tools.translate.rules import codes, decimals, modes
 from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
 from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
 
-SHAPING = frozenset(("X", "Z", "U", "W", "I", "K", "R", "A", "C", ",A", ",C", ",R"))
+SHAPING = frozenset("XZUWIKR")
 BESIDE_CYCLE = frozenset("FSM")  # what a finishing cut does with its moves
 KEPT_MODES = frozenset(("G40", "G41", "G42", "G94", "G95", "G96", "G97"))  # by a finishing cut
 IN_CONTOURS = MOVES | {"G90", "G91"}
@@ -121,7 +121,7 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
 def read_contour(
     draft: Draft, indices: range, start: complex
 ) -> tuple[list[ContourMove], ModalState]:
-    found, state = contour_blocks(draft, indices)
+    found, state = _contour_blocks(draft, indices)
     if state.distance != draft.state.distance:
         raise NotTranslated(
             f"the contour ends in {state.distance}: end it in {draft.state.distance}, in which it "
@@ -133,7 +133,7 @@ def read_contour(
     return segments, state
 
 
-def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBlock], ModalState]:
+def _contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBlock], ModalState]:
     """Return some blocks as those of a contour, and the modes after them."""
     blocks = dict(draft.program)
     motion, state, found = draft.state.motion, draft.state, []
@@ -141,7 +141,7 @@ def contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBl
         block = blocks[index]
         if block.problem or block.kind != "words":
             raise NotTranslated(f"line {block.line}: a contour has moves only, as numbers")
-        if block.skipped and index != draft.index:
+        if block.skipped:
             raise NotTranslated(f"line {block.line}: / in a contour: its cuts depend on the switch")
         own, state, motion = _contour_block(draft, block, state, motion)
         found.append(own)

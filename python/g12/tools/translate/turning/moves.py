@@ -2,7 +2,6 @@
 """The moves of turning cycles that repeat a plain path, and the lines that they are written as.
 
 - finishing (G70): the contour with its own words, then back, first away from the part in X
-- pattern (G73): the whole contour, each time nearer by the same distance, up to the allowance
 - single passes (G90, G94 of system A): in, along, out, back: a rectangle or a trapezium
 - pecking (G74 along Z, G75 along X): cuts of one peck, each with a retract, in several columns
 """
@@ -13,7 +12,7 @@ from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.positions import value_text
-from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
+from g12.tools.translate.turning.contour import SAME, ContourMove
 
 DIGITS = 1e-6  # a word is written where its value changes by that
 
@@ -39,15 +38,12 @@ def feed_to(point: complex) -> CycleMove:
     return CycleMove("G1", point)
 
 
-def moves_along(segments: Sequence[ContourMove], own_words: bool = False) -> list[CycleMove]:
-    """Return the moves along segments, with the words beside them for a finishing cut."""
-    moves: list[CycleMove] = []
-    last = None
-    for s in segments:
-        others = s.block.others if own_words and s.block is not last else ()
-        moves.append(CycleMove(s.motion, s.end, s.centre, 0.0, others))
-        last = s.block
-    return moves
+def moves_along(contour: Sequence[ContourMove], own_words: bool = False) -> list[CycleMove]:
+    """Return the moves along a contour, with the words beside them for a finishing cut."""
+    return [
+        CycleMove(m.block.motion, m.end, m.centre, 0.0, m.block.others if own_words else ())
+        for m in contour
+    ]
 
 
 def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
@@ -91,27 +87,6 @@ def _tool_side(contour: Sequence[ContourMove]) -> int:
     """Return on which side of the part the tool is: 1 outside, -1 in a bore."""
     start, ends = contour[0].start.imag, [segment.end.imag for segment in contour]
     return 1 if start - min(ends) >= max(ends) - start else -1
-
-
-def repeated_cuts(
-    start: complex,
-    contour: Sequence[ContourMove],
-    relief: complex,
-    allowance: complex,
-    passes: int,
-) -> list[CycleMove]:
-    """Return the moves of a repeated pattern; ``relief`` is how far off the first pass is."""
-    if not 1 <= passes <= MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{passes} passes: there must be from 1 to {MOST_CYCLE_PASSES}")
-    side = _tool_side(contour)
-    if side * allowance.imag < 0 or side * relief.imag < 0:
-        raise NotTranslated("U has the sign that would cut into the contour")
-    moves: list[CycleMove] = []
-    for number in range(passes):
-        share = 1 - number / (passes - 1) if passes > 1 else 0.0
-        path = offset_by(contour, relief * share + allowance)
-        moves += [*moves_along(path), *return_by(start, path[-1].end, side)]
-    return moves
 
 
 def turning_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:

@@ -92,7 +92,7 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
 
 
 def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
-    cuts = [number for number, segment in enumerate(contour) if segment.motion != "G0"]
+    cuts = [number for number, segment in enumerate(contour) if segment.block.motion != "G0"]
     return contour[: cuts[-1] + 1] if cuts else contour
 
 

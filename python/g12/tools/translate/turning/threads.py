@@ -34,8 +34,7 @@ class Infeed(NamedTuple):
     """How the passes of G76 go in: thread's height, first depth, least depth, the last ones.
 
     ``allowance`` remains for the first of ``finishing`` passes, ``angle`` that of the thread along
-    whose flank the tool goes in; ``alternating`` takes both flanks, ``constant`` the same depth
-    each time instead of the same chip.
+    whose flank the tool goes in.
     """
 
     height: float
@@ -44,8 +43,6 @@ class Infeed(NamedTuple):
     allowance: float = 0.0
     finishing: int = 1
     angle: float = 0.0
-    alternating: bool = False
-    constant: bool = False
 
 
 def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMove]:
@@ -83,9 +80,8 @@ def _depths(infeed: Infeed) -> list[float]:
         raise NotTranslated("the thread's height and the depth of its first pass must be above 0")
     found: list[float] = []
     for number in count(1):
-        share = number if infeed.constant else sqrt(number)
         last = found[-1] if found else 0.0
-        depth = infeed.first if number == 1 else max(infeed.first * share, last + least)
+        depth = infeed.first if number == 1 else max(infeed.first * sqrt(number), last + least)
         if depth > full - SAME:
             break
         found.append(depth)
@@ -101,11 +97,9 @@ def all_passes(start: complex, thread: Thread, infeed: Infeed) -> list[CycleMove
     """Return the passes of G76; shallower ones are shifted along the flank, away from the end."""
     moves: list[CycleMove] = []
     away = 1 if start.real > thread.end.real else -1
-    for number, depth in enumerate(_depths(infeed)):
+    for depth in _depths(infeed):
         up = infeed.height - depth
         aside = away * up * tan(radians(infeed.angle / 2))
-        if infeed.alternating and number % 2:
-            aside = -aside
         shifted = thread._replace(end=thread.end + aside)
         one = thread_pass(start + aside, shifted, up)
         moves += [*one[:-1], rapid_to(start)]

@@ -19,14 +19,21 @@ from cmath import rect
 from math import radians
 
 from g12.tools.translate.blocks.draft import Draft, position, word_of
-from g12.tools.translate.blocks.errors import NotSure, NotTranslated
+from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import (
+    AS_PROGRAMMED,
+    CONSUMERS,
+    IN_CYCLE,
+    MOTIONS,
+    UNKNOWN,
+    UNSURE,
+)
 from g12.tools.translate.blocks.positions import known_position, value_text
 from g12.tools.translate.rules.decimals import time_in_seconds
 
 KEPT = "ZRQP"
-CYCLE = ("cycle", "cycle_words", "own_motion")
+ALONE = frozenset("NXYMSTF")  # words of a hole of whatever cycle is on
 NEEDS = {"G73": "Q", "G83": "Q", "G82": "P", "G86": "P", "G89": "P"}
 
 
@@ -43,8 +50,19 @@ def drilling_cycle(draft: Draft) -> None:
         draft.change(cycle=UNKNOWN, cycle_words=())
     elif draft.state.cycle and draft.letters() & set("XYZR"):
         if draft.state.cycle == UNSURE:
-            raise NotSure("a drilling cycle is on, but not on every way to this block", *CYCLE)
-        _drill(draft, draft.state.cycle, _stored_words(draft))
+            _drill_as_before(draft)
+        else:
+            _drill(draft, draft.state.cycle, _stored_words(draft))
+
+
+def _drill_as_before(draft: Draft) -> None:
+    """Leave a hole to the cycle that LinuxCNC is in, such as the caller's of a subprogram."""
+    in_cycle = draft.state.own_motion == IN_CYCLE and draft.state.own_distance == AS_PROGRAMMED
+    if not in_cycle or draft.letters() - ALONE:
+        raise NotTranslated(
+            "a drilling cycle is on, but not the same one on every way to this block: here X and Y "
+            "alone, and each way drills its first hole with the cycle, not by L0"
+        )
 
 
 def _cancel(draft: Draft) -> None:
@@ -73,7 +91,9 @@ def _stored_words(draft: Draft) -> dict[str, str]:
     """Return the stored words by letter; ``@`` is the distance mode they were given in."""
     words = draft.state.cycle_words
     if words == UNSURE:
-        raise NotSure("a drilling cycle is not given the same on every way to this block", *CYCLE)
+        raise NotTranslated(
+            "a drilling cycle is not given the same on every way to this block: write it in here"
+        )
     return dict(words)
 
 
@@ -174,7 +194,7 @@ def _write_cycle(
     for letter in given:
         if letter not in used:
             draft.comment_out(letter)
-    if draft.state.own_motion != code:
+    if draft.state.own_motion != IN_CYCLE or draft.start.cycle != code:
         for letter in used:
             if letter not in given and values.get(letter):
                 draft.words.append(ForeignWord(letter, values[letter]))
@@ -183,7 +203,7 @@ def _write_cycle(
         if "P" in used and "P" not in values:
             draft.words.append(word_of("P0"))
         draft.put_first(code)
-    draft.change(own_motion=code)
+    draft.change(own_motion=IN_CYCLE)
 
 
 def _write_level_as_r(draft: Draft, distance: str) -> None:

@@ -1,10 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Macro statements: assignments, WHILE and IF as LinuxCNC's O-words."""
+"""Macro statements as LinuxCNC's O-words, and local variables of macros that may be empty.
+
+A local variable that no call gives and no line sets is empty on the control, and its word vanishes;
+LinuxCNC takes 0. Such a macro is refused, and elsewhere a word whose variable nothing sets before.
+"""
+
+from collections.abc import Iterator
 
 from g12.tools.translate.blocks.draft import Draft, line_as_word
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.blocks.expressions import UNSIGNED
+from g12.tools.translate.blocks.expressions import LOCAL_VARIABLES, UNSIGNED
+from g12.tools.translate.rules.subprograms import ARGUMENTS
 from g12.tools.translate.structure import Structure
+
+ARGUMENT_LETTERS = {number: letter for letter, number in ARGUMENTS.items()}
 
 
 def _tape(draft: Draft, structure: Structure) -> None:
@@ -30,15 +39,6 @@ def _closing(draft: Draft, structure: Structure) -> None:
     start = structure.partners[draft.index]
     kind = structure.blocks[start].kind
     _labelled(draft, f"o<{kind}_{start}> end{kind}")
-
-
-def _goto(draft: Draft, structure: Structure) -> None:
-    lines = structure.jumps.at[draft.index]
-    if draft.block.expression:
-        head = f"o<if_{draft.index}> if {draft.block.expression.text}"
-        lines = [head, *lines, f"o<if_{draft.index}> endif"]
-    _labelled(draft, lines[0])
-    draft.after += lines[1:]
 
 
 def _stop(draft: Draft, structure: Structure) -> None:
@@ -67,6 +67,25 @@ STATEMENTS = {
     "end": _closing,
     "if": _opening,
     "endif": _closing,
-    "goto": _goto,
     "stop": _stop,
 }
+
+
+def unset_variables(draft: Draft, macro: int) -> Iterator[str]:
+    """Yield a sentence for each variable that a block reads and that may be empty.
+
+    ``macro`` is the number of the block's program where G65 calls it, else 0.
+    """
+    block = draft.block
+    if macro:
+        for number in sorted(block.read.intersection(LOCAL_VARIABLES) - draft.start.given):
+            letter = f" ({ARGUMENT_LETTERS[number]} of the call)" * (number in ARGUMENT_LETTERS)
+            yield (
+                f"O{macro} reads #{number}{letter}, which not every G65 P{macro} gives: it would "
+                "be 0 on LinuxCNC"
+            )
+        return
+    for word in block.words:
+        for number in word.read.intersection(LOCAL_VARIABLES) - draft.start.touched:
+            if word.value.lstrip("-") == f"#{number}":
+                yield f"{word.text}: nothing sets #{number} before, LinuxCNC takes 0"
