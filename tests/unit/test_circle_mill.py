@@ -10,8 +10,7 @@ import pytest
 
 from g12.cycles.circle_mill import EVENT_ENTRIES, entries_by_letter, plan_call, plan_code
 from g12.cycles.plan import EventPlanes
-from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT
-from g12.request.words import Words
+from g12.request import CLOCKWISE, COUNTERCLOCKWISE, LEFT_OUT, Words
 from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 

@@ -32,8 +32,7 @@ from g12.cycles import mitsubishi, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import EventPlanes
-from g12.request.common import LEFT_OUT
-from g12.request.words import Words
+from g12.request import LEFT_OUT, Words
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine

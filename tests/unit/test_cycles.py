@@ -15,8 +15,7 @@ from g12.cycles.circle_mill import plan_call, plan_code
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import EventPlanes, PocketEntry
 from g12.errors import Refusal
-from g12.request.common import CycleExtent
-from g12.request.words import Words
+from g12.request import CycleExtent, Words
 from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 

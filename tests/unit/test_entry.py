@@ -17,7 +17,7 @@ from g12.cycles.plan import (
     pocket_descent,
 )
 from g12.errors import Refusal
-from g12.request.words import Words
+from g12.request import Words
 from support.planner_context import MM
 
 HELIX = PocketEntry(helix=True, angle=3.0)

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.lengths import LARGEST, MM_PER_INCH
-from g12.request.common import CycleExtent, check_travel, half_widths, other_cutter, steps_between
-from g12.request.words import Words
+from g12.request import CycleExtent, Words, check_travel, half_widths, other_cutter, steps_between
 from g12.state import Tool
 from support.planner_context import MM, reported
 

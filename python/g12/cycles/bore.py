@@ -10,8 +10,7 @@ from math import atan, ceil, degrees, pi, radians, tan
 from g12.cut_report import PocketCut
 from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
 from g12.errors import number
-from g12.request.common import CLEARED, CycleExtent, check_count, check_fits, steps_between
-from g12.request.words import Words
+from g12.request import CLEARED, CycleExtent, Words, check_count, check_fits, steps_between
 from g12.state import XY
 
 BORE_WORDS = "X Y Z I P R K L Q D F"

@@ -36,18 +36,18 @@ from typing import NamedTuple
 from g12.cut_report import LOADED, EventCut, UsedCutter
 from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
     CycleExtent,
+    Words,
     check_count,
     check_fits,
     check_modes,
     loaded_tool,
     steps_between,
 )
-from g12.request.words import Words
 from g12.state import XY, Tool
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order

@@ -32,16 +32,16 @@ from g12.cycles.plan import (
     pocket_descent,
 )
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLEARED,
     CycleExtent,
+    Words,
     check_count,
     check_fits,
     check_modes,
     check_start,
     steps_between,
 )
-from g12.request.words import Words
 from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"

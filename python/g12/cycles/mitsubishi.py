@@ -15,15 +15,15 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 
 from g12.cut_report import BY_D, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
-from g12.request.common import (
+from g12.request import (
     CycleExtent,
+    Words,
     check_fits,
     check_modes,
     check_start,
     commanded_tool,
     other_cutter,
 )
-from g12.request.words import Words
 from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"

@@ -30,8 +30,9 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request.common import (
+from g12.request import (
     CycleExtent,
+    Words,
     check_count,
     check_fits,
     check_modes,
@@ -41,7 +42,6 @@ from g12.request.common import (
     sound_tool,
     steps_between,
 )
-from g12.request.words import Words
 from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"

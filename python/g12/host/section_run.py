@@ -15,7 +15,7 @@ from enum import Enum
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.host import borrowed, kinematics_switch, messages, reported
+from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import JUMPING
 from g12.host.section_output import SectionOutput
@@ -268,7 +268,7 @@ class Section:
         self.reader.contour.close(at=self.program.line)
         yield from self._emit()
         self.program.catch_up()
-        reported.end_cut(self.reader.interp)
+        messages.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)
         borrowed.forget(self.reader.interp)
         self._phase = Phase.DONE

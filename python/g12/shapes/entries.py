@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 from g12.cut_report import LOADED, PlannedCut, ShapePasses, UsedCutter
 from g12.errors import number
-from g12.request.common import LEFT_OUT, loaded_tool, steps_between
-from g12.request.words import Words
+from g12.request import LEFT_OUT, Words, loaded_tool, steps_between
 from g12.state import State
 
 PASS_ENTRIES = ("depth_per_pass", "allowance", "feed", "plunge_feed")

@@ -7,7 +7,7 @@ centre, levels are measured from the tool before the block; mm.
 
 import math
 
-from g12.request.common import LEFT_OUT
+from g12.request import LEFT_OUT
 from support.oracle.toolpath import Writer
 
 ROUNDING = 1e-6  # mm

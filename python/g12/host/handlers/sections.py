@@ -26,8 +26,8 @@ from g12.host.interp import (
 )
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
+from g12.host.messages import SECTION_BEGAN, asked, report_of
 from g12.host.program_lines import ProgramLines, running_file
-from g12.host.reported import SECTION_BEGAN, asked, report_of
 from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader, block_of
 from g12.host.section_run import Section

@@ -12,9 +12,9 @@ from collections.abc import Container
 from interpreter import INTERP_OK
 
 from g12.errors import Refusal
-from g12.host import borrowed, messages, reported
+from g12.host import borrowed, messages
 from g12.host.call_frame import locals_at, set_locals_at
-from g12.host.handlers import cycle_state
+from g12.host.handlers import cycles
 from g12.host.handlers.sections import (
     FACE_ON,
     check_clamp,
@@ -63,11 +63,11 @@ def polar_shape(self, **words):
         raise Refusal(FACE_ON, name)
     section = Polar(start_of_shape(self, name), section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
-    entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
+    entries = ShapeEntries(name, names, locals_at(self, level), cycles.snapshot(self))
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
-    reported.begin_cut(self, entries, plan.cut)
+    messages.begin_cut(self, entries, plan.cut)
     borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
     return INTERP_OK
@@ -117,7 +117,7 @@ def polar_shape_done(self, **words):
     """Restore the modes before the shape, F and the spindle in use among them: G13.4."""
     shape_at_work(self)
     borrowed.give_back(self)
-    reported.end_cut(self)
+    messages.end_cut(self)
     return INTERP_OK
 
 
