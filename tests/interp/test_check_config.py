@@ -137,7 +137,7 @@ def test_a_python_oword_in_front_of_the_event(tmp_path, capsys):
 def test_linuxcnc_finds_no_subs_below_a_blank(tmp_path, capsys):
     folder = tmp_path / "my mill"
     folder.mkdir()
-    subs = {f"ngc__{name}_ngc": "" for name in ("g12_haas", "g12_helix", "g12_on_abort")}
+    subs = {f"ngc__{name}_ngc": "" for name in ("g12_haas", "g12_on_abort")}
     ini = write_config(folder, GOOD.replace(f"{ROOT}/ngc", "ngc"), **subs)
     assert kinds(ini, capsys) == ["blank-in-path"]
 

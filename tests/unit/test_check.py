@@ -97,7 +97,7 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
     (GOOD.replace(SECOND, "REMAP = G13 modalgroup=1 python=mine"), {"remap": MINE}, "half",
      "G13 means something else here (REMAP = G13 modalgroup=1 python=mine)"),
     (GOOD.replace(SUBS, ""), {}, "no-sub",
-     "g12_haas.ngc and g12_helix.ngc and g12_on_abort.ngc are in none of the folders"),
+     "g12_haas.ngc and g12_on_abort.ngc are in none of the folders"),
     (GOOD + "[DISPLAY]\nPROGRAM_PREFIX = programs\n", {"files": {"programs__g12_haas_ngc": ""}},
      "shadowed", "before the package's g12_haas.ngc"),
     (with_lines(GOOD, "RS274NGC", lines_of("circle-mill")), {"oword": SHADOW}, "shadowed",

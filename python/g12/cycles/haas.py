@@ -7,8 +7,8 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
 2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
-   helix (`ngc/g12_helix.ngc`), in place of 2 to 4: a half circle onto it, down along it (`entry`),
-   one full circle, and a half turn onto the first ring, if that is larger
+   helix, in place of 2 to 4: a half circle onto it, down along it, one full circle, and a half turn
+   onto the first ring, if that is larger
 3. half circle from the centre to (+b, 0), in the direction of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly

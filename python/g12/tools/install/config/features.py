@@ -72,7 +72,6 @@ ABORT_SUB = "g12_on_abort"
 CALLS_ABORT_SUB = f"O <{ABORT_SUB}> call"
 SHARED_EPILOG = "cycle_done"  # it does not identify a cycle
 CALLED_SUBS = {  # subs that a program or a handler calls, besides those of the codes
-    "haas": ("g12_helix",),
     "circle-mill": ("circle_mill",),
     "frame": ("g12_frame_ring",),
     **dict.fromkeys(AXES_NEEDED, ("g12_skipped_over",)),
