@@ -8,7 +8,6 @@ import threading
 import time
 
 from bench import Figure
-from g12.tools.cycles_page.machine import MachineState
 from g12.tools.cycles_page.page import Page
 from support.sim_machines import SIM
 
@@ -33,8 +32,7 @@ def figures():
 
 def opened(machine):
     drawn = threading.Event()
-    there = MachineState({}, 0, (0.0,) * 9)
-    return Page(SIM / f"{machine}_headless.ini", drawn.set, lambda: there), drawn
+    return Page(SIM / f"{machine}_headless.ini", drawn.set), drawn
 
 
 def middle(page, drawn, form):

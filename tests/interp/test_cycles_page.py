@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from g12.tools.cycles_page import page as page_module
 from g12.tools.cycles_page.machine import MachineState, machine_state, tools_of
 from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
@@ -24,9 +25,9 @@ NOWHERE = MachineState({}, 0, (0.0,) * 9)
 class Typed(Page):
     """A page with an operator who waits for the drawing."""
 
-    def __init__(self, name, state=NOWHERE, folder=SIM):
+    def __init__(self, name, folder=SIM):
         self.drawn = threading.Event()
-        super().__init__(folder / f"{name}_headless.ini", self.drawn.set, lambda: state)
+        super().__init__(folder / f"{name}_headless.ini", self.drawn.set)
 
     def wait(self):
         assert self.drawn.wait(10)
@@ -54,7 +55,8 @@ def page(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     opened = []
 
-    def of(name, **options):
+    def of(name, state=NOWHERE, **options):
+        monkeypatch.setattr(page_module, "machine_state", lambda _: state)
         opened.append(Typed(name, **options))
         return opened[-1]
 
@@ -77,7 +79,7 @@ def test_a_machine_offers_the_forms_of_its_codes(page):
 def test_a_pocket_is_drawn_to_its_wall(page):
     sketch = page("mill_mm").show("haas", tool="5", i="8", k="30", q="8", x="3", levels="1")
     assert (sketch.state, sketch.radius) == (READY, 6.0)
-    cut = np.concatenate([line.points for line in sketch.lines if not line.is_rapid])
+    cut = np.concatenate(sketch.cut)
     assert np.hypot(*(cut - (3, 0)).T).max() + sketch.radius == pytest.approx(30, abs=1e-3)
 
 
@@ -109,7 +111,7 @@ def test_a_lathe_s_form_is_seen_from_its_own_side(page, name, view):
 
 def test_the_flats_of_a_polygon_are_where_they_are_typed(page):
     sketch = page("lathe_mm").show("polygon", across_flats="27")
-    cut = np.concatenate([line.points for line in sketch.lines if not line.is_rapid])
+    cut = np.concatenate(sketch.cut)
     assert np.hypot(*cut.T).min() == pytest.approx(27 / 2 + 6, abs=0.01)
 
 
@@ -127,10 +129,12 @@ def test_what_is_wrong_is_said_in_the_cycle_s_words(page, texts, said):
     assert (sketch.state, sketch.text[: len(said)]) == (REFUSED, said)
 
 
-def test_travel_is_judged_with_the_work_offset(page):
-    moved = MachineState({5220: 1.0, 5221: 490.0}, 0, (0.0,) * 9)
-    sketch = page("mill_mm", state=moved).show("haas", tool="5", i="8", k="30", q="8")
+def test_travel_is_judged_with_the_work_offset_and_depth_is_below_it(page):
+    moved = MachineState({5220: 1.0, 5221: 490.0, 5223: -100.0}, 0, (0.0,) * 9)
+    shown = page("mill_mm", state=moved)
+    sketch = shown.show("haas", tool="5", i="8", k="30", q="8")
     assert sketch.text.startswith("the X axis would go to ")
+    assert shown.fill(x="-100").text.endswith("at the programmed feeds, down to Z-4.000")
 
 
 def test_the_default_tool_is_the_loaded_one_else_the_first_with_a_diameter(page):
@@ -162,9 +166,10 @@ def test_steps_become_a_program_that_cuts_and_are_read_back(page, tmp_path):
     assert again.steps == made.steps
 
 
-def test_a_refused_form_is_not_added(page):
+def test_a_refused_form_is_not_added_however_quick_the_operator(page):
     made = page("mill_mm")
-    made.show("haas", i="1")
+    made.show("haas", **POCKET)
+    made.type("i", "1")
     with pytest.raises(UsageError, match="I1 must be greater"):
         made.add()
     assert made.steps == []
@@ -188,7 +193,7 @@ def test_what_a_stranger_left_in_the_kept_values_is_no_value(page, tmp_path, lef
 
 def test_the_drawing_fills_its_place(page):
     sketch = page("mill_mm").show("haas", tool="5", i="8", q="8")
-    (_, pen, lines), _, _ = sketch.strokes(400, 300)
+    (_, pen, lines), *_ = sketch.strokes(400, 300)
     drawn = np.concatenate(lines)
     low, high = drawn.min(axis=0) - pen / 2, drawn.max(axis=0) + pen / 2
     assert high - low == pytest.approx([0.92 * 300] * 2, abs=0.1)
@@ -247,8 +252,8 @@ def test_a_program_of_the_other_unit_is_not_loaded(page, tmp_path):
 
 def test_turns_on_each_other_are_drawn_as_few(page):
     sketch = page("mill_mm").show("bore", p="0.001")
-    assert sketch.state == READY and sum(len(line.points) for line in sketch.lines) < 2000
-    cut = np.concatenate([line.points for line in sketch.lines if not line.is_rapid])
+    assert sketch.state == READY and sum(map(len, sketch.cut)) < 2000
+    cut = np.concatenate(sketch.cut)
     assert np.abs(cut[-1]).max() < 1e-6
 
 
@@ -311,7 +316,7 @@ def test_an_ini_edited_meanwhile_is_told_and_not_gone_by(page, machines):
     shown.show("haas", **POCKET)
     shown.ini.path.write_text(shown.ini.path.read_text().replace("-500", "-1"))
     sketch = shown.fill(y="1")
-    assert (sketch.state, len(sketch.lines) > 10) == (MESSAGE, True)
+    assert (sketch.state, len(sketch.cut) > 10) == (MESSAGE, True)
     assert sketch.text.startswith("mill_mm_headless.ini was edited: ")
     shown.ini.path.unlink()
     assert shown.fill(y="2").text == sketch.text

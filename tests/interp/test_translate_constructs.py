@@ -77,11 +77,9 @@ CONSTRUCTS = [
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nM98 P5\nG40 X4.\nM30\nO5\nX2.\nY3.\nM99",
      "T1 M6\nG1 Z.5\nG41 D1 X2\nY3\nG40 X4"),
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nG40 Z.4\nX2.", "T1 M6\nG1 Z.5\nZ.4\nX2"),
-    # G41 that is on already, surely or from a loop's last round
+    # G41 that is on already
     ("haas-mill", "T1 M6\nG41 D1 G1 X2.\nY3.\nG41 X3.\nG40 X4.",
      "T1 M6\nG41 D1 G1 X2\nY3\nX3\nG40 X4"),
-    ("haas-mill", "T1 M6\n#1=2.\nWHILE[#1LT5]DO1\nG41 D1 G1 X#1 Y#1\n#1=#1+1.\nEND1\nG40 X8.",
-     "T1 M6\nG41 D1 G1 X2 Y2\nX3 Y3\nX4 Y4\nG40 X8"),
     # what needs nothing done, with the words that are its own
     ("fanuc-lathe", "G22 X90. Z90. I-9. K-9.\nG26\nG1 X45.", "G1 X45"),
     # cutter compensation and lengths

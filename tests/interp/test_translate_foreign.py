@@ -122,7 +122,7 @@ def near_each(rows):
 @pytest.mark.parametrize(("code", "scale"), [("G20", 25.4), ("G21", 1.0)])
 def test_offsets_by_number_do_not_depend_on_units(unit, code, scale, tmp_path):
     path = tmp_path / "offsets.nc"
-    path.write_text(f"{code} G90\nG10 L20 P7 X2. Y1. Z0.\nG154 P7 G0 X1. Y0. Z0.\nM30\n")
+    path.write_text(f"{code} G90\nG10 L20 P2 X2. Y1. Z0.\nG154 P2 G0 X1. Y0. Z0.\nM30\n")
     with Tracer(SIM / f"{unit}.ini") as tracer:
         traced = tracer.trace_text(translation(path, "haas-mill"))
     assert traced.moves[-1].end[:2] == near((3 * scale, scale))
@@ -239,22 +239,3 @@ def test_a_program_of_linuxcnc_stays_as_it_is(tracers):
     traced = tracers("fanuc-mill").trace_text(result.text, alone=True)
     assert path_of(traced) == path_of(tracers("fanuc-mill").trace_text(NATIVE, alone=True))
     assert len(path_of(traced)) == 3 and len(traced.messages) == 1
-
-
-def test_an_offset_that_the_program_sets_to_0_is_set(tracers, tmp_path):
-    path = tmp_path / "offsets.nc"
-    sub = "O5\nG10 L20 P3 X0. Y0. Z0.\nM99\n"
-    path.write_text(f"G20 G0 X0\n/G4 P0\nM98 P5\nG154 P3 X1.\nM30\n{sub}")
-    assert tracers("haas-mill").trace_text(translation(path, "haas-mill")).messages == []
-    path.write_text("G20 G0 X0\n/G10 L20 P3 X0.\nG154 P3 X1.\nM30\n")
-    messages = tracers("haas-mill").trace_text(translation(path, "haas-mill")).messages
-    assert len(messages) == 1
-
-
-@pytest.mark.parametrize(("value", "said"), [(0.0, ["G154 P2 was never set"]), (5.0, [])])
-def test_an_offset_that_was_never_set_is_reported_once(tracers, tmp_path, value, said):
-    path = tmp_path / "offsets.nc"
-    path.write_text("G20 G0 X0\nG154 P2\nX1.\nG54\nG154 P2\nX2.\nM30\n")
-    text = translation(path, "haas-mill")
-    messages = tracers("haas-mill").trace_text(text, parameters={4012: value}).messages
-    assert [m.text.strip()[:21] for m in messages] == said

@@ -109,7 +109,6 @@ def test_the_side_and_its_clamp(tracer):
         # R away from the part: whatever it means there, F from where the tool stands is right
         ("fanuc-lathe", "G83 X40. C0. Z-12. R5. F120.\nC90.\nG80",
          [(20, -12, c, 10) for c in (0, 90)]),
-        ("fanuc-lathe", "G83 X40. W-12. F120.\nW-2. C9.\nG80", [(20, -2, 0, 10), (20, 8, 9, 10)]),
         ("fanuc-lathe", "G85 X40. Z-2. R-8. F50.\nG0 X70. C9.", [(20, -2, 0, 2)]),
         ("fanuc-lathe-b", "G99 G83 X40. Z-5. R-7. F50.\nC9.\nG98 C8.\nG80",
          [(20, -5, c, 3) for c in (0, 9, 8)]),
@@ -144,7 +143,7 @@ def test_holes_in_the_side(tracer, control, text, top):
         ("fanuc-lathe", "G84 X0 Z-5. F1.", "G84: a tap: write each as G0 and LinuxCNC's G33.1"),
         ("fanuc-lathe", "G83 X40. H5. Z-5.", "H5. in G83 is not translated"),
         ("fanuc-lathe", "G83 X40. Z-5. Q1", "pecks of 0.001 are 15000 in one hole"),
-        ("fanuc-lathe", "G87 Z-4. U-9. F500.", "U as the end of a hole: write X"),
+        ("fanuc-lathe", "G87 Z-4. U-9. F500.", "a drilling cycle needs X, where the hole ends"),
         ("fanuc-lathe", "G83 X40. Z-5. M31", "M31 in the block of a drilling cycle"),
         ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins at the tool's position"),
         ("fanuc-lathe", "G12.1\nG1 X39. F9.\nG83 X40. Z-5.", "a drilling cycle in a section"),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A mill's program on a bar's face and round a part cuts what it cuts on a mill."""
+"""A mill's program on a bar's face cuts what it cuts on a mill."""
 
 import numpy as np
 import pytest
@@ -21,9 +21,7 @@ from support.foreign_programs import FOREIGN, translation
 from support.shape_geometry import polygon
 from support.sim_machines import SIM
 
-SETTINGS = {"POLAR_Z": "allow", "CYLINDER_X": "allow", "LIVE_SPINDLE": "0"}
-DIAMETER = 50.0
-ROUND = ("--diameter", "50")
+SETTINGS = {"POLAR_Z": "allow", "LIVE_SPINDLE": "0"}
 
 
 @pytest.fixture(scope="module")
@@ -43,26 +41,11 @@ def lathe(tmp_path_factory):
         yield cut
 
 
-def round_the_part(moves):
-    """Return points of the tool's way over the unrolled surface, as the mill has them."""
-    legs = [np.linspace([m.start[i] for i in (0, 2, 5)], [m.end[i] for i in (0, 2, 5)], 200)
-            for m in moves]  # fmt: skip
-    x, z, c = np.concatenate(legs).T
-    return np.column_stack([z, -np.radians(c) * DIAMETER / 2, x - DIAMETER / 2])
-
-
 @pytest.mark.parametrize("part", PARTS)
 def test_on_the_face(lathe, part):
     moves = lathe(mill_program(PARTS[part]), "mill-on-face", "--safe", "1")
     assert_cut(on_the_part(moves), PARTS[part])
     assert rapids_turn_above_the_part(moves)
-
-
-@pytest.mark.parametrize("part", PARTS)
-def test_round_the_part(lathe, part):
-    moves = lathe(mill_program(PARTS[part]), "mill-round-part", "--safe", "1", *ROUND)
-    assert_cut(round_the_part(moves), PARTS[part])
-    assert all(m.start[0] > DIAMETER / 2 < m.end[0] for m in moves if m.kind == "rapid")
 
 
 def assert_cut(made, part):
@@ -90,14 +73,10 @@ M2
 WANTED = [(5, 5, -6), (-5, 5, -6), (0, -7, -4)]
 
 
-@pytest.mark.parametrize(
-    ("control", "options", "made_by"),
-    [("mill-on-face", (), on_the_part), ("mill-round-part", ROUND, round_the_part)],
-)
-def test_holes_are_where_the_mill_has_them(lathe, control, options, made_by):
-    moves = lathe(HOLES, control, *options)
+def test_holes_are_where_the_mill_has_them(lathe):
+    moves = lathe(HOLES, "mill-on-face")
     first = max(n for n, m in enumerate(moves) if m.kind == "feed" and m.start[5] != m.end[5])
-    downs = made_by(moves[first + 2 :])
+    downs = on_the_part(moves[first + 2 :])
     for x, y, depth in WANTED:
         near = downs[np.hypot(downs[:, 0] - x, downs[:, 1] - y) < 1e-3]
         assert near[:, 2].min() == pytest.approx(depth)

@@ -1,18 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every INI that ships: starts, runs a program to its end, and is twin to its twin."""
 
-import shutil
-import subprocess
-import time
-from contextlib import suppress
-
 import pytest
 
-from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import read_ini
 from support.kinematics import marked
 from support.operated_machine import Machine, smoke
 from support.sim_machines import SIM, copy_of_machines
+from support.x_screen import kept_display, launched
 
 INIS = sorted(SIM.glob("*.ini"))
 HEADLESS = [ini for ini in INIS if ini.stem.endswith("_headless")]
@@ -23,9 +18,8 @@ SCREENS = [SIM / f"{kind}.ini" for kind in (
     "mill_helix_mm", "lathe_inch", "lathe_mm_kinematics", "lathe_spindle_c_mm",
 )]  # fmt: skip
 RUN_HERE = [ini for ini in DESKTOP if ini.stem != "lathe_spindle_c_inch"]  # in test_spindle_c
+screen = kept_display()
 QUICK = "G21 G90\n(MSG, hello)\nG1 X2 F3000\nM0\nG0 Z1\nM2\n"
-XVFB_START = 60.0  # s for a screen to come up
-INCOMPLETE = "Namespace GtkSource not available"
 HARMLESS = (
     "Attribute error",  # gmoccapy, of each desktop setting that it cannot copy
     "[GladeVCP.QTVCP.QT_ISTAT]",  # of each entry of [DISPLAY] that it does without
@@ -114,47 +108,12 @@ def test_linuxcnc_runs_the_sample_if_no_program_is_named(tmp_path):
     assert "samples/mill_mitsubishi_mm.ngc: done" in log
 
 
-@pytest.fixture(scope="module")
-def screen():
-    """Yield the name of an X display of our own."""
-    if not shutil.which("Xvfb"):
-        pytest.skip("Xvfb is not installed")
-    with subprocess.Popen(
-        ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    ) as server:
-        yield f":{server.stdout.readline().strip()}"
-        server.terminate()
-
-
-def has_ended(isolated):
-    with suppress(subprocess.TimeoutExpired):
-        isolated.wait(0.2)
-        return True
-    return False
-
-
 def log_of_screen(ini, screen, component, done="up\n", text=None):
     """Return LinuxCNC's log once its screen is up and ``done`` stands in it."""
     started = f"until halcmd -s show comp {component} | grep -q {component}; do sleep 0.2; done"
     command = f"linuxcnc -r {ini} & {started}; sleep 3; echo up; wait"
-    isolated = Isolated()
-    try:
-        isolated.launch(
-            ["env", f"DISPLAY={screen}", "LIBGL_ALWAYS_SOFTWARE=1", "sh", "-c", command],
-            copies={ini.parent: {ini.name: text} if text else {}},
-        )
-        end = time.monotonic() + XVFB_START
-        while done not in isolated.log() and not has_ended(isolated):
-            if INCOMPLETE in isolated.log():
-                pytest.skip("gmoccapy lacks a package of its own here")
-            assert time.monotonic() < end, isolated.log()
-        assert not has_ended(isolated), isolated.log()
-        return isolated.log()
-    finally:
-        isolated.close()
+    with launched(ini, screen, command, text) as wait:
+        return wait(lambda log, _: done in log)
 
 
 @pytest.mark.parametrize("ini", [*marked(SCREENS), *GMOCCAPY], ids=name)

@@ -2,6 +2,7 @@
 """Open the Cycles page in GTK, add a step, write its picture: gtk_page.py INI PICTURE."""
 
 import sys
+from pathlib import Path
 
 import gi
 
@@ -11,15 +12,14 @@ from gi.repository import Gdk, GLib, Gtk  # noqa: E402
 from g12.tools.cycles_page.gtk_view import CyclesView  # noqa: E402
 
 ini, picture = sys.argv[1:]
-window = Gtk.Window()
-view = CyclesView(ini, print)
-window.add(view)
-window.set_default_size(1000, 640)
+builder = Gtk.Builder.new_from_file(f"{Path(ini).parents[1]}/include/cycles.ui")
+view = CyclesView(builder, ini, print)
+window = builder.get_object("window1")
 window.show_all()
 
 
 def step():
-    if not view.page.sketch.lines:
+    if not view.page.sketch.cut:
         return True
     view.widgets["i"].set_text("5,5")
     GLib.timeout_add(500, add)

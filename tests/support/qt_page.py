@@ -32,9 +32,9 @@ def wait(until):
     assert until()
 
 
-wait(lambda: view.page.sketch.lines)
+wait(lambda: view.page.sketch.cut)
 view.findChild(QLineEdit, "i").setText("5,5")
-wait(lambda: view.page.texts["i"] == "5,5" and view.page.sketch.lines)
+wait(lambda: view.page.texts["i"] == "5,5" and view.page.sketch.cut)
 view._add()
 assert view.steps.count() == 1
 wait(lambda: view.said.text() == view.page.sketch.text)

@@ -159,7 +159,7 @@ def test_what_is_wrong_with_a_filter(tmp_path, control, text):
     ("spindles", "control", "settings"),
     [
         (2, "doosan-lathe", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
-        (1, "mill-round-part", "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n"),
+        (1, "mill-on-face", "[G12]\nPOLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
     ],
 )
 def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings):

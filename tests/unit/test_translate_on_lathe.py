@@ -23,7 +23,6 @@ def with_options(name, *options):
 
 
 FACE = with_options("mill-on-face")
-ROUND = with_options("mill-round-part", "--diameter", "40")
 
 
 def lines(text, control=FACE):
@@ -51,13 +50,6 @@ def test_the_first_line_of_the_stock_linuxcnc_post_is_understood():
     assert lines(posted)[1:6] == first
 
 
-def test_round_the_part_y_is_c_the_other_way():
-    assert lines(f"{HEAD}{CUT}G0 Z20.\nM30\n", ROUND)[5:] == [
-        "X80.", "X46.", "G0 Z10. C-14.323945", "G7.1 C20", "G1 X38. F100. G94", "Z12.",
-        "X80. G1 G94 F2500", "G7.1 C0", "M30",
-    ]  # fmt: skip
-
-
 def test_holes_are_calls_outside_of_sections():
     more = "Y-5.\nG73 X0 Z-8. R-1. Q2. F60.\nG82 X1. Z-2. R1. P.5\nG80\nG0 Z20.\nM30\n"
     assert lines(HEAD + CUT + "G0 Z20.\n" + DRILL + more)[-10:-1] == [
@@ -82,11 +74,6 @@ def test_a_rapid_needs_no_feed_that_a_loop_leaves_open():
     assert lines(f"{HEAD}{CUT}{loop}G0 Z20.\nG91 G28 Z0.\nM30\n")[-2] == "G91 G28 Z0."
     found = refused(f"{HEAD}{CUT}{loop}G0 Z20.\nG1 Z-1.\n")
     assert "the feed here is not the same on every way" in found.sentence
-
-
-def test_a_hole_round_the_part():
-    hole = "[1] [10.] [-14.323945] [-9999] [40] [6.] [3.] [80.] [0] [0] [0]"
-    assert f"o<side_holes> call {hole} (G98)" in lines(f"{HEAD}{DRILL}G80\nM30\n", ROUND)
 
 
 def test_a_call_and_a_loop_begin_a_section_before_them():
@@ -131,24 +118,21 @@ def test_what_is_refused(text, line, sentence):
     assert (found.line, found.sentence[: len(sentence)]) == (line, sentence)
 
 
-def test_the_safe_height_and_the_diameter_are_said():
+def test_the_safe_height_is_said():
     low = f"{HEAD}G0 Z1.\nG1 Z-1. F9.\n"
     assert "below 2" in refused(low).sentence
     assert lines(f"{low}M30\n", with_options("mill-on-face", "--safe", "0.5"))
-    assert refused(HEAD + CUT, read_control("mill-round-part")).sentence == (
-        "the diameter of the part is not known: say --diameter, or diameter = … under [mill]"
-    )
-    with pytest.raises(UsageError, match="--diameter is for mill-on-face and mill-round-part"):
-        with_options("haas-mill", "--diameter", "40")
+    with pytest.raises(UsageError, match="--safe is for mill-on-face"):
+        with_options("haas-mill", "--safe", "4")
 
 
 @pytest.mark.parametrize(
     ("option", "value"),
-    [("--safe", "0"), ("--safe", "x"), ("--diameter", "nan"), ("--diameter", "inf")],
+    [("--safe", "0"), ("--safe", "x"), ("--safe", "nan"), ("--safe", "inf")],
 )
-def test_heights_and_diameters_are_above_zero(option, value, capsys):
+def test_heights_are_above_zero(option, value, capsys):
     with pytest.raises(SystemExit):
-        with_options("mill-round-part", option, value)
+        with_options("mill-on-face", option, value)
     assert f"argument {option}: '{value}' is not a number above 0" in capsys.readouterr().err
 
 

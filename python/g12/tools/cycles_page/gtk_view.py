@@ -22,9 +22,7 @@ from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.view import COLOURS, KEYS, SENTENCES, View, pressed
 from g12.tools.forms.table import CHOICE, TOOL, Entry
 
-THUMBNAIL, FORM_WIDTH, STEPS, DRAWING = 56, 290, 66, 140  # pixels; the last two at least
-WINDOW = 900, 560  # pixels, where it is no tab
-LETTERS, SENTENCE = 7, 34  # of an entry, of a line of the sentence
+THUMBNAIL, LETTERS, KEY = 56, 7, 44  # pixels of a picture, letters of an entry, pixels of a key
 DASH = (4, 3)  # of a rapid
 STYLE = "entry, combobox button { min-height: 24px; padding: 0 4px; }" + "".join(
     f"#{state} {{ background: {COLOURS[state]}; color: white; padding: 4px; }}"
@@ -32,84 +30,41 @@ STYLE = "entry, combobox button { min-height: 24px; padding: 0 4px; }" + "".join
 )
 
 
-def packed(vertical: bool, *parts: tuple[Gtk.Widget, bool]) -> Gtk.Box:
-    """Return a row or a column of widgets, each with whether it grows."""
-    box = Gtk.Box(orientation=Gtk.Orientation(vertical), spacing=3)
-    for part, grows in parts:
-        box.pack_start(part, grows, True, 0)
-    return box
+class CyclesView(View):
+    """The page in the widgets of `cycles.ui`, which names a button as the page does."""
 
-
-def scrolled(child: Gtk.Widget, width: int, height: int) -> Gtk.ScrolledWindow:
-    window = Gtk.ScrolledWindow(overlay_scrolling=False, hscrollbar_policy=Gtk.PolicyType.NEVER)
-    window.set_size_request(width, height)
-    window.add(child)
-    return window
-
-
-class CyclesView(View, Gtk.Box):
-    """The page; ``opened`` is called with the path of a program to open."""
-
-    def __init__(self, ini: str, opened: Callable[[str], None]) -> None:
-        super().__init__(spacing=6)
-        self.opened = opened
-        self.widgets = {}
+    def __init__(self, builder: Gtk.Builder, ini: str, opened: Callable[[str], None]) -> None:
+        self.opened, self.widgets = opened, {}
         self.page = Page(ini, lambda: GLib.idle_add(self._show_sketch))
-        self.connect("destroy", lambda *_: self.page.close())
         style = Gtk.CssProvider()
         style.load_from_data(STYLE.encode())
         Gtk.StyleContext.add_provider_for_screen(Gdk.Screen.get_default(), style, 600)
-        self.cycles, self.grid = self._choice_of_cycles(), Gtk.Grid(column_spacing=6)
-        self.tool_label = Gtk.Label(xalign=1, ellipsize=Pango.EllipsizeMode.END)
-        self.said = Gtk.Label(xalign=0, wrap=True, max_width_chars=SENTENCE)
-        self.steps, self.drawing = Gtk.ListBox(), Gtk.DrawingArea()
-        self.steps.connect("row-activated", lambda _, row: self._edit(row.get_index()))
-        self.drawing.set_size_request(DRAWING, DRAWING)
-        self.drawing.connect("draw", self._draw)
-        adding, moving, files = map(self._row, self._buttons())
-        form, steps = scrolled(self.grid, FORM_WIDTH, -1), scrolled(self.steps, -1, STEPS)
-        left = (self.cycles, False), (form, True), (self.said, False), (adding, False)
-        right = (self.drawing, True), (steps, False), (moving, False), (files, False)
-        column = packed(True, *left)
-        column.set_hexpand(False)  # whatever the entries ask for
-        self.pack_start(column, False, False, 0)
-        self.pack_start(packed(True, *right), True, True, 0)
-        self._show_form()
-
-    def _choice_of_cycles(self) -> Gtk.ComboBox:
-        """Return the choice of cycles: a picture and a name each."""
-        model = Gtk.ListStore(GdkPixbuf.Pixbuf, str)
+        names = ("entries", "said", "drawing", "steps", "cycles", "forms")
+        widgets = map(builder.get_object, names)
+        self.grid, self.said, self.drawing, self.steps, cycles, forms = widgets
         for form in self.page.forms:
             file = self._picture(form), THUMBNAIL, THUMBNAIL
-            model.append([GdkPixbuf.Pixbuf.new_from_file_at_size(*file), form.title])
-        box = Gtk.ComboBox(model=model)
-        cells = (Gtk.CellRendererPixbuf(), "pixbuf"), (Gtk.CellRendererText(wrap_width=140), "text")
-        for column, (cell, kind) in enumerate(cells):
-            box.pack_start(cell, False)
-            box.add_attribute(cell, kind, column)
-        box.set_active(0)
-        box.connect("changed", lambda box: self._select(box.get_active()))
-        return box
-
-    def _row(self, actions: dict[str, Callable[[], None]]) -> Gtk.Box:
-        buttons = [Gtk.Button(label=name) for name in actions]
-        for button, action in zip(buttons, actions.values()):
-            button.connect("clicked", partial(self._try, action))
-        return packed(False, *((button, True) for button in buttons))
+            forms.append([GdkPixbuf.Pixbuf.new_from_file_at_size(*file), form.title])
+        cycles.set_active(0)
+        cycles.connect("changed", lambda cycles: self._select(cycles.get_active()))
+        for name, action in self._buttons().items():
+            builder.get_object(name).connect("clicked", partial(self._try, action))
+        self.steps.connect("row-activated", lambda _, row: self._edit(row.get_index()))
+        self.drawing.connect("draw", self._draw)
+        self.drawing.connect("destroy", lambda _: self.page.close())
+        self.tool_label = Gtk.Label(xalign=1, ellipsize=Pango.EllipsizeMode.END)
+        self._show_form()
 
     def _show_form(self) -> None:
         for child in self.grid.get_children():
             self.grid.remove(child)
-        row = 0
-        for entry in self.page.entries:
-            label = Gtk.Label(label=self._label(entry), xalign=0)
+        for row, entry in enumerate(self.page.entries):
+            label = Gtk.Label(label=entry.caption(self.page.unit), xalign=0)
             self.widgets[entry.name] = self._widget(entry, self.page.texts[entry.name])
-            self.grid.attach(label, 0, row, 1, 1)
-            self.grid.attach(self.widgets[entry.name], 1, row, 1, 1)
-            row += 1
+            self.grid.attach(label, 0, 2 * row, 1, 1)
+            self.grid.attach(self.widgets[entry.name], 1, 2 * row, 1, 1)
             if entry.kind == TOOL:
-                self.grid.attach(self.tool_label, 0, row, 2, 1)
-                row += 1
+                self.grid.attach(self.tool_label, 0, 2 * row + 1, 2, 1)
         self.grid.show_all()
         self._show_sketch()
 
@@ -123,7 +78,7 @@ class CyclesView(View, Gtk.Box):
             box.connect("changed", lambda box: self._choose(entry, box.get_active()))
             return box
         line = Gtk.Entry(text=text, width_chars=LETTERS, xalign=1, halign=Gtk.Align.END)
-        line.set_tooltip_text(self._hint(entry))
+        line.set_tooltip_text(entry.zero and f"0: {entry.zero}")
         line.set_icon_from_icon_name(Gtk.EntryIconPosition.PRIMARY, "input-dialpad-symbolic")
         line.connect("icon-press", lambda line, *_: self._keypad(line))
         line.connect("changed", lambda line: self.page.type(entry.name, line.get_text()))
@@ -135,7 +90,7 @@ class CyclesView(View, Gtk.Box):
         popover, keys = Gtk.Popover(relative_to=line), Gtk.Grid()
         for row, named in enumerate(KEYS):
             for column, key in enumerate(named):
-                button = Gtk.Button(label=key, width_request=44, height_request=40)
+                button = Gtk.Button(label=key, width_request=KEY, height_request=KEY)
                 button.connect(
                     "clicked", lambda _, key: line.set_text(pressed(line.get_text(), key)), key
                 )
@@ -181,7 +136,7 @@ class CyclesView(View, Gtk.Box):
 
     def _ask_file(self, name: str, path: Path) -> str | None:
         action = {"Load": Gtk.FileChooserAction.OPEN, "Save": Gtk.FileChooserAction.SAVE}[name]
-        chooser = Gtk.FileChooserNative(action=action, transient_for=self.get_toplevel())
+        chooser = Gtk.FileChooserNative(action=action, transient_for=self.drawing.get_toplevel())
         chooser.set_current_folder(str(path.parent))
         if name == "Save":
             chooser.set_current_name(path.name)
@@ -195,10 +150,7 @@ def rgb(name: str) -> tuple[float, float, float]:
 
 
 def get_handlers(_halcomp, builder, _useropts) -> list:
-    """Put the page into the window of GladeVCP, which asks for its handlers."""
-    window = builder.get_object("window1")
-    window.remove(window.get_child())
-    window.add(CyclesView(os.environ["INI_FILE_NAME"], open_in_linuxcnc))
-    window.set_default_size(*WINDOW)
-    window.show_all()
+    """Fill in the window of GladeVCP, which asks for its handlers."""
+    CyclesView(builder, os.environ["INI_FILE_NAME"], open_in_linuxcnc)
+    builder.get_object("window1").show_all()
     return []

@@ -12,10 +12,10 @@ import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.cycles_page.machine import MachineState
-from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Line, Sketch
+from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch
 from g12.tools.forms.table import MILL, ROUND, Form
 from g12.tools.machine.ini import Ini, IniError, read_ini
-from g12.tools.path.part import C, Part, X, Z, last_x0
+from g12.tools.path.part import C, Part, X, Z, last_zero
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 from g12.tools.preview.tracer import Tracer
@@ -46,11 +46,14 @@ class Sketcher:
         """Return what the lines ``text`` of a form do; the machine is in ``state``."""
         options = {"setup": self._setup(state), "parameters": state.parameters}
         trace = self._interpreter().trace_text(text, timeout=TIMEOUT, **options)
-        part = Part(form.place != MILL, self.ini.tool_beside, last_x0(trace))
+        part = Part(form.place != MILL, self.ini.tool_beside, last_zero(trace))
         moves = [(move, positions_of(move, part)) for move in trace.moves]
-        lines = [Line(move.kind == "rapid", seen(part, form, each)) for move, each in moves]
+        cut, rapid = (
+            [seen(part, form, each) for move, each in moves if (move.kind == "rapid") is rapid]
+            for rapid in (False, True)
+        )
         radius = trace.radius(len(moves) - 1) if moves else 0.0
-        return Sketch(*self._outcome(trace, moves, form), lines, radius)
+        return Sketch(*self._outcome(trace, moves, form), cut, rapid, radius)
 
     def _interpreter(self) -> Tracer:
         """Return the interpreter, a new one where the tool table is another."""
@@ -88,8 +91,9 @@ class Sketcher:
         depths = [move.end[Z] for move in trace.moves if move.kind != "rapid"]
         if not depths:
             return "nothing is cut"
-        seconds, lowest = program_seconds(trace, self.ini), min(depths) / self.ini.mm
-        return f"{form.place}: {clock(seconds)} at the programmed feeds, to machine Z{lowest:.3f}"
+        depth = (min(depths) - last_zero(trace, Z)) / self.ini.mm
+        time = clock(program_seconds(trace, self.ini))
+        return f"{form.place}: {time} at the programmed feeds, down to Z{depth:.3f}"
 
     def _beyond(self, moves: Moves) -> str:
         """Return the sentence about a move beyond the machine's travel, or an empty text."""

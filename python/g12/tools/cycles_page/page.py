@@ -8,14 +8,14 @@ is there. The interpreter works in that thread and in a process of its own, neve
 import contextlib
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from g12.machine_ini import remap_lines
 from g12.settings import INI_SECTION, LIVE_TOOL
-from g12.tools.cycles_page.machine import MachineState, Tool, machine_state, tools_of
+from g12.tools.cycles_page.machine import Tool, machine_state, tools_of
 from g12.tools.cycles_page.sketch import REFUSED, Sketch
 from g12.tools.cycles_page.steps import Step, number_text, program_text, read_entry, read_program
 from g12.tools.errors import UsageError
@@ -27,6 +27,7 @@ from g12.tools.units import name_of_unit
 KEPT = "g12/cycles-page.ngc"  # below XDG_STATE_HOME
 NICE = 5  # of the sketches: LinuxCNC's own threads and the screen come first
 INTERPRETER = "g12.tools.cycles_page.interpreter"
+PATIENCE = 15.0  # s, of a button for a sketch
 LONGEST = 300  # letters of a sentence, of an interpreter that dies
 NO_FORM = Sketch(REFUSED, "no cycle is set up in this machine: see check")
 
@@ -34,27 +35,22 @@ NO_FORM = Sketch(REFUSED, "no cycle is set up in this machine: see check")
 class Page:
     """The page of one machine."""
 
-    def __init__(
-        self,
-        ini_path: str | os.PathLike,
-        changed: Callable[[], None],
-        state: Callable[[], MachineState] | None = None,
-    ) -> None:
+    def __init__(self, ini_path: str | os.PathLike, changed: Callable[[], None]) -> None:
         self.unit, self.sketch = "mm", NO_FORM
         self.forms: Sequence[Form] = ()
         self.entries: Sequence[Entry] = ()
         try:
             self.ini = read_ini(ini_path)
-            self.unit, self.forms = name_of_unit(self.ini.mm), forms_of_machine(self.ini)
+            self.unit = name_of_unit(self.ini.mm)
+            handlers = {name for remap in remap_lines(self.ini.all) for name in remap.handlers}
+            self.forms = [form for form in FORMS if HANDLERS[form.feature] in handlers]
         except IniError as problem:
             self.ini = Ini(Path(ini_path), ())
             self.sketch = Sketch(REFUSED, str(problem))
         self.steps: list[Step] = []
-        self._state = state or (lambda: machine_state(self.ini))
-        self._kept = read_kept()
-        self._changed = changed
+        self._kept, self._changed = read_kept(), changed
         self._sketcher: Any = None
-        self._wanted: tuple[Form, str] | None = None
+        self._wanted: tuple[Form, str] | None = None  # until it is drawn
         self._wake, self._ended = threading.Condition(), False
         self._thread = threading.Thread(target=self._work, name="cycles page", daemon=True)
         self._thread.start()
@@ -80,9 +76,13 @@ class Page:
         self._ask()
 
     def default(self, entry: Entry) -> str:
-        """Return the text that an entry begins with on this machine."""
-        tools = tools_of(self.ini)
-        number = self._default_tool(tools)
+        """Return the text that an entry begins with on this machine.
+
+        The tool is the loaded one, else the first of the table that has a diameter.
+        """
+        tools, number = tools_of(self.ini), machine_state(self.ini).tool
+        if number not in tools:
+            number = next((each for each, tool in tools.items() if tool.diameter > 0), 1)
         if entry.kind == TOOL:
             return number_text(number)
         if entry.of_tool and number in tools and tools[number].diameter > 0:
@@ -91,13 +91,6 @@ class Page:
         if entry.name in ("on", "off") and len(live) == 2:
             return live[("on", "off").index(entry.name)]
         return number_text(entry.default(self.unit))
-
-    def _default_tool(self, tools: Mapping[int, Tool]) -> int:
-        """Return the loaded tool, else the first of the table that has a diameter."""
-        loaded = self._state().tool
-        if loaded in tools:
-            return loaded
-        return next((number for number, tool in tools.items() if tool.diameter > 0), 1)
 
     def tool(self) -> Tool | None:
         """Return the line of the tool table of the tool that is typed."""
@@ -122,6 +115,9 @@ class Page:
 
     def add(self, at: int | None = None) -> None:
         """Add the form to the program, or put it in place of the step ``at``."""
+        with self._wake:
+            if not self._wake.wait_for(lambda: self._wanted is None, PATIENCE):
+                raise UsageError("it is not drawn yet")
         if self.sketch.state == REFUSED:
             raise UsageError(self.sketch.text)
         step = Step(self.form, self.unit, self.values())
@@ -162,32 +158,35 @@ class Page:
     # The sketch.
 
     def _ask(self) -> None:
-        """Have the form as it is drawn; a request that has not begun is dropped."""
+        """Have the form as it is drawn."""
         try:
-            text = Step(self.form, self.unit, self.values()).call
+            wanted = self.form, Step(self.form, self.unit, self.values()).call
         except UsageError as problem:
-            with self._wake:
-                self._wanted, self.sketch = None, Sketch(REFUSED, str(problem))
-            self._changed()
+            self._wanted = None
+            self._show(None, Sketch(REFUSED, str(problem)))
             return
         with self._wake:
-            self._wanted = self.form, text
-            self._wake.notify()
+            self._wanted = wanted
+            self._wake.notify_all()
+
+    def _show(self, wanted: Any, sketch: Sketch) -> None:
+        """Show the sketch of a request, unless another one came meanwhile."""
+        with self._wake:
+            if self._wanted is not wanted:
+                return
+            self._wanted, self.sketch = None, sketch
+            self._wake.notify_all()
+        self._changed()
 
     def _work(self) -> None:
         os.setpriority(os.PRIO_PROCESS, 0, NICE)  # of this thread, and of the interpreter it starts
         while True:
             with self._wake:
                 self._wake.wait_for(lambda: self._ended or self._wanted)
-                if self._ended:
-                    break
-                (form, text), self._wanted = self._wanted, None
-            sketch = self._sketched(form, text)
-            with self._wake:
-                if self._wanted:  # by now, and so another one
-                    continue
-                self.sketch = sketch
-            self._changed()
+                wanted = self._wanted
+            if self._ended:
+                break
+            self._show(wanted, self._sketched(*wanted))
         if self._sketcher:
             self._sketcher.close()
 
@@ -196,7 +195,7 @@ class Page:
         try:
             # here, for its libraries take time to load, and one may be missing
             self._sketcher = self._sketcher or import_module(INTERPRETER).Sketcher(self.ini)
-            return self._sketcher.sketch(form, text, self._state())
+            return self._sketcher.sketch(form, text, machine_state(self.ini))
         except Exception as problem:  # whatever it is, the page goes on
             if self._sketcher:
                 self._sketcher.close()
@@ -213,9 +212,3 @@ def read_kept() -> dict[tuple[str, str], Step]:
         steps = read_program(kept_path().read_text(encoding="utf-8", errors="replace"))
         return {(step.form.name, step.unit): step for step in steps}
     return {}
-
-
-def forms_of_machine(ini) -> Sequence[Form]:
-    """Return the forms whose codes the machine has."""
-    handlers = {name for remap in remap_lines(ini.all) for name in remap.handlers}
-    return [form for form in FORMS if HANDLERS[form.feature] in handlers]

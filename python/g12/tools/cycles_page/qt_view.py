@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The Cycles page in Qt: a tab of Probe Basic, or a widget of any screen in Qt."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
@@ -22,6 +22,7 @@ from g12.tools.cycles_page.view import COLOURS, KEYS, View, pressed
 from g12.tools.forms.table import CHOICE, TOOL, Entry
 
 THUMBNAIL, DRAWING = QSize(80, 60), (200, 200)  # pixels; the latter at least
+ROWS = ("Add", "Replace"), ("▲", "▼", "✕"), ("Load", "Save", "Open")
 KEYPAD = QtWidgets.QStyle.SP_FileDialogListView  # its icon
 
 
@@ -77,17 +78,17 @@ class CyclesView(View, QWidget):
         self.tool_label, self.said = QLabel(alignment=Qt.AlignRight), QLabel(wordWrap=True)
         self.drawing, self.steps = Drawing(self.page), QtWidgets.QListWidget()
         self.steps.itemClicked.connect(lambda item: self._edit(self.steps.row(item)))
-        adding, moving, files = map(self._row, self._buttons())
+        adding, moving, files = (self._row(names) for names in ROWS)
         left = (self.cycles, 0), (scrolled, 1), (self.said, 0), (adding, 0)
         right = (self.drawing, 3), (self.steps, 1), (moving, 0), (files, 0)
         columns = (packed(QVBoxLayout(), *left), 2), (packed(QVBoxLayout(), *right), 3)
         packed(QHBoxLayout(self), *columns)
         self._show_form()
 
-    def _row(self, actions: dict[str, Callable[[], None]]) -> QLayout:
-        buttons = [QPushButton(name, objectName=name) for name in actions]
-        for button, action in zip(buttons, actions.values()):
-            button.clicked.connect(partial(self._try, action))
+    def _row(self, names: Sequence[str]) -> QLayout:
+        buttons = [QPushButton(name, objectName=name) for name in names]
+        for button in buttons:
+            button.clicked.connect(partial(self._try, self._buttons()[button.text()]))
         return packed(QHBoxLayout(), *((button, 1) for button in buttons))
 
     def _show_form(self) -> None:
@@ -95,7 +96,7 @@ class CyclesView(View, QWidget):
             self.grid.takeAt(0).widget().setParent(None)
         for row, entry in enumerate(self.page.entries):
             self.widgets[entry.name] = self._widget(entry, self.page.texts[entry.name])
-            self.grid.addWidget(QLabel(self._label(entry)), 2 * row, 0)
+            self.grid.addWidget(QLabel(entry.caption(self.page.unit)), 2 * row, 0)
             self.grid.addWidget(self.widgets[entry.name], 2 * row, 1)
             if entry.kind == TOOL:
                 self.grid.addWidget(self.tool_label, 2 * row + 1, 0, 1, 2)
@@ -108,7 +109,7 @@ class CyclesView(View, QWidget):
             box.setCurrentIndex(self._place(entry))
             box.currentIndexChanged.connect(partial(self._choose, entry))
             return box
-        line = QLineEdit(text, objectName=entry.name, toolTip=self._hint(entry))
+        line = QLineEdit(text, objectName=entry.name, toolTip=entry.zero and f"0: {entry.zero}")
         opening = line.addAction(self.style().standardIcon(KEYPAD), QLineEdit.LeadingPosition)
         opening.triggered.connect(partial(self._keypad, line))
         line.textChanged.connect(partial(self.page.type, entry.name))

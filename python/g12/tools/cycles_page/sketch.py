@@ -10,19 +10,13 @@ READY, MESSAGE, REFUSED = "ready", "message", "refused"
 MARGIN = 0.92  # share of a drawing's place
 
 
-class Line(NamedTuple):
-    """A move as drawn."""
-
-    is_rapid: bool
-    points: np.ndarray  # one row each
-
-
 class Sketch(NamedTuple):
     """What a step would do."""
 
     state: str  # READY, MESSAGE or REFUSED
     text: str  # for the operator
-    lines: Sequence[Line] = ()
+    cut: Sequence[np.ndarray] = ()  # lines, a row for each point
+    rapid: Sequence[np.ndarray] = ()
     radius: float = 0.0  # of the cutter
 
     def strokes(self, width: int, height: int) -> Iterator[tuple[str, float, list[np.ndarray]]]:
@@ -30,14 +24,11 @@ class Sketch(NamedTuple):
 
         What is cut fills the place, with y downwards.
         """
-        cut = [line.points for line in self.lines if not line.is_rapid] or [np.zeros((1, 2))]
-        points = np.concatenate(cut)
+        points = np.concatenate(self.cut or [np.zeros((1, 2))])
         low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
-        size = np.maximum(high - low, 1e-3)
-        scale = MARGIN * min(width / size[0], height / size[1])
-        middle = np.array([width / 2, height / 2])
-        pens = ("swept", 2 * self.radius * scale, False), ("rapid", 1, True), ("path", 1.3, False)
-        for name, pen, is_rapid in pens:
-            shown = (line.points for line in self.lines if line.is_rapid == is_rapid)
-            pixels = [middle + (each - (low + high) / 2) * scale * (1, -1) for each in shown]
+        place, middle = np.array([width, height]), (low + high) / 2
+        scale = MARGIN * (place / np.maximum(high - low, 1e-3)).min()
+        for name, pen in ("swept", 2 * self.radius * scale), ("rapid", 1), ("path", 1.3):
+            lines = self.rapid if name == "rapid" else self.cut
+            pixels = [place / 2 + (line - middle) * scale * (1, -1) for line in lines]
             yield name, max(pen, 0.1), pixels

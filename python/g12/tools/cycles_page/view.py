@@ -10,7 +10,7 @@ from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
 from g12.tools.cycles_page.steps import number_text
 from g12.tools.errors import UsageError
-from g12.tools.forms.table import ANGLE, FEED, LENGTH, SECONDS, SPEED, Entry, Form
+from g12.tools.forms.table import LENGTH, UNITS, Entry, Form
 
 NGC = Path(__file__).resolve().parents[4] / "ngc"
 COLOURS = {
@@ -24,10 +24,6 @@ COLOURS = {
 }
 SENTENCES = READY, MESSAGE, REFUSED
 KEYS = "789", "456", "123", "-0.", "⌫C"  # of a keypad, row by row
-UNITS = {
-    "mm": {LENGTH: "mm", FEED: "mm/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
-    "inch": {LENGTH: "in", FEED: "in/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
-}
 
 
 def pressed(text: str, key: str) -> str:
@@ -51,22 +47,10 @@ class View:
     _list_steps: Callable[[list[str], int], None]  # the titles, and the place of the selected one
     _ask_file: Callable[[str, Path], str | None]  # the button's name and the path proposed
 
-    def _label(self, entry: Entry) -> str:
-        """Return what stands beside an entry: words and unit."""
-        return ", ".join(filter(None, (entry.label, UNITS[self.page.unit].get(entry.kind))))
-
-    def _hint(self, entry: Entry) -> str:
-        """Return what an entry's 0 leaves out."""
-        return f"0: {entry.zero}" if entry.zero else ""
-
     def _place(self, entry: Entry) -> int:
         """Return the place of an entry's text among its choices, -1 for another number."""
-        values = [number_text(value) for value, _ in entry.choices]
-        return (
-            values.index(self.page.texts[entry.name])
-            if self.page.texts[entry.name] in values
-            else -1
-        )
+        places = {number_text(value): at for at, (value, _) in enumerate(entry.choices)}
+        return places.get(self.page.texts[entry.name], -1)
 
     def _picture(self, form: Form) -> str:
         return str(NGC / f"form_{form.name}_{self.page.unit}.png")
@@ -78,14 +62,18 @@ class View:
             return "not in the tool table" if self.page.forms else ""
         return f"⌀ {tool.diameter:g} {UNITS[self.page.unit][LENGTH]} {tool.remark}"
 
-    def _buttons(self) -> tuple[dict[str, Callable[[], None]], ...]:
-        """Return what each button does: those of the form, of the steps, of the files."""
-        up, down = partial(self._move, -1), partial(self._move, 1)
-        return (
-            {"Add": self._add, "Replace": self._replace},
-            {"▲": up, "▼": down, "✕": self._delete},
-            {"Load": self._load, "Save": self._save, "Open": self._open},
-        )
+    def _buttons(self) -> dict[str, Callable[[], None]]:
+        """Return what each button does."""
+        return {
+            "Add": self._add,
+            "Replace": self._replace,
+            "▲": partial(self._move, -1),
+            "▼": partial(self._move, 1),
+            "✕": self._delete,
+            "Load": self._load,
+            "Save": self._save,
+            "Open": self._open,
+        }
 
     def _try(self, action: Callable[[], None], *_clicked) -> None:
         """Do what a button says; show why it cannot be."""

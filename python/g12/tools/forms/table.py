@@ -23,6 +23,12 @@ HANDLERS = {  # of each feature with forms: one that the REMAP lines of a machin
 }
 
 
+UNITS = {  # of an entry's kind, by a form's unit
+    "mm": {LENGTH: "mm", FEED: "mm/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
+    "inch": {LENGTH: "in", FEED: "in/min", ANGLE: "°", SPEED: "1/min", SECONDS: "s"},
+}
+
+
 class Entry(NamedTuple):
     """One entry of a form."""
 
@@ -37,6 +43,10 @@ class Entry(NamedTuple):
     omitted: bool = False  # 0 becomes -9999 in the call
     of_tool: float = 0.0  # the page proposes this share of the tool's diameter
     needs: str = ""  # an entry that must not be 0 for this one to matter
+
+    def caption(self, unit: str) -> str:
+        """Return what stands beside the entry on the page: label and unit."""
+        return ", ".join(filter(None, (self.label, UNITS[unit].get(self.kind))))
 
     def default(self, unit: str) -> float:
         """Return the default of a form of ``unit``, mm or inch."""

@@ -289,9 +289,8 @@ def refuse_other_filters(
 def add_settings(plan: InstallPlan, control: Control) -> None:
     """Add the settings that a lathe's programs need, but for those of the user."""
     if control.turns_c:
-        depth = "CYLINDER_X" if control.onto == "round" else "POLAR_Z"
         several = plan.config.ini.number("TRAJ", "SPINDLES", 1) > 1
-        needed = {depth: "allow", "LIVE_SPINDLE": "1" if several else "0"}
+        needed = {"POLAR_Z": "allow", "LIVE_SPINDLE": "1" if several else "0"}
         unset = (key for key in needed if not plan.config.ini.get(SETTINGS, key))
         plan.add({SETTINGS: [f"{key} = {needed[key]}" for key in unset]})
 

@@ -360,7 +360,7 @@ def needs(config: Config) -> Iterator[ConfigFinding]:
     """Find axes that a code needs, and shapes without the polar interpolation of their subs."""
     axes = config.ini.axes
     for feature in config.features:
-        needed = features.AXES_NEEDED.get(feature, "XYZ")
+        needed = features.axes_needed(feature, axes)
         missing = [axis for axis in needed if axis not in axes]
         if missing:
             yield problem(

@@ -102,7 +102,7 @@ def part_of_program(ini: Ini, trace: Trace, is_milled: bool) -> Part:
     """Return the part of a program; on a lathe C turns it about X0, if C moves or mills at all."""
     part = part_of(ini)
     turning = part.turning and (is_milled or any(map(_turns_part, trace.moves)))
-    return replace(part, turning=turning, centre=last_x0(trace) if turning else 0.0)
+    return replace(part, turning=turning, centre=last_zero(trace) if turning else 0.0)
 
 
 def _turns_part(move: Move) -> bool:
@@ -111,11 +111,11 @@ def _turns_part(move: Move) -> bool:
     return circle or any(move.start[axis] != move.end[axis] for axis in (Y, C))
 
 
-def last_x0(trace: Trace) -> float:
-    """Return the machine coordinate of the program's X0 at its end, mm."""
-    state = trace.state
+def last_zero(trace: Trace, axis: int = X) -> float:
+    """Return the machine coordinate of the program's X0, or of another axis, at its end, mm."""
+    state, name = trace.state, f"current_{'xyz'[axis]}"
     unit = MM_PER_INCH if state.get("length_units") == INCHES else 1.0
-    return trace.position[X] - state["current_x"] * unit if "current_x" in state else 0.0
+    return trace.position[axis] - state[name] * unit if name in state else 0.0
 
 
 def x0_text(part: Part, unit: Unit) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Container
 from g12.tools.system import COMMAND
 from g12.tools.translate.blocks.control import read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import blocks_of
-from g12.tools.translate.native import CODES
+from g12.tools.translate.whole_program import CODES
 
 CONTROLS_NAMED = 3  # controls
 COMMONEST = ("fanuc", "haas")

@@ -17,10 +17,9 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
 from g12.tools.translate.macros import STATEMENTS
-from g12.tools.translate.on_lathe.sections import before_loop
 from g12.tools.translate.phases import translate_words
-from g12.tools.translate.rules.modes import keep_modes
-from g12.tools.translate.rules.motion import is_plain
+from g12.tools.translate.rules.codes import keep_modes
+from g12.tools.translate.rules.on_face import before_loop
 from g12.tools.translate.structure import MAIN, OPENING, Structure, ways_from
 
 Progress = Callable[[int], None]
@@ -94,12 +93,12 @@ class FollowedProgram:
         is_macro = self.kinds.get(number) == "macro"
         if is_macro:
             draft.return_text = f"o<macro_{number}> return"
-        begins = index in self.structure.starts or draft.begins_program()
+        begins = index in self.structure.starts or "O" in {w.letter for w in draft.words[:1]}
         begun = self.structure.starts.get(index, MAIN)
         word = draft.take("O") if begins else None
         if begins and begun == MAIN and not word.value.isdigit():
             raise NotTranslated(f"{word.text}: the number of a program must be a whole number")
-        if draft.words and not is_plain(draft):
+        if draft.words:
             translate_words(draft)
         if begins and begun == MAIN:
             draft.comments.insert(0, word.text)
@@ -108,11 +107,9 @@ class FollowedProgram:
 
     def ends_of_macros(self) -> dict[int, str]:
         """Return the line that ends each macro, by the index of its last block."""
-        entries = {
-            n: self.structure.entries[n] for n, kind in self.kinds.items() if kind == "macro"
-        }
-        end_of = self.structure.end_of
-        return {end_of(at) - 1: f"o<macro_{n}> endsub" for n, at in entries.items()}
+        macros = [number for number, kind in self.kinds.items() if kind == "macro"]
+        ends = {n: self.structure.end_of(self.structure.entries[n]) for n in macros}
+        return {end - 1: f"o<macro_{n}> endsub" for n, end in ends.items()}
 
     def _leave(self, index: int, draft: Draft) -> None:
         if draft.call:
@@ -153,14 +150,10 @@ class FollowedProgram:
 
     def _wrong_call(self, index: int, call: SubprogramCall, entry: int | None) -> str | None:
         name = self.structure.name_of(call.number)
-        if entry is None and call.number in self.structure.behind_tape:
-            return f"{name} is after the % that ends the program: take that % out"
-        if entry is None and any(block.number == call.number for block in self.structure.blocks):
-            return f"{name} is not in this file, but N{call.number} is: M97 P calls a block"
         if entry is None and name.startswith("N"):
             return f"{name} is not in this program: M97 calls a block of it"
         if entry is None:
-            return f"{name} is not in this file: put the subprogram into it"
+            return f"{name} is not in this file: put the subprogram into it, before its last %"
         if call.number in self.structure.doubled:
             return f"{name} is in this file twice: give one of them another number"
         if self.kinds.get(call.number, call.kind) != call.kind:

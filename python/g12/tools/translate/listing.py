@@ -2,22 +2,17 @@
 """The codes and settings of a control as a list."""
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from textwrap import wrap
 
 from g12.tools.translate.blocks.control import Control
 
-REFUSE_PREFIX = "refuse: "
-HEADINGS = {
-    "same": "as on LinuxCNC",
-    "comment": "nothing to do, kept as comments",
-    "machine": "the builder's: the machine must know them",
-}
+MEANT = {"same": "as on LinuxCNC", "comment": "kept as comments", "machine": "the machine's own"}
 WIDTH = 96
 
 
 def listing_of(control: Control) -> str:
-    return "\n".join([*_head(control), *_codes(control.meanings), *_tables(control), ""])
+    return "\n".join([*_head(control), *_codes(control), *_tables(control), ""])
 
 
 def _head(control: Control) -> Iterator[str]:
@@ -28,31 +23,15 @@ def _head(control: Control) -> Iterator[str]:
     yield f"  numbers without a point: {control.decimals or 'refused where it matters'}"
 
 
-def _codes(meanings: Mapping[str, str]) -> Iterator[str]:
-    for meaning in sorted(set(meanings.values()), key=_order):
-        codes = " ".join(sorted((c for c in meanings if meanings[c] == meaning), key=_number))
-        if meaning.startswith(REFUSE_PREFIX):
-            yield f"refused {codes}: {meaning.removeprefix(REFUSE_PREFIX)}"
-        else:
-            text = f"{_heading(meaning)}: {codes}"
-            yield from wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
-
-
-def _heading(meaning: str) -> str:
-    kind, *letters = meaning.split(" ") if meaning.startswith("comment") else [meaning]
-    beside = f", with their {' '.join(letters)}" if letters else ""
-    return f"{HEADINGS.get(kind, kind)}{beside}"
-
-
-def _order(meaning: str) -> tuple[int, str]:
-    kind = "comment" if meaning.startswith("comment") else meaning
-    first = [*HEADINGS].index(kind) if kind in HEADINGS else len(HEADINGS)
-    return first + meaning.startswith(REFUSE_PREFIX), meaning
-
-
-def _number(code: str) -> tuple[str, float, str]:
-    is_number = code[1:].replace(".", "").isdigit()
-    return code[0], float(code[1:]) if is_number else 0.0, code
+def _codes(control: Control) -> Iterator[str]:
+    for meaning in sorted(set(control.meanings.values()), key=lambda m: (m[:6] == "refuse", m)):
+        codes = sorted(
+            (c for c, of in control.meanings.items() if of == meaning),
+            key=lambda c: (c[0], float(c[1:])),
+        )
+        kind, _, rest = meaning.partition(" ")
+        text = f"{' '.join([MEANT.get(kind, kind), rest]).strip()}: {' '.join(codes)}"
+        yield from wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False)
 
 
 def _tables(control: Control) -> Iterator[str]:

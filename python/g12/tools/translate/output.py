@@ -39,17 +39,8 @@ class FilePart(NamedTuple):
     numbers: list[int]
 
 
-class WrittenOrder(NamedTuple):
-    """The lines of a file in the order in which they are written.
-
-    ``circular`` are the numbers of programs that cannot stand below all of their calls.
-    """
-
-    rows: list[WrittenRow]
-    circular: frozenset[int]
-
-
-def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
+def written_order(followed: FollowedProgram, count: int) -> tuple[list[WrittenRow], frozenset[int]]:
+    """Return a file's lines as they are written, and the programs that call each other."""
     parts = _file_parts(followed.structure, count)
     part_of = {number: at for at, part in enumerate(parts) for number in part.numbers}
     above: dict[int, set[int]] = {at: set() for at in range(len(parts))}
@@ -60,14 +51,14 @@ def written_order(followed: FollowedProgram, count: int) -> WrittenOrder:
     try:
         sorter.prepare()
     except CycleError as cycle:
-        return WrittenOrder([], frozenset(n for at in cycle.args[1] for n in parts[at].numbers))
+        return [], frozenset(n for at in cycle.args[1] for n in parts[at].numbers)
     ready: list[int] = []
     rows: list[WrittenRow] = []
     while sorter.is_active():
         first, *ready = sorted((*ready, *sorter.get_ready()))
         rows += parts[first].rows
         sorter.done(first)
-    return WrittenOrder(rows, frozenset())
+    return rows, frozenset()
 
 
 def _file_parts(structure: Structure, count: int) -> list[FilePart]:
@@ -100,7 +91,7 @@ def lines_of(draft: Draft) -> list[str]:
 
 
 def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
-    """Return lines with comments after the first; those without room get lines of their own.
+    """Return lines with comments after the first; those without room get lines, and are cut off.
 
     A message stays the last comment of its line: LinuxCNC obeys no other one.
     """
@@ -109,13 +100,8 @@ def _with_comments(lines: list[str], comments: Sequence[str]) -> list[str]:
     first = " ".join(filter(None, [*lines[at : at + 1], whole]))
     if size(first) <= LONGEST_LINE - LONGEST_MARK:
         return [*lines[:at], first, *lines[at + 1 :]]
-    rest = [
-        f"({comment[at : at + length]})"
-        for comment in comments
-        for length in (LONGEST_COMMENT if comment.isascii() else LONGEST_COMMENT // 4,)
-        for at in range(0, len(comment), length)
-    ]
-    return [*lines, *rest]
+    lengths = (LONGEST_COMMENT if c.isascii() else LONGEST_COMMENT // 4 for c in comments)
+    return [*lines, *(f"({comment[:length]})" for comment, length in zip(comments, lengths))]
 
 
 def size(text: str) -> int:

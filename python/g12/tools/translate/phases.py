@@ -12,17 +12,14 @@ from collections.abc import Callable
 from g12.tools.translate.blocks import positions
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.on_lathe import holes, sections
 from g12.tools.translate.rules import (
     codes,
     decimals,
     drilling_cycles,
-    modes,
     motion,
     offsets,
+    on_face,
     polar,
-    reference,
-    spindle,
     subprograms,
     tools,
 )
@@ -47,35 +44,33 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     "codes": (codes.keep_as_comments, codes.map_codes, cycles_of_turning.no_pass_yet),
     # the state has the modes of the block; planes name no axes, X words are of one kind
     "modes": (
-        of_meaning("orientation", spindle.orientation),
-        modes.follow_modes,
+        codes.follow_modes,
         polar.plane_letters,
-        of_meaning("radius or diameter", modes.radius_or_diameter),
+        of_meaning("radius or diameter", codes.radius_or_diameter),
     ),
     # a call has its arguments; numbers are in whole units, axes are those of the machine
     "values": (
         subprograms.call_macro,
-        modes.axes_at_zero,
+        codes.axes_at_zero,
         of_meaning("dwell", decimals.dwell),
         decimals.whole_units,
     ),
     # the state has the point that the block leads to, as far as it is known
     "position": (positions.follow_positions,),
     # T, H, D, S and M3 to M5 are LinuxCNC's: tool, offset, speed limit, which spindle
-    "tool and spindle": (tools.tool_and_offsets, spindle.speed_limit, spindle.live_tool),
+    "tool and spindle": (tools.tool_and_offsets, tools.speed_limit, tools.live_tool),
     # work offsets and reference points are LinuxCNC's
     "origins": (
         offsets.numbered_offset,
         of_meaning("offset by program", offsets.offset_by_program),
-        reference.reference_point,
+        motion.reference_point,
     ),
-    # what a section on the face or round the part has is written in its axes and its feed
+    # what a section has is written in its axes and its feed
     "sections": (
-        sections.mill_block,  # a mill's program on a lathe: on the face, round the part
+        on_face.mill_block,
         of_meaning("polar on", polar.turn_on),
         of_meaning("polar off", polar.turn_off),
         of_meaning("cylinder", polar.switch_cylinder),
-        polar.on_the_surface,
         polar.inside_polar,
     ),
     # F and its mode are those that the control has for the block
@@ -88,24 +83,24 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     "cycles of lathes": (
         drilling.drilling_of_lathe,
         cycles_of_turning.turning_cycle,
-        reference.incremental_words,
+        motion.incremental_words,
     ),
     # drilling cycles are LinuxCNC's, those on a lathe calls of its holes
     "cycles of mills": (
         drilling_cycles.hole_pattern,
-        holes.whole_cycle,
+        on_face.whole_cycle,
         drilling_cycles.drilling_cycle,
-        holes.hole_call,
+        on_face.hole_call,
     ),
     # motion and distance mode are written where LinuxCNC is in another; stops follow cuts
     "motion": (
-        reference.machine_position,
+        motion.machine_position,
         motion.motion_mode,
         motion.distance_mode,
-        spindle.stop_behind_a_cut,
+        tools.stop_behind_a_cut,
     ),
     # no word or code is left that nobody has read; calls and returns are written
-    "lines": (modes.refuse_leftovers, subprograms.finish_call),
+    "lines": (codes.refuse_leftovers, subprograms.finish_call),
 }
 
 

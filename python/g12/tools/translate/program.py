@@ -16,16 +16,15 @@ from g12.tools.translate.blocks.lexer import (
 )
 from g12.tools.translate.follow import FollowedProgram
 from g12.tools.translate.macros import unset_variables
-from g12.tools.translate.native import (
-    Construct,
+from g12.tools.translate.output import lines_of, output_lines, written_order
+from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
+from g12.tools.translate.structure import MAIN, structure_of
+from g12.tools.translate.whole_program import (
+    control_of_program,
     lacking_constructs,
     own_constructs,
     with_message,
 )
-from g12.tools.translate.output import lines_of, output_lines, written_order
-from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
-from g12.tools.translate.structure import MAIN, structure_of
-from g12.tools.translate.whole_program import control_of_program
 
 READ, FOLLOWED = 0.5, 0.35  # shares of the time
 
@@ -65,22 +64,22 @@ def translate_program(
     refused = sorted(set(_refusals(followed)))
     if refused:
         return Translation("", refused)
-    order = written_order(followed, len(rows))
-    if order.circular:
-        return Translation("", sorted(_circular_calls(followed, order.circular)))
-    return Translation("\n".join([*output_lines(rows, order.rows, followed), ""]), [])
+    order, circular = written_order(followed, len(rows))
+    if circular:
+        return Translation("", sorted(_circular_calls(followed, circular)))
+    return Translation("\n".join([*output_lines(rows, order, followed), ""]), [])
 
 
-def _native_program(rows: Sequence[str], own: Construct) -> Translation:
+def _native_program(rows: Sequence[str], own: tuple[int, str]) -> Translation:
     """Return a program of LinuxCNC as it is; a mixture with another control's is refused."""
-    other = next(lacking_constructs(rows), None)
-    if not other:
-        return Translation(with_message(rows), [])
-    sentence = (
-        f"{own.text} is LinuxCNC's, {other.text} in line {other.line} another control's: write the "
-        "program for one of them"
-    )
-    return Translation("", [RefusedBlock(own.line, sentence)])
+    line, text = own
+    for other_line, other in lacking_constructs(rows):
+        sentence = (
+            f"{text} is LinuxCNC's, {other} in line {other_line} another control's: write the "
+            "program for one of them"
+        )
+        return Translation("", [RefusedBlock(line, sentence)])
+    return Translation(with_message(rows), [])
 
 
 def _read_blocks(

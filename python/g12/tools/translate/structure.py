@@ -21,7 +21,6 @@ class Structure:
     """The blocks of a file up to its end, by index."""
 
     blocks: list[ForeignBlock]
-    behind_tape: Collection[int]  # numbers of the programs after the closing ``%``
     main: int = 0  # the block that is reached first
     entries: dict[int, int] = field(default_factory=dict)  # first block of each other program
     starts: dict[int, int] = field(default_factory=dict)  # the numbers of programs, by block
@@ -53,8 +52,7 @@ class Structure:
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
     blocks = _without_leader(blocks)
-    end = _end_of_tape(blocks)
-    structure = Structure(blocks[:end], _program_heads(blocks[end:]).values())
+    structure = Structure(blocks[: _end_of_tape(blocks)])
     heads = _program_heads(structure.blocks)
     main = _start_of_main(structure, heads, control)
     for index, number in heads.items():
@@ -140,7 +138,7 @@ def _called_and_ended(
     called: set[int] = set()
     ended: set[int] = set()
     for head, block in zip(_carried_on({at: at for at in heads}, len(blocks), -1), blocks):
-        if block.has_code(ENDS):
+        if any(word.code in ENDS for word in block.words):
             ended.add(head)
         called.update(_called_in(block, control, numbers))
     return called, ended

@@ -38,6 +38,7 @@ AXES_NEEDED = {  # of the machine; a mill's are XYZ
     "cylinder": "XZC",
     SPINDLE_AS_C: "C",
 }
+ROTARY_OF_MILL = "AB"  # the axes round which a mill can cut a cylinder
 MEANING = {
     "haas": "G12/G13 circular pocket, Haas words",
     "yasnac": "G12/G13 circle cutting, Yasnac words",
@@ -148,6 +149,14 @@ def first_step(feature: str) -> str:
 def is_abort_call(command: str) -> bool:
     """Return whether LinuxCNC calls the package after an abort."""
     return "".join(command.lower().split()) == "".join(CALLS_ABORT_SUB.lower().split())
+
+
+def axes_needed(feature: str, axes: str) -> str:
+    """Return the axes that a code needs; ``axes`` are the machine's."""
+    turn = next((letter for letter in ROTARY_OF_MILL if letter in axes and "Y" in axes), "")
+    if feature == "cylinder" and turn:
+        return f"XYZ{turn}"
+    return AXES_NEEDED.get(feature, "XYZ")
 
 
 def functions_of(feature: str) -> list[str]:

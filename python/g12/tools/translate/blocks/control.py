@@ -16,7 +16,7 @@ refused with its line. What a code does is one of
 
 import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -36,7 +36,7 @@ MEANINGS = {
         *HOLE_MEANINGS,
         "radius or diameter",
     ),
-    "M": ("subprogram", "local subprogram", "return", "orientation", "thread chamfer",
+    "M": ("subprogram", "local subprogram", "return", "thread chamfer",
         "no thread chamfer", "tool change",
     ),
 }  # fmt: skip
@@ -46,81 +46,90 @@ CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 
 
-class TextRule(NamedTuple):
-    """What a text, or each of a list, must be: a pattern, and the end of the sentence if not.
+class Rule(NamedTuple):
+    """What a value must be, the end of the sentence if it is not, and which keys have it.
 
-    ``keys`` is the pattern of the keys in a table whose keys a control chooses; ``listed``: a list
-    of texts may be given.
+    ``keys`` is a pattern in a table whose keys a control chooses.
     """
 
-    pattern: str
-    rule: str
+    accepts: Callable[[Any], object]
+    sentence: str
     keys: str = ""
-    listed: bool = False
 
 
+def _one_of(*values: str) -> Rule:
+    return Rule(lambda value: value in values, f"must be one of {', '.join(values)}")
+
+
+def _text(pattern: str, sentence: str, keys: str = "") -> Rule:
+    return Rule(lambda v: isinstance(v, str) and re.fullmatch(pattern, v), sentence, keys)
+
+
+def _texts(pattern: str, sentence: str) -> Rule:
+    one = _text(pattern, sentence)
+    return Rule(lambda value: isinstance(value, list) and all(map(one.accepts, value)), sentence)
+
+
+MAX_NUMBER = 1e9
+TEXT, TEXTS = _text("(?s).*", "must be a text"), _texts("(?s).*", "must be a list of texts")
+FLAG = Rule(lambda value: isinstance(value, bool), "must be true or false")
+NUMBER = Rule(
+    lambda v: type(v) in (int, float) and 0 < v <= MAX_NUMBER,
+    f"must be a number above 0, {MAX_NUMBER:g} at most",
+)
 TOP = {
-    "title": str, "based_on": str, "machine": ("mill", "lathe"),
-    "axes": TextRule(r"(?!.*(.).*\1)[XYZABC]+", "must be letters of X Y Z A B C, each once"),
-    "extensions": TextRule(
-        "[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be extensions in small letters such as nc tap"
-    ),
-    "start": TextRule(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
-    "decimals": ("least", "whole"), "feed_of_c": ("mm",),
-    "at_zero": str, "remarks": bool, "sources": list, "readings": list,
+    "title": TEXT, "based_on": TEXT, "machine": _one_of("mill", "lathe"),
+    "axes": _text(r"(?!.*(.).*\1)[XYZABC]+", "must be letters of X Y Z A B C, each once"),
+    "extensions": _text("[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be as nc tap, in small letters"),
+    "start": _text(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
+    "decimals": _one_of("least", "whole"), "feed_of_c": _one_of("mm"),
+    "at_zero": TEXT, "remarks": FLAG, "sources": TEXTS, "readings": TEXTS,
 }  # fmt: skip
 TABLES: dict[str, Any] = {
     "increments": {
-        "angle": float,
-        **{f"{kind}_{unit}": float for kind in ("length", "feed", "feed_rev")
+        "angle": NUMBER,
+        **{f"{kind}_{unit}": NUMBER for kind in ("length", "feed", "feed_rev")
            for unit in ("mm", "inch")},
     },
     "dwell": {
-        "seconds": str, "milliseconds": str, "with_point": ("seconds", "refuse"),
-        "cycle": ("seconds", "milliseconds", "refuse"),
+        "seconds": TEXT, "milliseconds": TEXT, "with_point": _one_of("seconds", "refuse"),
+        "cycle": _one_of("seconds", "milliseconds", "refuse"),
     },
     "tools": {
-        "patterns": TextRule("R*T+O*", "is no pattern such as TTOO or RRTTOO", listed=True),
-        "pocket": ("last", "own"),
+        "patterns": _texts("R*T+O*", "must be patterns such as TTOO or RRTTOO"),
+        "pocket": _one_of("last", "own"),
     },
-    "reference": {"cancels_length": bool},
+    "reference": {"cancels_length": FLAG},
     "polar": {
-        "x": ("diameter", "radius", "inherit", "say"), "rapid": ("refuse", "keep", "feed"),
-        "rapid_feed_mm": float, "rapid_feed_inch": float,
+        "x": _one_of("diameter", "radius", "inherit", "say"),
+        "rapid": _one_of("refuse", "keep", "feed"),
+        "rapid_feed_mm": NUMBER, "rapid_feed_inch": NUMBER,
     },
-    "cylinder": {"word": ("radius", "mapped")},
-    "subprograms": {"repeat_digits": bool, "cycle_repeat": str},
-    "offsets": {"first_parameter": int},
-    "variables": TextRule(
+    "subprograms": {"repeat_digits": FLAG, "cycle_repeat": TEXT},
+    "variables": _text(
         r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|own",
         "must be a number, and a parameter of LinuxCNC (#500), a value, or own: refused",
         "[0-9]{1,6}(-[0-9]{1,6})?",
     ),
     "turning": {
-        "thread_chamfer": float,
-        **{f"{name}_{unit}": float for unit in ("mm", "inch")
+        "thread_chamfer": NUMBER,
+        **{f"{name}_{unit}": NUMBER for unit in ("mm", "inch")
            for name in ("depth", "retract", "thread_least", "thread_allowance")},
     },
     "holes": {
-        "r": ("from start", "level"), "q": ("increments", "lengths"), "clamp": str,
+        "r": _one_of("from start", "level"), "q": _one_of("increments", "lengths"), "clamp": TEXT,
     },
-    "words": TextRule("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
-    "spindles": TextRule("main|live", "must be a P word, and main or live", "P[0-9]+"),
+    "words": _text("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
+    "spindles": _text("main|live", "must be a P word, and main or live", "P[0-9]+"),
     "mill": {
-        "onto": ("face", "round"), "safe_mm": float, "safe_inch": float, "safe": float,
-        "diameter": float,
+        "onto": _one_of("face"), "safe_mm": NUMBER, "safe_inch": NUMBER, "safe": NUMBER,
     },
-    "g_codes": None,
-    "m_codes": None,
+    "g_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
+    "m_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
 }  # fmt: skip
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
-TYPE_NAMES = {
-    str: "a text", bool: "true or false", int: "a whole number", list: "a list of texts",
-    float: "a number above 0, 1e9 at most",
-}  # fmt: skip
-MAX_NUMBER = 1e9
 COMMENT = re.compile(r"comment( [A-Z])*")
 
 
@@ -170,7 +179,7 @@ class Control:
 
     @property
     def onto(self) -> str:
-        """Where a mill's program goes on a lathe: ``face``, ``round``, "" for any other control."""
+        """Where a mill's program goes on a lathe: ``face``, "" for any other control."""
         return self.value("mill", "onto")
 
     def variables(self) -> dict[int, str]:
@@ -272,38 +281,22 @@ class _Checked:
         return data
 
     def _table(self, name: str, table: dict) -> None:
-        kinds = TABLES[name]
+        rules = TABLES[name]
         if not isinstance(table, dict):
             self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if isinstance(kinds, TextRule):
-                if not re.fullmatch(kinds.keys, key):
-                    self._refuse(key, f'{key} = "{value}" {kinds.rule}')
-                self._value(key, value, kinds)
-            elif kinds and key not in kinds:
-                self._refuse(key, f"{key} is no key of [{name}]: {', '.join(kinds)}")
-            elif kinds:
-                self._value(key, value, kinds[key])
-            elif not isinstance(value, (str, list, dict)):
-                self._refuse(key, f"{key} in [{name}] must be a text")
+            if isinstance(rules, Rule) and re.fullmatch(rules.keys, key):
+                self._value(key, value, rules)
+            elif isinstance(rules, Rule):
+                self._refuse(key, f"{key} = {value!r} {rules.sentence}")
+            elif key not in rules:
+                self._refuse(key, f"{key} is no key of [{name}]: {', '.join(rules)}")
+            else:
+                self._value(key, value, rules[key])
 
-    def _value(self, key: str, value: Any, kind: Any) -> None:
-        if isinstance(kind, TextRule):
-            for text in value if kind.listed and isinstance(value, list) else [value]:
-                if not isinstance(text, str) or not re.fullmatch(kind.pattern, text):
-                    self._refuse(key, f'{key} = "{text}" {kind.rule}')
-            return
-        if isinstance(kind, tuple):
-            if value not in kind:
-                self._refuse(key, f"{key} = {value!r} must be one of {', '.join(kind)}")
-            return
-        if kind is float:
-            is_good = type(value) in (int, float) and 0 < value <= MAX_NUMBER
-        else:
-            texts = value if kind is list and isinstance(value, list) else ()
-            is_good = type(value) is kind and all(isinstance(text, str) for text in texts)
-        if not is_good:
-            self._refuse(key, f"{key} must be {TYPE_NAMES[kind]}")
+    def _value(self, key: str, value: Any, rule: Rule) -> None:
+        if not rule.accepts(value):
+            self._refuse(key, f"{key} = {value!r} {rule.sentence}")
 
     def _codes(self, letter: str, table: dict) -> dict[str, str]:
         """Return the meaning of every code; a code that is named twice is refused."""

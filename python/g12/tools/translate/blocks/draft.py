@@ -148,9 +148,6 @@ class Draft:
     def written(self) -> str:
         return " ".join(word.text for word in self.words)
 
-    def begins_program(self) -> bool:
-        return bool(self.words) and self.words[0].letter == "O"
-
     def is_empty(self) -> bool:
         """Whether no word but a block number remains."""
         return all(word.letter == "N" and word.kind == "number" for word in self.words)

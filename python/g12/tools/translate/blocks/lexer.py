@@ -2,8 +2,7 @@
 """The text of a program as blocks: words, comments and macro statements, nothing of their meaning.
 
 Blanks do not count outside comments, letters are read as capitals, a line ends as it likes, ``;``
-ends a block. Comments may be nested, and stand in braces; what LinuxCNC would obey in a comment is
-disarmed.
+ends a block. Comments may be nested; what LinuxCNC would obey in a comment is disarmed.
 """
 
 from __future__ import annotations
@@ -48,8 +47,7 @@ STOP_MACROS = ("3000", "3006")  # an alarm, a stop with a message
 OBEYED_COMMENT = re.compile(
     r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I
 )
-BRACKETS = {"(": ")", "{": "}"}  # of comments; braces in some manuals
-BRACKET = re.compile("[(){}]")
+BRACKET = re.compile("[()]")  # of a comment
 OTHER_CHARACTERS = str.maketrans("\N{MINUS SIGN}", "-", "\ufeff\u200b\0")
 MOST_DIGITS = 24
 OTHER_TEXTS = {
@@ -146,9 +144,6 @@ class ForeignBlock(NamedTuple):
         own = self.expression.read if self.expression else frozenset()
         return own.union(*(word.read for word in self.words))
 
-    def has_code(self, codes: frozenset[str]) -> bool:
-        return any(word.code in codes for word in self.words)
-
     def numbers(self, letter: str) -> set[int]:
         return {int(w.value) for w in self.words if w.letter == letter and w.value.isdigit()}
 
@@ -212,7 +207,7 @@ def _can_be_words(text: str) -> bool:
 
 def _without_comments(text: str, remarks: int) -> tuple[list[str], tuple[str, ...]]:
     """Return the blocks of a line without blanks, and its comments."""
-    code, comments = _split_comments(text) if BRACKET.search(text) else (text, [])
+    code, comments = _split_comments(text)
     code, *rest = code.split(";")
     blocks = [] if remarks == ALL else [part for part in rest if MAYBE_WORDS.match(part)]
     if remarks == LINES:
@@ -229,23 +224,19 @@ def _without_comments(text: str, remarks: int) -> tuple[list[str], tuple[str, ..
 
 
 def _split_comments(text: str) -> tuple[str, list[str]]:
-    code, comments, depth, start, opened = [], [], 0, 0, ""
-    for at, character in enumerate(text):
-        if character == opened or (not depth and character in BRACKETS):
-            if depth == 0:
-                opened = character
-                code.append(text[start:at])
-                start = at + 1
-            depth += 1
-        elif depth and character == BRACKETS[opened]:
-            depth -= 1
-            if depth == 0:
-                comments.append(text[start:at])
-                start, opened = at + 1, ""
-        elif not depth and character in BRACKETS.values():
-            raise NotTranslated(f"{character} without its opening bracket before it")
+    code: list[str] = []
+    comments: list[str] = []
+    depth = start = 0
+    for bracket in BRACKET.finditer(text):
+        at, before = bracket.start(), depth
+        depth += 1 if bracket[0] == "(" else -1
+        if depth < 0:
+            raise NotTranslated(") without its opening bracket before it")
+        if not before or not depth:
+            (comments if before else code).append(text[start:at])
+            start = at + 1
     if depth:
-        raise NotTranslated(f"a comment is not closed: {BRACKETS[opened]} is missing")
+        raise NotTranslated("a comment is not closed: ) is missing")
     return "".join([*code, text[start:]]), comments
 
 
@@ -405,8 +396,10 @@ def _word(text: str, at: int) -> tuple[ForeignWord, int]:
     named = NAMED_WORD.match(text, at)
     letter, start = (named[1], named.end()) if named else (text[at], at + 1)
     if text[at : at + 2] in CORNERS:
-        letter, start = text[at : at + 2], at + 2
-    elif not ("A" <= letter[0] <= "Z"):
+        raise NotTranslated(
+            f"{excerpt(text[at:])} draws a corner: write its line or arc as a block"
+        )
+    if not ("A" <= letter[0] <= "Z"):
         raise NotTranslated(f"{excerpt(text[at:])} does not start with a word")
     if start >= len(text) or "A" <= text[start] <= "Z":
         return ForeignWord(letter, "", "bare"), start

@@ -50,13 +50,11 @@ class ModalState(NamedTuple):
     length: str = UNKNOWN  # the H of G43, "0": none
     tool: str = UNKNOWN  # the T word of the loaded tool
     next_tool: str = UNKNOWN  # that of the next M6
-    offset: str = UNKNOWN  # the work offset
     limit: str = UNKNOWN  # the spindle's speed limit
     surface: str = UNKNOWN  # the S of G96
     radius: str = UNKNOWN  # the D word
     feed: str = UNKNOWN  # the F word
     polar: str = "off"  # ``on`` in polar mode, ``cylinder`` on a cylinder
-    mapped: str = UNKNOWN  # the radius of a cylinder whose angles are written as lengths
     delayed: str = UNKNOWN  # a code of compensation that is written with the section's next move
     own_motion: str = AS_PROGRAMMED  # LinuxCNC's mode where it is not the program's
     own_distance: str = AS_PROGRAMMED
@@ -71,7 +69,6 @@ class ModalState(NamedTuple):
     spindle: str = UNKNOWN  # the M3 or M4 of the first spindle
     waiting: tuple | str = ()  # X and Y of a mill's program on a lathe at its next cut
     section: int | str = UNKNOWN  # the program in which a section on a lathe has begun
-    known_offsets: frozenset[int] = frozenset()  # numbered work offsets that are set, or checked
     given: frozenset[int] = frozenset()  # local variables that have a value on every way
     touched: frozenset[int] = frozenset()  # those that have one on some way
     at_x: float | str | None = None  # the program's point (`positions`)
@@ -103,7 +100,6 @@ def merged(one: ModalState, other: ModalState) -> ModalState:
     }
     return state._replace(
         kept=tuple(sorted(same.items())),
-        known_offsets=one.known_offsets & other.known_offsets,
         given=one.given & other.given,
         touched=one.touched | other.touched,
     )

@@ -25,7 +25,6 @@ STAYING = frozenset(  # codes that move nothing and leave the origin, or set it 
         "speed limit or origin",
         "exact stop",
         "cancel cycle",
-        "orientation",
         "thread chamfer",
         "no thread chamfer",
     )

@@ -57,20 +57,17 @@ def in_units(draft: Draft, word: ForeignWord, kind: str) -> ForeignWord:
     rule = "least" if _is_increment(draft, word) else draft.control.decimals
     if rule == "whole" or least == 1:
         return word
-    if rule == "" and not least and 1 in _both_increments(draft, kind):
+    text = f"{Decimal(word.value) * Decimal(str(least)):f}" if least else "a least increment"
+    if rule == "":
+        raise NotTranslated(
+            f"{word.text} has no decimal point: is it {text} or {word.value}.? write --decimals "
+            f"least, or whole, behind --control {draft.control.name}, in the [FILTER] line too"
+        )
+    if not least:
         raise NotTranslated(
             f"{word.text} has no decimal point: what it is then depends on G20 or G21, and neither "
             "is programmed before it (--units)"
         )
-    if rule == "":
-        raise NotTranslated(
-            f"{word.text} has no decimal point: is it {_increments_text(draft, word, kind)} or "
-            f"{word.value}.? write --decimals least, or whole, behind --control "
-            f"{draft.control.name}, in the [FILTER] line too"
-        )
-    if not least:
-        raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
-    text = f"{Decimal(word.value) * Decimal(str(least)):f}"
     return word._replace(value=text if "." in text else f"{text}.")
 
 
@@ -80,12 +77,6 @@ def _is_increment(draft: Draft, word: ForeignWord) -> bool:
     return bool(drills) and word.letter == "Q" and draft.control.value("holes", "q") == "increments"
 
 
-def _increments_text(draft: Draft, word: ForeignWord, kind: str) -> str:
-    """Return a number in least increments, as the units allow it to be said."""
-    least = least_increment(draft, kind)
-    return f"{Decimal(word.value) * Decimal(str(least)):f}" if least else "a least increment"
-
-
 def least_increment(draft: Draft, kind: str) -> float:
     """Return the increment of a class in the units of the block; 0 if none is set."""
     if kind == "angle":
@@ -93,14 +84,8 @@ def least_increment(draft: Draft, kind: str) -> float:
     unit = UNIT.get(draft.sure("units", "a number has no decimal point"))
     if unit:
         return float(draft.control.value("increments", f"{kind}_{unit}", 0))
-    both = _both_increments(draft, kind)
-    if draft.control.decimals == "least" and len(both) > 1:
-        raise NotTranslated("a number has no decimal point, and neither G20 nor G21 is before it")
+    both = {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}
     return both.pop() if len(both) == 1 else 0.0
-
-
-def _both_increments(draft: Draft, kind: str) -> set[float]:
-    return {float(draft.control.value("increments", f"{kind}_{u}", 0)) for u in ("mm", "inch")}
 
 
 def dwell(draft: Draft, code: ForeignWord) -> None:

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Motion and distance mode: written where LinuxCNC would be in another than the program is.
+"""Motion: G28, G30 and G53, a lathe's increments, and motion and distance mode.
 
-Most blocks of a long program are lines and arcs that are the same on LinuxCNC: `is_plain` finds
-them, which saves most of the time.
+LinuxCNC's G28 and G30 mean the same (the positions are those of G28.1 and G30.1). They get what a
+lathe writes with U, V, W and H, and lose the motion code beside them.
+
+A block of increments alone is written under G91, and the next block of words restores G90. Beside
+absolute words an increment is written from the tool's position. In polar mode U and H are words of
+LinuxCNC's own and stay, on a cylinder W too.
+
+A mode is written where LinuxCNC would be in another than the program is.
 """
 
-import re
-
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft
+from g12.tools.translate.blocks.draft import PARTNERS, Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
@@ -19,10 +23,100 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.positions import FIELDS, axis_of, end_of_word, is_unmoved
+from g12.tools.translate.blocks.positions import axis_of, is_unmoved
 
 SLIDES = frozenset("XYZ")
 INDIFFERENT = frozenset("NMSTFHD$")
+
+
+def reference_point(draft: Draft) -> None:
+    code = next((code for code in draft.codes() if code in REFERENCES), "")
+    if not code:
+        return
+    second = draft.take("P") if code == "G30" else None
+    if second and second.value.lstrip("0") != "2":
+        raise NotTranslated(f"G30 {second.text}: LinuxCNC has two reference points, G28 and G30")
+    if code in draft.control.value("reference", "unset", ()):
+        draft.comments.append(f"{code}.1 was never set on this machine: machine zero")
+    if draft.control.is_lathe:
+        _from_here(draft, code)
+    cancel_length(draft)
+
+
+def _from_here(draft: Draft, code: str) -> None:
+    """Write U, V, W and H as absolute positions of the intermediate point."""
+    for word in draft.increments():
+        axis = PARTNERS[word.letter]
+        if axis in draft.letters():
+            raise NotTranslated(f"{word.text} beside {axis} in {code}")
+        incremental = draft.sure("distance", f"{code} with {word.letter}") == "G91"
+        own = word._replace(letter=axis) if incremental else _absolute(draft, word)
+        draft.replace(word, own)
+
+
+def _absolute(draft: Draft, word: ForeignWord) -> ForeignWord:
+    """Return the absolute word for an increment from where the tool is."""
+    if draft.sure("compensation", f"{word.text} is an increment") != "G40":
+        raise NotTranslated(f"{word.text} beside an absolute word, with G41 or G42 on")
+    axis = PARTNERS[word.letter]
+    here = position(axis)
+    if axis == "X" and draft.sure("x_words", f"{word.text} is an increment") == "G7":
+        here = f"2 * {here}"
+    moved = word.kind == "expression" or word.number
+    value = f"[{here} + [{word.value}]]" if moved else f"[{here}]"
+    return ForeignWord(axis, value, "expression")
+
+
+def cancel_length(draft: Draft) -> None:
+    """Cancel the tool length where the control does: at once without an intermediate point."""
+    if not draft.control.value("reference", "cancels_length", False):
+        return
+    draft.change(length="0")
+    passes = any(w.kind == "expression" or w.number for w in draft.axis_words())
+    if not passes and (draft.state.distance == "G91" or not draft.axis_words()):
+        if not {"G43", "G49"}.intersection(draft.codes()):
+            draft.words.append(word_of("G49"))
+    else:
+        draft.after.append("G49")
+
+
+def machine_position(draft: Draft) -> None:
+    if "G53" not in draft.codes():
+        return
+    if draft.sure("distance", "G53 is absolute") == "G91":
+        raise NotTranslated("G53 under G91: its words are absolute, write G90 with it")
+    if draft.state.cycle:
+        raise NotTranslated("G53 within a drilling cycle: write G80 before it")
+    motions = draft.take_codes(MOVES)
+    motion = motions[0] if motions else draft.state.motion
+    draft.put_first("G0")
+    draft.change(motion=motion, own_motion=AS_PROGRAMMED if motion == "G0" else "G0")
+
+
+def incremental_words(draft: Draft) -> None:
+    if not draft.control.is_lathe or draft.meanings:
+        return
+    found = draft.increments()
+    if draft.state.polar != "off":
+        own = "UH" if draft.state.polar == "on" else "UWH"
+        found = [word for word in found if word.letter not in own]
+        if found and len(draft.axis_words()) + len(draft.increments()) > len(found):
+            raise NotTranslated(f"{found[0].text} beside other axes in a section: write Z")
+    for word in found:
+        if PARTNERS[word.letter] in draft.letters():
+            raise NotTranslated(f"{word.text} and {PARTNERS[word.letter]} in one block")
+    if not found:
+        return
+    incremental = draft.sure("distance", f"{found[0].text} is an increment") == "G91"
+    if not incremental and draft.axis_words():
+        for word in found:
+            draft.replace(word, _absolute(draft, word))
+        return
+    for word in draft.increments():
+        draft.replace(word, word._replace(letter=PARTNERS[word.letter]))
+    if not incremental:
+        draft.change(own_distance="G91")
+        draft.put_first("G91")
 
 
 def motion_mode(draft: Draft) -> None:
@@ -44,7 +138,7 @@ def _refuse_corners(draft: Draft, motion: str) -> None:
     """Refuse the words of a straight line by which some controls break or round its corner."""
     straight = motion in ("G0", "G1") and not CONSUMERS.intersection(draft.codes())
     words = "IKR" if draft.control.is_lathe else "R"
-    found = sorted(letter for letter in draft.letters() if letter[0] == "," or letter in words)
+    found = sorted(draft.letters().intersection(words))
     if straight and found and draft.axis_words():
         raise NotTranslated(
             f"{found[0]} beside {motion}: write the corner's line or arc as a block"
@@ -141,37 +235,3 @@ def _is_feed(draft: Draft) -> bool:
     other = draft.state.polar != "off" or draft.meanings or draft.state.cycle
     codes = {*CONSUMERS, "G53", "G33"}.intersection(draft.codes())
     return draft.motion() not in ("G0", UNKNOWN) and not other and not codes
-
-
-PLAIN = re.compile(r"N.*|G0*[0-3]|[XYZABCIJKRF](.*\..*|0)")  # a number that has a point
-SETTLED = ("", UNKNOWN, UNKNOWN, UNKNOWN, "off", AS_PROGRAMMED, AS_PROGRAMMED, AS_PROGRAMMED)
-
-
-def is_plain(draft: Draft) -> bool:
-    """Whether no rule has anything to do; the block's motion, feed and position are then noted.
-
-    So it is for one motion code or none, numbers with points, and no mode that LinuxCNC lacks.
-    """
-    state, control, words = draft.state, draft.control, draft.words
-    own = (state.own_motion, state.own_distance, state.own_feed)
-    letters = {word.letter for word in words}
-    if (
-        (control.onto, state.turning_cycle, state.cycle, state.delayed, state.polar, *own)
-        != SETTLED
-        or len(letters) < len(words)
-        or not all(word.kind == "number" and PLAIN.fullmatch(word.text) for word in words)
-        or not letters.isdisjoint(AXIS_NUMBERS.keys() - set(control.axes))
-    ):
-        return False
-    motion = next(iter(draft.codes()), state.motion)
-    # A line's R, and I and K on a lathe, are a corner; C beside a slide can need another feed.
-    others = "" if motion in ("G2", "G3") else "IKR" if control.is_lathe else "R"
-    others += "" if motion == "G0" else "ABC"
-    if motion not in MOVES or control.meanings.get(motion) != "same" or letters & set(others):
-        return False
-    modes: dict[str, float | str | None] = {"motion": motion}
-    if feed := draft.word("F"):
-        modes["feed"] = feed.value
-    modes |= {FIELDS[w.letter]: end_of_word(state, w) for w in words if w.letter in FIELDS}
-    draft.change(**modes)
-    return True

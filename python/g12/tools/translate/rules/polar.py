@@ -5,11 +5,8 @@ X in polar mode is a diameter on most controls and a radius on some: where it is
 or G8 is written before the section, and the other after it. Y is C and V is H. The control's file
 defines a rapid in polar mode.
 
-Most controls give a cylinder's radius as C (or H) and angles as C. Haas maps an axis of lengths
-onto the cylinder instead, ``G107 Y0 C0 R25.``: Y is then the length along its surface.
+A cylinder's code has its radius as C or H.
 """
-
-from math import degrees
 
 from g12.tools.translate.blocks.draft import Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -32,7 +29,6 @@ from g12.tools.translate.blocks.positions import (
 )
 from g12.tools.translate.rules.decimals import UNIT
 
-ANGLE_LETTERS = {"Y": "C", "V": "H"}
 IN_PLANE = frozenset("XCUH")
 SECTION_NAMES = {
     "on": "in polar mode",
@@ -235,11 +231,7 @@ def _programs_feed(draft: Draft) -> list[str]:
 
 
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
-    if draft.control.value("cylinder", "word") == "mapped":
-        radius = _mapped_radius(draft, code.code)
-        draft.change(mapped=radius)
-    else:
-        radius = _named_radius(draft, code.code)
+    radius = _named_radius(draft, code.code)
     name, word = draft.control.cylinder_code
     value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
     feed = own_feed_ended(draft) if radius else []
@@ -255,27 +247,3 @@ def _named_radius(draft: Draft, code: str) -> str:
     if word.is_zero:
         return ""
     return word.value
-
-
-def _mapped_radius(draft: Draft, code: str) -> str:
-    """Return the radius of a cylinder that Y is mapped onto, "" for its end, the code alone."""
-    sizes, axes = draft.take_each("RQ"), draft.take_each("YC")
-    if not sizes and not axes:
-        return ""
-    if len(sizes) != 1 or len(axes) != 2 or not all(word.is_zero for word in axes):
-        raise NotTranslated(f"{code} needs Y0, C0 and R or Q, radius or diameter; alone it ends")
-    (size,) = sizes
-    return size.value if size.letter == "R" else f"[{size.value} / 2]"
-
-
-def on_the_surface(draft: Draft) -> None:
-    """Write lengths along the surface of a mapped cylinder as angles."""
-    if draft.state.polar != "cylinder" or draft.state.mapped == UNKNOWN:
-        return
-    radius = draft.sure("mapped", "Y is mapped onto a cylinder")
-    if draft.letters() & {"C", "H"}:
-        raise NotTranslated("C while Y is mapped onto the cylinder: write the point as Y")
-    for at, word in enumerate(draft.words):
-        if word.letter in ANGLE_LETTERS:
-            angle = f"[[{word.value}] * {degrees(1):.12f} / {radius}]"
-            draft.words[at] = ForeignWord(ANGLE_LETTERS[word.letter], angle, "expression")

@@ -43,17 +43,13 @@ def _subprogram_call(draft: Draft, code: str, meaning: str) -> SubprogramCall:
     if start and "P" in draft.letters():
         raise NotTranslated(f"{code} P with {start.text}: a program is called from its beginning")
     number = _called_number(draft, code, start or draft.take("P"))
-    count = _repeats(draft)
+    word = draft.take("L")
+    count = word.value if word else ""
     if local or start:
         number += LOCAL_BLOCKS
     elif not count:
         number, count = called_program(number, draft.control, draft.programs)
     return SubprogramCall(number, "sub", count)
-
-
-def _repeats(draft: Draft) -> str:
-    word = draft.take("L")
-    return word.value if word else ""
 
 
 def called_program(number: int, control: Control, programs: Container[int]) -> tuple[int, str]:
@@ -65,7 +61,7 @@ def called_program(number: int, control: Control, programs: Container[int]) -> t
 
 
 def _macro_call(draft: Draft) -> SubprogramCall:
-    number, count = _called_number(draft, "G65", draft.take("P")), _repeats(draft)
+    number, times = _called_number(draft, "G65", draft.take("P")), draft.take("L")
     arguments: dict[int, str] = {}
     for word in draft.words:
         if word.letter == "N":
@@ -79,7 +75,9 @@ def _macro_call(draft: Draft) -> SubprogramCall:
             raise NotTranslated(f"{word.text} has no decimal point: write {word.text}. in G65")
         arguments[ARGUMENTS[word.letter]] = word.value
     draft.words = [word for word in draft.words if word.letter == "N"]
-    return SubprogramCall(number, "macro", count, tuple(sorted(arguments.items())))
+    return SubprogramCall(
+        number, "macro", times.value if times else "", tuple(sorted(arguments.items()))
+    )
 
 
 def finish_call(draft: Draft) -> None:

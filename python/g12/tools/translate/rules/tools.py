@@ -1,20 +1,118 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""T, H and D: a lathe's T0303 is tool and offset; on a mill G43 has H, and D is modal."""
+"""Tools and the spindle: T, H and D; the speed limit, which spindle, and when it stops.
+
+A lathe's T0303 is tool and offset; on a mill G43 has H, and D is modal. G50 S and G92 S are the
+limit, which LinuxCNC takes as D beside G96; with axes the origin.
+"""
 
 import re
 
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import CONSUMERS, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, REFERENCES, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import is_unmoved
 from g12.tools.translate.rules.polar import SECTION_NAMES
-from g12.tools.translate.rules.spindle import SPINDLE_M_CODES
 
+STOP_CODES = frozenset(("M5", "M9"))
+RAPIDS = REFERENCES | {"G0", "G53"}
+SPINDLE_M_CODES = frozenset(("M3", "M4", "M5"))
+NO_LIVE_TOOL = (
+    "{} is the live tool's spindle: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's that drives it"
+)
+POCKET_CODES = frozenset(("G12", "G13", "G12.2", "G13.2"))
 PLANES = {"G18": "XZ", "G19": "YZ"}
 COMPENSATION_ON = frozenset(("G41", "G42"))
 PLAIN_POCKETS = frozenset(("G12", "G13"))
 USES_D = COMPENSATION_ON | PLAIN_POCKETS
+
+
+def speed_limit(draft: Draft) -> None:
+    """Remember a limit, write it where G96 begins; an origin becomes G92."""
+    code = draft.meanings.pop("speed limit or origin", None)
+    if code:
+        _limit_or_origin(draft, code.code)
+    if "G96" in draft.codes() and not code:
+        limit = draft.sure("limit", "G96 needs the speed limit")
+        draft.words += [word_of(f"D{limit}")] if limit else []
+    if {"G96", "G97"}.intersection(draft.codes()) and "S" not in draft.letters():
+        _mode_without_speed(draft)
+
+
+def _mode_without_speed(draft: Draft) -> None:
+    """Give G96 its last S, as the controls do; LinuxCNC's G97 changes nothing before the next S."""
+    mode, before = draft.state.spindle_mode, draft.start.spindle_mode or "G97"
+    surface = draft.sure("surface", "G96 without S") if "G96" in draft.codes() else UNKNOWN
+    turns = draft.state.spindle and "M5" not in draft.m_codes()
+    if surface:
+        draft.words.append(word_of(f"S{surface}"))
+    elif mode == "G96" or (before != mode and turns):
+        raise NotTranslated(f"{mode} without S, and the speed is not known: write S")
+
+
+def _limit_or_origin(draft: Draft, code: str) -> None:
+    """Take the S of a speed limit; other words must be axes."""
+    limit = draft.take("S")
+    if limit:
+        draft.change(limit=limit.value)
+        draft.comments.append(f"{code} {limit.text}")
+    if limit and draft.sure("spindle_mode", f"{code} S limits G96") == "G96":
+        why = f"{code} S within G96"
+        surface = draft.sure("surface", why)
+        if surface == UNKNOWN:
+            raise NotTranslated(f"{why}, and the S of G96 is not known: write it before")
+        draft.write([f"G96 S{surface} D{limit.value}"])
+    if draft.axis_words():
+        draft.put_first("G92")
+    elif not limit or draft.letters() & set("UVWH"):
+        raise NotTranslated(f"{code} needs S, a speed limit, or X and Z, an origin")
+
+
+def live_tool(draft: Draft) -> None:
+    """Name the spindle of M3, M4, M5 and S: that of the block's P word, or the live tool's."""
+    if draft.control.c_axis_on.intersection(word.code for word in draft.block.words):
+        draft.change(spindle=UNKNOWN)
+    codes = SPINDLE_M_CODES.intersection(draft.m_codes())
+    named = _named_spindle(draft, bool(codes))
+    if codes and named in ("", "$0", "$-1"):
+        draft.change(spindle=next(iter(codes - {"M5"}), UNKNOWN))
+    if codes - {"M5"}:
+        draft.change(live_tool=named)
+    elif codes and named in (draft.state.live_tool, "$-1"):
+        draft.change(live_tool=UNKNOWN)
+    elif "S" in draft.letters() and not codes and not named:
+        live = draft.sure("live_tool", "S is a spindle's")
+        draft.words += [word_of(live)] if live else []
+
+
+def _named_spindle(draft: Draft, turns: bool) -> str:
+    """Return the block's ``$`` word, "" for the first spindle; write a P word as one."""
+    spindles = draft.control.tables.get("spindles", {})
+    word = next((w for w in draft.words if w.letter == "P" and spindles), None)
+    if word and turns and word.text not in spindles:
+        known = ", ".join(spindles)
+        raise NotTranslated(f"{word.text}: no spindle of the machine: there are {known}")
+    if word and (turns or (word.text in spindles and "S" in draft.letters())):
+        draft.take("P")
+        live, is_live = draft.control.live_spindle, spindles[word.text] == "live"
+        if is_live and not live:
+            raise NotTranslated(NO_LIVE_TOOL.format(word.text))
+        draft.words += [word_of(f"${live}")] if is_live and live != "0" else []
+    return next((w.text for w in draft.words if w.letter == "$"), UNKNOWN)
+
+
+def stop_behind_a_cut(draft: Draft) -> None:
+    """Write M5 and M9 of a cutting block on a line after it: LinuxCNC stops before the move."""
+    stops = [word for word in draft.words if word.code in STOP_CODES]
+    if stops and cuts(draft):
+        draft.drop(stops)
+        draft.after.insert(0, " ".join(word.text for word in stops))
+
+
+def cuts(draft: Draft) -> bool:
+    codes, state = set(draft.codes()), draft.state
+    feeds = codes & POCKET_CODES or state.cycle or state.motion in MOTIONS - {"G0"}
+    return bool(feeds and draft.letters() & set("XYZABCIJKR")) and not codes & RAPIDS
 
 
 def tool_and_offsets(draft: Draft) -> None:
@@ -170,10 +268,7 @@ def _radius_offset(draft: Draft) -> None:
 
 
 def _compensated_again(draft: Draft) -> None:
-    """Write a G41 that is on already as a comment: LinuxCNC refuses it.
-
-    Where it is on in one way to the block only, as in a loop, the program tests LinuxCNC's mode.
-    """
+    """Write a G41 that is on already as a comment: LinuxCNC refuses it."""
     on = next((word for word in draft.words if word.code[:3] in COMPENSATION_ON), None)
     before = draft.start
     if not on or before.polar != "off" or before.delayed or draft.control.onto:
@@ -182,14 +277,9 @@ def _compensated_again(draft: Draft) -> None:
         return
     words = [on, *(w for w in draft.words if w.letter == "D")]
     draft.drop(words)
-    if before.compensation == UNSURE:
-        name, code = f"o<compensation_{draft.index}>", f"{on.code[1:3]}0"
-        text = " ".join(word.text for word in words)
-        draft.before += [f"{name} if [#<_ccomp> NE {code}]", text, f"{name} endif"]
-    elif before.radius == draft.state.radius:
-        draft.comments.append(on.code)
-    else:
-        raise NotTranslated(f"{on.code} with another D than it is on with: G40 before it")
+    if before.compensation == UNSURE or before.radius != draft.state.radius:
+        raise NotTranslated(f"{on.code} may be on here already, or with another D: G40 before it")
+    draft.comments.append(on.code)
 
 
 def _compensation(draft: Draft, word: ForeignWord | None) -> None:

@@ -29,23 +29,25 @@ from g12.tools.translate.turning.given_words import (
     take_end,
     take_increments,
     take_number,
-    take_turn,
     take_whole,
 )
 from g12.tools.translate.turning.moves import (
     CycleMove,
+    Infeed,
     Pecking,
+    Thread,
+    all_passes,
     facing_pass,
     finishing_cut,
     lines_of_moves,
     pecks,
+    pitch_along,
+    thread_pass,
     turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
-from g12.tools.translate.turning.threads import Infeed, Thread, all_passes, pitch_along, thread_pass
 
 SHORTEST = 1e-5  # of a thread
-TAPERS = {"facing pass": "K"}  # where it is not R; of the others I
 BESIDE_SINGLE_PASS = frozenset("NGMSTF$")  # may be in a cycle's block
 
 
@@ -156,7 +158,10 @@ def roughing(draft: Draft, meaning: str) -> None:
     start, (indices, follows) = start_point(draft), _contour_named(draft)
     depth = take_increments(draft, "D") or _kept_value(draft, meaning, "depth")
     take_whole(draft, "R")  # Haas: 1 for type II, which the contour itself shows
-    retract, allowance = _kept_value(draft, meaning, "retract"), _take_allowance(draft)
+    retract, allowance = (
+        _kept_value(draft, meaning, "retract"),
+        complex(take_number(draft, "W") or 0.0, (take_number(draft, "U") or 0.0) / 2),
+    )
     if depth <= 0:
         code = draft.meanings[meaning].code
         raise NotTranslated(
@@ -174,11 +179,6 @@ def _contour_named(draft: Draft) -> tuple[range, int]:
     if first is None or last is None:
         raise NotTranslated("the cycle needs P and Q, the first and the last block of its contour")
     return named_blocks(draft, first, last)
-
-
-def _take_allowance(draft: Draft) -> complex:
-    """Take U and W, the finishing allowance; U is a diameter."""
-    return complex(take_number(draft, "W") or 0.0, (take_number(draft, "U") or 0.0) / 2)
 
 
 def _write_uncompensated(draft: Draft, moves: Sequence[CycleMove], start: complex) -> None:
@@ -243,7 +243,9 @@ def _pass_words(draft: Draft, meaning: str) -> tuple[complex, complex, float]:
     start = start_point(draft)
     again = draft.start.turning_cycle == meaning and meaning not in draft.meanings
     own = take_end(draft, start)
-    tapers = [take_number(draft, letter) for letter in ("R", TAPERS.get(meaning, "I"))]
+    tapers = [
+        take_number(draft, letter) for letter in ("R", "K" if meaning == "facing pass" else "I")
+    ]
     taper = next((number for number in tapers if number is not None), None)
     stored: Any = (
         draft.sure("pass_words", "the cycle takes the words of the block before") if again else ()
@@ -269,9 +271,8 @@ def _other_meaning(code: str, meaning: str) -> str:
 
 def _one_thread_pass(draft: Draft, meaning: str) -> None:
     """G92 of system A."""
-    turn = take_turn(draft)
     start, end, taper = _pass_words(draft, meaning)
-    thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft), turn)
+    thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft))
     _write_moves(draft, thread_pass(start, thread), start, turning_cycle=meaning)
 
 
@@ -302,9 +303,9 @@ def threading(draft: Draft, meaning: str) -> None:
     if not {"X", "Z"} <= end.keys():
         raise NotTranslated("G76 needs X and Z, where the thread ends")
     haas = "K" in draft.letters()
-    infeed, chamfer, turn = _haas_infeed(draft) if haas else _fanuc_infeed(draft)
+    infeed, chamfer = _haas_infeed(draft) if haas else _fanuc_infeed(draft)
     taper = take_number(draft, "I" if haas else "R") or 0.0
-    thread = Thread(complex(end["Z"], end["X"]), _lead_of(draft), taper, chamfer, turn)
+    thread = Thread(complex(end["Z"], end["X"]), _lead_of(draft), taper, chamfer)
     _write_moves(draft, all_passes(start, thread, infeed), start)
 
 
@@ -319,25 +320,23 @@ def _keep_thread(draft: Draft) -> None:
     keep(draft, "threading", **values)
 
 
-def _fanuc_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return the infeed, the chamfer and the start angle."""
+def _fanuc_infeed(draft: Draft) -> tuple[Infeed, float]:
+    """Return the infeed and the chamfer."""
     value = lambda name: _kept_value(draft, "threading", name)  # noqa: E731
     height, first = take_increments(draft, "P") or 0.0, take_increments(draft, "Q") or 0.0
     finishing_passes = int(value("finishing")) or 1
     infeed = Infeed(height, first, value("least"), value("allowance"), finishing_passes)
-    return infeed._replace(angle=value("angle")), value("chamfer") * _lead_of(draft), 0.0
+    return infeed._replace(angle=value("angle")), value("chamfer") * _lead_of(draft)
 
 
-def _haas_infeed(draft: Draft) -> tuple[Infeed, float, float]:
-    """Return the same for Haas's K, D, A and Q (start angle)."""
+def _haas_infeed(draft: Draft) -> tuple[Infeed, float]:
+    """Return the same for Haas's K, D and A."""
     height, first = take_number(draft, "K") or 0.0, take_increments(draft, "D") or 0.0
     angle, method = take_number(draft, "A") or 0.0, take_whole(draft, "P") or 1
     if method != 1:
         raise NotTranslated(f"G76 P{method}: write P1: one flank, the same chip in each pass")
-    turn = take_turn(draft)
     least, allowance = (stored_setting(draft, f"thread_{n}") for n in ("least", "allowance"))
-    infeed = Infeed(height, first, least, allowance, 1, angle)
-    return infeed, _chamfer_of(draft), turn
+    return Infeed(height, first, least, allowance, 1, angle), _chamfer_of(draft)
 
 
 def _thread_move(draft: Draft, meaning: str) -> None:

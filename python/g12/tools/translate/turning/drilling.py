@@ -18,7 +18,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from g12.tools.translate.blocks.control import HOLE_MEANINGS
-from g12.tools.translate.blocks.draft import PARTNERS, Draft
+from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import AS_PROGRAMMED, CONSUMERS, MOTIONS, UNKNOWN, UNSURE
@@ -34,7 +34,6 @@ from g12.tools.translate.turning.given_words import (
 )
 
 POSITION_LETTERS = frozenset("XZCUWHR")
-STEPS = {axis: letter for letter, axis in PARTNERS.items()}
 OWN_M_CODES = frozenset(f"M{number}" for number in range(10))  # LinuxCNC's, beside a cycle
 MOST_PECKS = 1000
 STOP = "G4 P0"
@@ -169,28 +168,21 @@ def _hole_levels(draft: Draft, axis: str, kept: dict) -> HoleLevels:
         start = start_point(draft)
         kept["top"] = 2 * start.imag if axis == "X" else start.real
     top, r = kept["top"], take_number(draft, "R")
-    own, step = take_number(draft, axis), take_number(draft, STEPS[axis])
-    from_start = draft.control.value("holes", "r") == "from start"
-    if step is not None and (axis == "X" or not from_start):
-        raise NotTranslated(f"{STEPS[axis]} as the end of a hole: write {axis}, where it ends")
+    own = take_number(draft, axis)
     end = own if own is not None else kept.get("end")
-    if step is not None:
-        end = top + step  # only its direction counts for R
     if end is None or end == top:
         raise NotTranslated(f"a drilling cycle needs {axis}, where the hole ends, not at {top:g}")
     levels = HoleLevels(axis, top, kept.get("r", top), end)
     if r is not None:
-        levels = _with_r(draft, levels, r, from_start)
-    if step is not None:
-        levels = levels._replace(end=levels.r + step)
+        levels = _with_r(draft, levels, r)
     if (levels.end - levels.r) * levels.toward <= 0:
         raise NotTranslated(f"R lies beyond {levels.word(levels.end)}, where the hole ends")
     return levels
 
 
-def _with_r(draft: Draft, levels: HoleLevels, r: float, from_start: bool) -> HoleLevels:
+def _with_r(draft: Draft, levels: HoleLevels, r: float) -> HoleLevels:
     """Apply R: a distance from the tool's level, or a level."""
-    if not from_start:
+    if draft.control.value("holes", "r") != "from start":
         outer = levels.top if (r - levels.top) * levels.toward > 0 else r
         return levels._replace(top=outer, r=r)
     if r * levels.toward < 0:

@@ -8,9 +8,9 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import MOVES, ModalState
 from g12.tools.translate.blocks.positions import known_position
-from g12.tools.translate.rules import codes, decimals, modes
+from g12.tools.translate.rules import codes, decimals
 from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
-from g12.tools.translate.turning.contour import ContourBlock, ContourMove, contour_of
+from g12.tools.translate.turning.moves import ContourBlock, ContourMove, contour_of
 
 SHAPING = frozenset("XZUWIKR")
 BESIDE_CYCLE = frozenset("FSM")  # what a finishing cut does with its moves
@@ -19,7 +19,7 @@ IN_CONTOURS = MOVES | {"G90", "G91"}
 WORD_RULES_OF_CYCLES = (
     codes.keep_as_comments,
     codes.map_codes,
-    modes.follow_modes,
+    codes.follow_modes,
     decimals.whole_units,
 )
 
@@ -41,13 +41,6 @@ def take_increments(draft: Draft, letter: str) -> float | None:
     if not least:
         raise NotTranslated(f"{word.text} has no decimal point, and no increment is set for it")
     return number * least
-
-
-def take_turn(draft: Draft) -> float:
-    """Take Q out, the angle at which a thread starts: thousandths of a degree without a point."""
-    word = draft.word("Q")
-    turn = take_number(draft, "Q") or 0.0
-    return turn if word and "." in word.value else turn / 1000
 
 
 def take_whole(draft: Draft, letter: str) -> int | None:

@@ -1,20 +1,116 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The moves of turning cycles that repeat a plain path, and the lines that they are written as.
+"""The moves of turning cycles: of a contour, plain passes, pecks and threads; and their lines.
+
+A point is a complex number in the program's unit: Z is its real part, X as a radius its imaginary
+one. Counter-clockwise is G3, as LinuxCNC has it in G18.
 
 - finishing (G70): the contour with its own words, then back, first away from the part in X
 - single passes (G90, G94 of system A): in, along, out, back: a rectangle or a trapezium
 - pecking (G74 along Z, G75 along X): cuts of one peck, each with a retract, in several columns
+- threads: one pass (G92 of system A), and all of them (G76), each as G33. LinuxCNC's own G76 has
+  another rule for the depth of its passes. G33's K is the travel along the path for each
+  revolution, the lead of these controls that along Z (or X, if steeper).
 """
 
-from collections.abc import Iterator, Sequence
-from math import copysign
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import count
+from math import copysign, radians, sqrt, tan
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.positions import value_text
-from g12.tools.translate.turning.contour import SAME, ContourMove
 
+ARC_CODES = ("G2", "G3")
+SAME = 1e-7  # points and lengths that are nearer are the same
+ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
 DIGITS = 1e-6  # a word is written where its value changes by that
+MOST_THREAD_PASSES = 1000
+
+
+class ContourBlock(NamedTuple):
+    """A block of a contour: its motion code, the numbers of its words, what is beside them.
+
+    ``relative`` says that X and Z are increments; ``others`` are codes and words that are written
+    with its move, ``line`` is that of the file.
+    """
+
+    motion: str
+    values: Mapping[str, float]
+    line: int
+    relative: bool = False
+    others: tuple[str, ...] = ()
+
+
+class ContourMove(NamedTuple):
+    """A line, or an arc about ``centre``, counter-clockwise if ``sense`` is 1, else -1."""
+
+    start: complex
+    end: complex
+    block: ContourBlock
+    centre: complex | None = None
+    sense: int = 0
+
+
+def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
+    at, moves = start, []
+    for block in blocks:
+        z = _coordinate(block, at.real, "Z", "W", 1.0)
+        end = complex(z, _coordinate(block, at.imag, "X", "U", 0.5))
+        if end != at or (block.motion in ARC_CODES and block.values.keys() & {"I", "K"}):
+            moves.append(_move(block, at, end))
+        at = end
+    return moves
+
+
+def _coordinate(
+    block: ContourBlock, at: float, absolute: str, increment: str, scale: float
+) -> float:
+    if increment in block.values:
+        return at + block.values[increment] * scale
+    if absolute not in block.values:
+        return at
+    return block.values[absolute] * scale + (at if block.relative else 0.0)
+
+
+def _move(block: ContourBlock, start: complex, end: complex) -> ContourMove:
+    values = block.values
+    if block.motion not in ARC_CODES:
+        if corner := next((letter for letter in "RIK" if letter in values), ""):
+            raise NotTranslated(
+                f"line {block.line}: {corner} beside {block.motion}: write the corner's line or "
+                "arc as a block"
+            )
+        return ContourMove(start, end, block)
+    sense = 1 if block.motion == "G3" else -1
+    if "R" in values:
+        centre = _centre_by_radius(start, end, values["R"] * sense, block.line)
+    elif not {"I", "K"} & values.keys():
+        raise NotTranslated(f"line {block.line}: {block.motion} needs R, or I and K; a line is G1")
+    else:
+        centre = start + complex(values.get("K", 0.0), values.get("I", 0.0))
+        if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:
+            raise NotTranslated(f"line {block.line}: I and K are no centre of the arc to its end")
+    return ContourMove(start, end, block, centre, sense)
+
+
+def _centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
+    """Return the centre of an arc; ``radius`` is below 0 for G2, or for more than half a turn."""
+    chord = end - start
+    if abs(chord) < SAME or abs(chord) / 2 > abs(radius) + ROUNDED:
+        raise NotTranslated(f"line {line}: R{abs(radius):g} is too small for the arc to its end")
+    height = sqrt(max(0.0, radius**2 - abs(chord) ** 2 / 4))
+    return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
+
+
+def offset_by(moves: Sequence[ContourMove], by: complex) -> list[ContourMove]:
+    return [
+        move._replace(
+            start=move.start + by,
+            end=move.end + by,
+            centre=None if move.centre is None else move.centre + by,
+        )
+        for move in moves
+    ]
 
 
 class CycleMove(NamedTuple):
@@ -156,3 +252,91 @@ def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
 
 def _turned(point: complex, along_x: bool) -> complex:
     return complex(point.imag, point.real) if along_x else point
+
+
+class Thread(NamedTuple):
+    """A thread: where it ends at full depth, its lead, its taper, how it runs out.
+
+    ``taper`` is the radius at the start less that at the end, ``chamfer`` the length over which the
+    tool leaves at 45 degrees.
+    """
+
+    end: complex
+    lead: float
+    taper: float = 0.0
+    chamfer: float = 0.0
+
+
+class Infeed(NamedTuple):
+    """How the passes of G76 go in: thread's height, first depth, least depth, the last ones.
+
+    ``allowance`` remains for the first of ``finishing`` passes, ``angle`` that of the thread along
+    whose flank the tool goes in.
+    """
+
+    height: float
+    first: float
+    least: float = 0.0
+    allowance: float = 0.0
+    finishing: int = 1
+    angle: float = 0.0
+
+
+def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMove]:
+    """Return one pass; ``up`` is how much higher than the thread's full depth it is."""
+    side = 1 if start.imag > thread.end.imag else -1
+    begin = complex(start.real, thread.end.imag + thread.taper + side * up)
+    end = complex(thread.end.real, thread.end.imag + side * up)
+    path = end - begin
+    if abs(path.real) < SAME:
+        raise NotTranslated("the thread has no length in Z")
+    pitch = pitch_along(path, thread.lead)
+    chamfer = min(thread.chamfer, abs(path.real))
+    turning = end - path / abs(path.real) * chamfer
+    moves = [rapid_to(begin), CycleMove("G33", turning, None, pitch)]
+    if chamfer > SAME:
+        out = complex(end.real, turning.imag + side * chamfer)
+        moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
+    last = moves[-1].end
+    clear = side * max(side * start.imag, side * last.imag)
+    back = (complex(last.real, clear), complex(start.real, clear), start)
+    return [*moves, *map(rapid_to, back)]
+
+
+def pitch_along(path: complex, lead: float) -> float:
+    """Return the travel along the path for each revolution."""
+    longer = max(abs(path.real), abs(path.imag))
+    return lead * abs(path) / longer
+
+
+def _depths(infeed: Infeed) -> list[float]:
+    """Return the depth of each pass, roughing passes first."""
+    full, least = infeed.height - infeed.allowance, infeed.least
+    if infeed.first <= 0 or full <= 0:
+        raise NotTranslated("the thread's height and the depth of its first pass must be above 0")
+    found: list[float] = []
+    for number in count(1):
+        last = found[-1] if found else 0.0
+        depth = infeed.first if number == 1 else max(infeed.first * sqrt(number), last + least)
+        if depth > full - SAME:
+            break
+        found.append(depth)
+        if number > MOST_THREAD_PASSES:
+            raise NotTranslated(
+                f"more than {MOST_THREAD_PASSES} passes: the first depth is too small"
+            )
+    finishing = infeed.finishing if infeed.allowance > SAME else infeed.finishing - 1
+    return [*found, full, *[infeed.height] * max(finishing, 0)]
+
+
+def all_passes(start: complex, thread: Thread, infeed: Infeed) -> list[CycleMove]:
+    """Return the passes of G76; shallower ones are shifted along the flank, away from the end."""
+    moves: list[CycleMove] = []
+    away = 1 if start.real > thread.end.real else -1
+    for depth in _depths(infeed):
+        up = infeed.height - depth
+        aside = away * up * tan(radians(infeed.angle / 2))
+        shifted = thread._replace(end=thread.end + aside)
+        one = thread_pass(start + aside, shifted, up)
+        moves += [*one[:-1], rapid_to(start)]
+    return moves

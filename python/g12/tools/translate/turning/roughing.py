@@ -16,8 +16,15 @@ from math import floor, pi, sqrt
 from typing import NamedTuple
 
 from g12.tools.translate.blocks.errors import NotTranslated
-from g12.tools.translate.turning.contour import SAME, ContourMove, offset_by
-from g12.tools.translate.turning.moves import CycleMove, feed_to, moves_along, rapid_to
+from g12.tools.translate.turning.moves import (
+    SAME,
+    ContourMove,
+    CycleMove,
+    feed_to,
+    moves_along,
+    offset_by,
+    rapid_to,
+)
 
 MOST_LEVELS = 5000
 

@@ -1,0 +1,307 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A mill's program on the face of a bar: every cut lies in a section, each hole in none.
+
+The mill's X and Y become those of G12.1, its Z is along the spindle. Points are in its own axes.
+
+1. Rapids in X and Y outside a section wait: the lathe goes there when something is cut.
+2. The first block at a feed begins the section: the slide and C go to its start at the safe
+   height, then the section's code.
+3. A call and a loop begin one before them, or what they cut would lie in one only sometimes.
+4. A tool, an offset, G28, a drilling cycle, the end, a return: the section ends before it.
+5. A drilling cycle is a call of the lathe's holes, each a hole. The tool goes back to where it
+   stood before each, as after G98: G99 costs a little time.
+"""
+
+import re
+
+from g12.tools.translate.blocks.draft import Draft
+from g12.tools.translate.blocks.errors import NotTranslated
+from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE, ModalState
+from g12.tools.translate.blocks.positions import SHIFTING, known_position, value_text
+from g12.tools.translate.rules.codes import MACHINES_OWN
+from g12.tools.translate.rules.polar import feed_of_rapids
+
+SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
+OTHER_PLANES = frozenset(("G18", "G19"))
+NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
+OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
+ENDING = MACHINES_OWN | SHIFTING
+ARC = frozenset("IJR")
+LEAST_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
+DRILLED = frozenset(("G73", "G81", "G82", "G83"))
+SIGNED_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
+
+
+# ---------------------------------------------------------------- sections
+
+
+def mill_block(draft: Draft) -> None:
+    if not draft.control.onto:
+        return
+    draft.sure("polar", "a section has begun on one way to this block, and not on another")
+    _refuse_foreign(draft)
+    if "cancel cycle" in draft.meanings:
+        draft.comments.append(draft.meanings.pop("cancel cycle").code)
+        draft.change(cycle=UNKNOWN, cycle_words=())
+    if draft.state.polar != "off" and _ends_here(draft):
+        _end_section(draft)
+    _go_home(draft)
+    if _drills(draft):
+        return
+    has_words = bool(draft.letters() & {"X", "Y", "Z", *ARC})
+    if has_words and not draft.call and REFERENCES.isdisjoint(draft.codes()):
+        _write_move(draft)
+    elif draft.call:
+        before_loop(draft)
+    if draft.state.polar == "off" and draft.state.compensation in ("G41", "G42"):
+        code = draft.state.compensation
+        raise NotTranslated(f"{code} before the first cut: write it with the contour's first G1")
+
+
+def before_loop(draft: Draft) -> None:
+    """Begin a section before a loop or a call, so that each round of it lies in one."""
+    if draft.control.onto and draft.state.polar == "off" and draft.state.waiting:
+        _begin_section(draft)
+
+
+def _refuse_foreign(draft: Draft) -> None:
+    """Refuse what a program of X, Y and Z in G17 does not have."""
+    codes = set(draft.codes())
+    for word in draft.words:
+        if word.letter in "ABC" and not draft.call:
+            raise NotTranslated(f"{word.text}: a program for {draft.control.name} has X, Y and Z")
+    for code in sorted(codes & OTHER_PLANES):
+        raise NotTranslated(f"{code}: arcs lie in X and Y here (G17): no vertical leads in CAM")
+    for code in codes & OTHER_FEEDS.keys():
+        raise NotTranslated(f"{code}, {OTHER_FEEDS[code]}: write G94 and F per minute")
+    draft.comments += draft.take_codes(NEEDLESS)
+
+
+def _drills(draft: Draft) -> bool:
+    if "drilling cycle" in draft.meanings:
+        return True
+    moves = not (MOVES | REFERENCES).isdisjoint(draft.codes())
+    return bool(draft.state.cycle) and not moves and bool(draft.letters() & set("XYZR"))
+
+
+def _ends_here(draft: Draft) -> bool:
+    returns = draft.returns and draft.state.section == _program_begun_in(draft)
+    changes = (
+        "T" in draft.letters()
+        or "M6" in draft.m_codes()
+        or not ENDING.isdisjoint(draft.codes())
+        or draft.start.units != draft.state.units
+    )
+    return changes or draft.ends or returns or _drills(draft)
+
+
+def _program_begun_in(draft: Draft) -> int:
+    return draft.program[0][0]
+
+
+def _write_move(draft: Draft) -> None:
+    across = bool(draft.letters() & {"X", "Y"})
+    if not _moves_by_rapid(draft):
+        if draft.state.polar == "off":
+            _begin_section(draft)
+    elif draft.state.polar != "off":
+        _check_rapid(draft, across)
+    else:
+        _rapid_outside(draft, across)
+
+
+def _rapid_outside(draft: Draft, across: bool) -> None:
+    """Store X and Y of a rapid for the next cut, write Z."""
+    if draft.word("Z") or _start_height(draft) is not None:
+        _check_rapid(draft, across and _start_height(draft) is not None)
+    if across and draft.state.distance != "G90":
+        raise NotTranslated("a rapid in X or Y under G91 before the first cut: write it under G90")
+    waiting = _waiting_point(draft) | {w.letter: w.value for w in draft.words if w.letter in "XY"}
+    for letter in "XY":
+        draft.comment_out(letter, " with the next cut")
+    draft.change(waiting=tuple(sorted(waiting.items())))
+
+
+def _begin_section(draft: Draft) -> None:
+    if _ends_here(draft):
+        raise NotTranslated(
+            "a cut begins here beside a tool, an offset or units: write them in a block before it"
+        )
+    height, safe = _start_height(draft), _safe_height(draft)
+    if height is None or height < safe:
+        where = "not known" if height is None else f"{height:g}"
+        raise NotTranslated(
+            f"a cut begins here with the tool at Z {where}: G0 Z at or above {safe:g} before it, "
+            "with X and Y"
+        )
+    why = "a cut begins here, and the position of {} is not known: G0 X Y before it"
+    x, y = (_point_value(draft, axis, draft.start, why.format(axis)) for axis in "XY")
+    least = LEAST_RADIUS[draft.state.units]
+    start = f"[2 * SQRT[[{x}] ** 2 + [{y}] ** 2 + {least:g} ** 2]]"
+    if _is_plain_number(x) and _is_plain_number(y):
+        start = f"{2 * max(abs(complex(float(x), float(y))), least):.4f}"
+    first, on = f"G0 X{start} C0", draft.control.polar_codes[0]
+    lines = ["G8", on, f"G1 X{x} C{y} G94 F{feed_of_rapids(draft):g}"]
+    absolute = draft.start.distance == "G90"
+    draft.before += [first, *lines] if absolute else [f"G90 {first}", *lines, "G91"]
+    draft.change(
+        polar="on",
+        section=_program_begun_in(draft),
+        waiting=(),
+        own_motion="G1",
+        own_feed="other",
+        at_c=known_position(draft.state, "Y"),
+    )
+
+
+def _end_section(draft: Draft) -> None:
+    if draft.start.compensation != "G40" or draft.state.delayed:
+        raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
+    draft.before += [draft.control.polar_codes[1], "G7"]
+    own = _drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
+    y = known_position(draft.state, "Y" if own else "C")
+    draft.change(polar="off", section=UNKNOWN, own_motion=UNSURE, at_y=y, at_c=None)
+
+
+def _go_home(draft: Draft) -> None:
+    """Write G28, G30 and G53 in the lathe's axes: the mill's machine zero has no meaning there."""
+    codes = MACHINES_OWN.intersection(draft.codes())
+    if not codes:
+        return
+    if codes == {"G53"}:
+        _machine_zero(draft)
+    else:
+        draft.comment_out("Y", ": no Y here")
+        if not draft.axis_words():
+            draft.comments += draft.take_codes(codes)  # without an axis G28 moves each of them
+    draft.change(waiting=())
+
+
+def _machine_zero(draft: Draft) -> None:
+    """Write G53 as G28 away from the part if it has Z, as a comment if not."""
+    motions = draft.take_codes({"G0", "G1"})
+    goes_home = "Z" in draft.letters()
+    draft.comments += draft.take_codes({"G53"})
+    for word in [word for word in draft.words if word.letter in "XYZ"]:
+        draft.comment_out(word.letter)
+    if goes_home:
+        absolute = [] if draft.state.distance == "G91" else ["G90"]
+        draft.after += ["G91 G28 Z0", *absolute]
+    if motions:
+        draft.change(motion=motions[0], own_motion=UNSURE)
+
+
+# ---------------------------------------------------------------- heights and points
+
+
+def _safe_height(draft: Draft) -> float:
+    """Return the Z from which on a rapid is clear of the part, in the program's units."""
+    safe = draft.control.value("mill", "safe", None)
+    if safe is not None:
+        return safe
+    units = draft.sure("units", "how high a rapid must be depends on the units")
+    if units not in SAFE:
+        raise NotTranslated(
+            "how high a rapid must be depends on the units: say G20 or G21 (--units)"
+        )
+    return draft.control.value("mill", *SAFE[units])
+
+
+def _waiting_point(draft: Draft) -> dict[str, str]:
+    """Return the values of X and Y to which rapids lead that are not written yet."""
+    return dict(draft.sure("waiting", "where X and Y go depends on the way to this block"))
+
+
+def _point_value(draft: Draft, axis: str, state: ModalState, why: str) -> str:
+    waiting = _waiting_point(draft).get(axis)
+    position = known_position(state, axis)
+    if waiting is None and position is None:
+        raise NotTranslated(why)
+    return waiting or value_text(position)
+
+
+def _start_height(draft: Draft) -> float | None:
+    return known_position(draft.start, "Z")
+
+
+def _moves_by_rapid(draft: Draft) -> bool:
+    codes = MOVES.intersection(draft.codes())
+    motion = min(codes) if codes else draft.sure("motion", "X, Y or Z without G0 or G1")
+    if motion == UNKNOWN:
+        raise NotTranslated("X, Y or Z without G0 or G1, and none before them")
+    return motion == "G0"
+
+
+def _check_rapid(draft: Draft, across: bool) -> None:
+    """Refuse a rapid below the safe height; ``across``: it moves in X or Y. Up is allowed."""
+    safe, start = _safe_height(draft), _start_height(draft)
+    end = known_position(draft.state, "Z") if draft.word("Z") else start
+    if end is None or (across and start is None):
+        raise NotTranslated(
+            "G0, and the position of Z is not known here: write Z as a number first"
+        )
+    lowest = end if start is None or not across else min(start, end)
+    if lowest < safe and (across or start is None or end < start):
+        raise NotTranslated(
+            f"G0 at Z{lowest:g}, below {safe:g} where rapids are clear of the part: write G1 "
+            "and F, or say --safe"
+        )
+
+
+# ---------------------------------------------------------------- holes
+
+
+def whole_cycle(draft: Draft) -> None:
+    """Have the cycle written with all of its words in each block."""
+    if draft.control.onto and ("drilling cycle" in draft.meanings or draft.state.cycle):
+        if draft.state.distance != "G90":
+            raise NotTranslated("a drilling cycle under G91: write its holes under G90")
+        draft.change(own_motion=UNSURE)
+
+
+def hole_call(draft: Draft) -> None:
+    cycle = draft.state.cycle
+    if not draft.control.onto or cycle not in draft.codes():
+        return
+    if cycle not in DRILLED:
+        raise NotTranslated(f"{cycle}: on a lathe G73 and G81 to G83 are translated")
+    words = {letter: draft.take(letter) for letter in "XYZRQPF"}
+    given = {letter: word.value for letter, word in words.items() if word}
+    if "L" in draft.letters():
+        raise NotTranslated(f"{cycle} with L: write each hole with its X and Y")
+    draft.take_codes({cycle, "G90", "G94"})
+    entries = " ".join(f"[{entry}]" for entry in _hole_entries(draft, cycle, given))
+    after, draft.after = draft.after, []
+    draft.write([f"o<face_hole_at> call {entries} [0]", *after])
+    draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=_start_height(draft))
+
+
+def _hole_entries(draft: Draft, cycle: str, given: dict[str, str]) -> list[str]:
+    """Return X, a diameter, and Y of a hole, its depth, retract, feed, peck and dwell."""
+    feed = draft.sure("feed", f"{cycle} needs F")
+    retract, depth = given["R"], given["Z"]
+    if not feed:
+        raise NotTranslated(f"{cycle} needs F")
+    if _is_plain_number(depth) and float(depth) >= 0:
+        raise NotTranslated(f"{cycle} Z{depth}: the hole must end below Z0, the part's surface")
+    if _is_plain_number(retract) and float(retract) <= 0:
+        retract = f"{_safe_height(draft):g}"
+    peck = {"G83": given.get("Q", "0"), "G73": _times(given.get("Q", "0"), -1)}.get(cycle, "0")
+    dwell = given.get("P", "0") if cycle == "G82" else "0"
+    why = "where the hole is along {} is not known: write X and Y"
+    x, y = (
+        given.get(axis) or _point_value(draft, axis, draft.state, why.format(axis)) for axis in "XY"
+    )
+    return [_times(x, 2), y, _times(depth, -1), retract, feed, peck, dwell]
+
+
+def _is_plain_number(value: str) -> bool:
+    return bool(SIGNED_NUMBER.fullmatch(value))
+
+
+def _times(value: str, factor: float) -> str:
+    """Return a value multiplied, with six decimals or as an expression."""
+    if _is_plain_number(value):
+        text = f"{float(value) * factor:.6f}".rstrip("0")
+        return "0." if text == "-0." else text
+    return f"[{value}] * {factor:.10g}"
