@@ -12,7 +12,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.part import C, X, Y, Z, slide_positions, spindle_angles
+from g12.machine_ini import AXIS_LETTERS
+from g12.tools.path.part import C, Y, slide_positions, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
@@ -96,14 +97,15 @@ def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], 
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
     name = scene.unit.name
     x.plot(history.time, history.x / scene.unit.mm, **drawn)
-    style.caption(x, f"X (radius), {name}")
+    turn, _, height = (AXIS_LETTERS[axis] for axis in scene.path.part.roles[:3])
+    style.caption(x, f"{height} (radius), {name}")
     draw_depths(z, history, scene, levels, drawn)
     c.plot(history.time, history.c, **drawn)
-    style.caption(c, "C, degrees")
+    style.caption(c, f"{turn}, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
-    limit = limits_of(scene.program.ini).axes[C]
+    limit = limits_of(scene.program.ini).axes[scene.path.part.roles.turn]
     draw_limit(c_speed, limit)
-    style.caption(c_speed, "Speed of C, degrees/s")
+    style.caption(c_speed, f"Speed of {turn}, degrees/s")
     draw_feed(feed, history, scene, drawn)
     style.caption(feed, f"Feed along the {along}, {name}/min")
     for axes in panels:
@@ -124,8 +126,10 @@ def programmed_history(scene: Scene) -> History:
     """Return the axes over time with every move at its feed, as far as axis speeds allow."""
     path = scene.path
     seconds = np.maximum(np.diff(path.time), 1e-12)
-    on_face = path.positions[:, X] + 1j * path.positions[:, Y]
-    c = spindle_angles(on_face, path.positions[:, C], path.part.beside)
+    turn, along, height, _ = path.part.roles
+    beside = path.positions[:, Y] * (turn == C)  # on a lathe Y is the face's
+    on_face = path.positions[:, height] + 1j * beside
+    c = spindle_angles(on_face, path.positions[:, turn], path.part.beside)
     c_speed = np.abs(np.diff(c)) / seconds
     feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds * 60
     c_speed, feed = (np.insert(values, 0, values[0]) for values in (c_speed, feed))
@@ -133,7 +137,7 @@ def programmed_history(scene: Scene) -> History:
     x = np.where(slide.imag, np.abs(slide), slide.real)
     rapid = rapids_at(scene, path.move)
     first = path.vertices(first_shown(scene)).start
-    time, z = path.time - path.time[first], path.positions[:, Z]
+    time, z = path.time - path.time[first], path.positions[:, along]
     return History(*(column[first:] for column in (time, x, z, c, c_speed, feed, rapid)))
 
 
@@ -145,8 +149,9 @@ def rapids_at(scene: Scene, moves: np.ndarray) -> np.ndarray:
 def real_history(scene: Scene) -> History:
     real = scene.real
     time = real.time - real.time[0]
-    c_speed = np.abs(np.gradient(real.positions[:, C], time))
-    x, z, c = (real.positions[:, axis] for axis in (X, Z, C))
+    turn, along, height, _ = scene.path.part.roles
+    c_speed = np.abs(np.gradient(real.positions[:, turn], time))
+    x, z, c = (real.positions[:, axis] for axis in (height, along, turn))
     rapid = rapids_at(scene, real.move)
     return History(time, x, z, c, c_speed, real.part_speed() * 60, rapid)
 
@@ -157,7 +162,7 @@ def draw_depths(
     """Draw Z, with the depths of the cuts."""
     unit = scene.unit
     axes.plot(history.time, history.z / unit.mm, **drawn)
-    style.caption(axes, f"Z, {unit.name}")
+    style.caption(axes, f"{AXIS_LETTERS[scene.path.part.roles.along]}, {unit.name}")
     low, high = axes.get_ylim()
     apart = LETTERS_APART * (high - low)
     depths = sorted(level.z / unit.mm for level in few(levels))
