@@ -74,10 +74,10 @@ class SectionKind(ABC):
         """Return the line of the first move that leaves the travel, and how; None if all stay."""
         runs = [step for step in steps if isinstance(step, Segments | FaceMove)]
         if self._beyond([end for run in runs for end in run.segments]):
-            for run in runs:
-                beyond = self._beyond(run.segments)
+            for line, end in ((run.line, end) for run in runs for end in run.segments):
+                beyond = self._beyond([end])
                 if beyond:
-                    return run.line, beyond
+                    return line, beyond
         return None
 
     def _beyond(self, ends: Iterable[Sequence[float]]) -> Beyond | None:
