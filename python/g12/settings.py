@@ -135,12 +135,16 @@ class Settings:
         return ""
 
 
-# Keys that only the tools read.
-LIVE_SPINDLE, LIVE_TOOL = "LIVE_SPINDLE", "LIVE_TOOL"
-OF_TOOLS = {LIVE_SPINDLE: words(*"01234567"), LIVE_TOOL: m_codes("M33 M35")}
+# Keys that the handlers do not read: those of the tools, and that of `toplevel.py`.
+LIVE_SPINDLE, LIVE_TOOL, TOPLEVEL = "LIVE_SPINDLE", "LIVE_TOOL", "TOPLEVEL"
+OF_OTHERS = {
+    LIVE_SPINDLE: words(*"01234567"),
+    LIVE_TOOL: m_codes("M33 M35"),
+    TOPLEVEL: ValueRule("a file", str),
+}
 TABLE: dict[str, ValueRule] = {
     each.name.upper(): each.metadata["rule"] for each in fields(Settings)
-} | OF_TOOLS
+} | OF_OTHERS
 
 
 def settings_from_lines(lines: Sequence[str]) -> Settings:
@@ -159,7 +163,7 @@ def settings_from_lines(lines: Sequence[str]) -> Settings:
         except ValueError:
             rule = f"must be {TABLE[key].legal}"
             raise Refusal(f"[{INI_SECTION}] {key} = {text:.40}: {rule}") from None
-    read = {key: value for key, value in values.items() if key.upper() not in OF_TOOLS}
+    read = {key: value for key, value in values.items() if key.upper() not in OF_OTHERS}
     settings = Settings(**read)
     if settings.polar_g0 == "feed" and settings.polar_g0_feed is None:
         raise Refusal(f"[{INI_SECTION}] POLAR_G0 = feed needs POLAR_G0_FEED, a number above 0")

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from g12.tools.install.lathe.kinematics_rules import is_outdated, module_file
+from g12.tools.install.lathe.kinematics import is_outdated, module_file
 
 MODULE = module_file()
 needs_kinematics = pytest.mark.skipif(

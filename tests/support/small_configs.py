@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from g12.tools.install import installation, package_copy, removal
+from g12.tools.install import installation, package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, Python, remaps_in
-from g12.tools.install.lathe.spindle_c import Pins
+from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
 from g12.tools.install.plan import make_plan
 
 MILL = """\
@@ -114,10 +114,10 @@ def with_lines(text: str, section: str, lines: str) -> str:
 
 
 def config_of(
-    ini: Path, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
+    ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
 ) -> Config:
     """Return the config of an INI that no LinuxCNC has loaded."""
-    text = IniText(ini)
+    text = ini if isinstance(ini, IniText) else IniText(ini)
     loaded = Python(**python)
     return Config(
         text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure, diameters
@@ -130,18 +130,26 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def put_in(
-    ini: Path, *names: str, pins: Pins | None = None, numbers: str = "", **python
-) -> list[str]:
+def planned(ini: Path, *names: str, pins: Pins | None = None, numbers: str = "", **python):
+    """Return the plan of an installation in an INI that no LinuxCNC has loaded."""
+    text = IniText(ini)
+    earlier, pins = text.words(), pins or pins_in_ini(text.ini())
+    text.take_out()
+    asked = [name for name in features.FEATURE_NAMES if name in (*earlier, *names)]
+    return make_plan(config_of(text, **python), asked, pins, numbers)
+
+
+def put_in(ini: Path, *names: str, **options) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
-    plan = make_plan(config_of(ini, **python), names, pins, numbers)
-    old_copy = plan.copied and installation.out_of_date(ini.parent / package_copy.NAME)
-    return installation.write_changes(plan.changes(), ini.parent, old_copy)
+    has_backups, plan = bool(IniText(ini).words()), planned(ini, *names, **options)
+    copy = ini.parent / package_copy.NAME
+    files = {} if package_copy.is_current(copy) or not plan.copied else package_copy.package_files()
+    return list(installation.write_all(plan.text.changes(), copy, files, has_backups))
 
 
 def take_out(ini: Path) -> list[str]:
     """Uninstall; return the lines to show."""
-    return list(removal.uninstall(IniText(ini), dry_run=False))
+    return list(installation.uninstall(IniText(ini), dry_run=False))
 
 
 @contextmanager

@@ -28,7 +28,7 @@ from g12.machine_ini import (
     value_in,
     with_included,
 )
-from g12.settings import Settings, settings_from_ini
+from g12.settings import INI_SECTION, TOPLEVEL, Settings, settings_from_ini
 
 
 def ini_file() -> str | None:
@@ -40,6 +40,13 @@ def ini_file() -> str | None:
     getenv.restype = ctypes.c_char_p
     name = getenv(b"INI_FILE_NAME")
     return os.fsdecode(name) if name else None
+
+
+def users_toplevel() -> str:
+    """Return the file that [G12] TOPLEVEL names, as LinuxCNC finds it: in its working folder."""
+    ini = ini_file()
+    lines = list(with_included(Path(ini))) if ini else []
+    return os.path.expanduser(value_in(lines, INI_SECTION, TOPLEVEL) or "")
 
 
 class Values:

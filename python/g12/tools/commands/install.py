@@ -14,9 +14,9 @@ from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.errors import UsageError, print_error
 from g12.tools.install.checking import read_config_text
 from g12.tools.install.config import features
+from g12.tools.install.config.findings import Refused
 from g12.tools.install.installation import excluding, install
 from g12.tools.install.lathe.spindle_c import read_pins
-from g12.tools.install.plan import Refused
 from g12.tools.progress import print_all
 
 EXAMPLES = """\

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from g12.tools.commands.arguments import GOOD, Parser, one_line
 from g12.tools.install.checking import read_config_text
-from g12.tools.install.removal import uninstall
+from g12.tools.install.installation import uninstall
 from g12.tools.progress import print_all
 
 EXAMPLES = """\

@@ -1,25 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The check of a machine config: loaded as LinuxCNC does it, findings, report."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
-from g12.machine_ini import entries_of
-from g12.settings import INI_SECTION, TABLE
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
 from g12.tools.install.config.filters import translating_filters
 from g12.tools.install.config.findings import ConfigFinding
-from g12.tools.install.config.forms import shown
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, load_config
+from g12.tools.install.config.screen import forms_shown
 from g12.tools.install.rules import findings_of
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini
-
-INTERPRETER_LIKE = re.compile(r"\s*\[?\s*RS274NGC\s*\]?\s*$", re.IGNORECASE)
 
 
 def read_config_text(ini: Path) -> IniText:
@@ -29,10 +24,6 @@ def read_config_text(ini: Path) -> IniText:
         raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
     text = IniText(ini)
     if not text.section("RS274NGC"):
-        for line in text.lines():
-            if INTERPRETER_LIKE.match(line.text):
-                wrong = f"{line.location}: {line.text.strip()}: begins no section"
-                raise UsageError(f"{wrong}; write it as [RS274NGC]")
         raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
     return text
 
@@ -44,9 +35,6 @@ def check_config(text: IniText, ini: Ini | None = None) -> tuple[Config, list[Co
 
 
 def check_report(config: Config, found: list[ConfigFinding]) -> dict:
-    own = {code.line for code in config.codes}
-    settings = entries_of(config.ini.lines, INI_SECTION)
-    others = [remap for line, remap in config.remaps if line not in own]
     return {
         "ini": str(config.text.path),
         "linuxcnc": config.version,
@@ -58,9 +46,7 @@ def check_report(config: Config, found: list[ConfigFinding]) -> dict:
             for code in config.codes
         ],
         "programs": {suffix: control for suffix, _, control in translating_filters(config)},
-        "forms": shown(config),
-        "other_remaps": {remap.code: remap.text for remap in others},
-        "settings": {key: value for _, key, value in settings if key in TABLE},
+        "forms": forms_shown(config),
         "findings": [asdict(finding) for finding in found],
     }
 
@@ -79,10 +65,6 @@ def lines_of_check(report: dict) -> Iterator[str]:
         yield f"  {suffixes:6} {'programs':12} {control}"
     for form in report["forms"]:
         yield f"  {'':6} {'form':12} {form}"
-    for code, text in report["other_remaps"].items():
-        yield f"  {code:6} {'not ours':12} REMAP = {text}"
-    for key, value in report["settings"].items():
-        yield f"  [{INI_SECTION}] {key} = {value}"
     for finding in report["findings"]:
         yield f"{finding['level']} [{finding['kind']}]: {finding['text']}"
         yield f"  cure: {finding['cure']}"

@@ -1,31 +1,46 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The installation in a machine config: tried out, shown, then written."""
+"""Installation in a machine config, and its reverse.
 
+Every installation first takes out, in memory, what an earlier one wrote; then all features are
+planned anew. The new INI is loaded from a scratch folder before anything is changed. The copy of
+the package is put in place first, the file with the codes last.
+"""
+
+import re
+import tempfile
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from g12.tools.errors import UsageError
-from g12.tools.install import package_copy, placing
-from g12.tools.install.config import features
-from g12.tools.install.config.bare_numbers import question_of
-from g12.tools.install.config.filters import installed_programs, shortened
-from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText
-from g12.tools.install.config.loaded import load_config
-from g12.tools.install.lathe.spindle_c import Pins
-from g12.tools.install.plan import (
-    MODULE_MARK,
-    make_plan,
-    names_copy,
+from g12.tools.install import package_copy
+from g12.tools.install.checking import check_config
+from g12.tools.install.config import features, screen
+from g12.tools.install.config.findings import (
+    WARNING,
+    ConfigFinding,
     refuse,
     refuse_problems,
 )
-from g12.tools.install.rules import STOPPING, findings_of
-from g12.tools.install.trial import try_out
-from g12.tools.machine.files import backup_of, difference
+from g12.tools.install.config.ini_edit import IniLine, IniText, other_inis
+from g12.tools.install.config.loaded import codes_of, load_config, remaps_in
+from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
+from g12.tools.install.plan import InstallPlan, make_plan
+from g12.tools.install.rules import LOADING, STOPPING, findings_of
+from g12.tools.machine.files import (
+    backup_of,
+    backups_of,
+    difference,
+    drop_backups,
+    take_after,
+    write,
+)
+from g12.tools.machine.ini import broken_line
 from g12.tools.system import COMMAND
-from g12.tools.translate.blocks.control import read_control
+from g12.tools.translate.blocks.control import Control, read_control
 
-PREVENTING = {"python-fails", "does-not-load"}  # kinds: what the config does is unknown
+PREVENTING = STOPPING | {"no-axis"}  # kinds: another INI must not get these
+HERE = rf"(\./|{screen.HERE}/)?{package_copy.NAME}"
+NAMES_COPY = re.compile(rf"\s*(#INCLUDE\s+|[^\s#;].*[=:\s]){HERE}/")
 
 
 def install(
@@ -35,51 +50,44 @@ def install(
     pins: Pins | None = None,
     numbers: str = "",
 ) -> Iterator[str]:
+    copy = text.path.parent / package_copy.NAME
     if not dry_run:
-        yield from placing.tidy(text.path.parent)
-    missing = missing_files(text)
-    if missing:
-        yield f"{text.path.parent / package_copy.NAME}: missing: {shortened(missing)}"
-        if dry_run:
-            yield "dry run: nothing was written; without these files nothing more can be checked"
-            return
-        copy = text.path.parent / package_copy.NAME
-        yield from write_changes({}, copy.parent, out_of_date(copy))
+        package_copy.recover(copy)
+    earlier, pins = text.words(), pins or pins_in_ini(text.ini())
+    text.take_out()
+    names = [name for name in features.FEATURE_NAMES if name in (*earlier, *requested)]
+    for pair in excluding(names):
+        raise refuse("exclusive", f"{pair} exclude each other", "uninstall first")
     config = load_config(text)
-    preventing = PREVENTING if config.python else PREVENTING | STOPPING
-    refuse_problems([finding for finding in findings_of(config) if finding.kind in preventing])
-    programs = [f"programs-{control}" for control in installed_programs(config)]
-    for pair in excluding([*config.features, *programs, *requested]):
-        raise refuse("dialects", f"{pair} exclude each other", "uninstall first")
-    plan = make_plan(config, requested, pins, numbers)
-    changes = plan.changes()
-    if "--decimals" not in numbers:
-        for name in filter(None, map(features.CONTROLS.get, requested)):
-            yield from question_of(read_control(name), config)
-    old_copy = plan.copied and out_of_date(config.folder / package_copy.NAME)
-    if not changes and not old_copy:
+    before = findings_of(config)
+    refuse_problems(finding for finding in before if finding.kind in LOADING)
+    plan = make_plan(config, names, pins, numbers or options_in(earlier))
+    for name in filter(None, map(features.CONTROLS.get, requested)):
+        yield from question_of(read_control(name), plan.words)
+    changes, is_old = text.changes(), plan.copied and not package_copy.is_current(copy)
+    if not changes and not is_old:
         yield f"{text.path}: {', '.join(requested)}: installed already, nothing to do"
         return
-    warnings = try_out(plan)
+    warnings = try_out(plan, before)
     for path, content in changes.items():
         yield from difference(path, content)
-    if dry_run and old_copy:
-        yield f"{config.folder / package_copy.NAME}: would get {size_of_package()}"
-    if not dry_run:
-        yield from write_changes(changes, config.folder, old_copy)
+    files = package_copy.package_files() if is_old else {}
+    if files:
+        yield f"{copy}: {'would get ' * dry_run}the package, {len(files)} files"
     for warning in warnings:
         yield f"{warning.level} [{warning.kind}]: {warning.text}; cure: {warning.cure}"
     if dry_run:
         yield "dry run: nothing was written"
-    else:
-        yield "next: restart LinuxCNC, then try in MDI or with a program:"
-        yield from (f"  {features.first_step(feature)}" for feature in requested)
-        yield f"to take it out again: {COMMAND} uninstall {text.path}"
+        return
+    yield from write_all(changes, copy, files, has_backups=bool(earlier))
+    yield "next: restart LinuxCNC, then try in MDI or with a program:"
+    yield from (f"  {features.first_step(feature)}" for feature in requested)
+    yield f"to take it out again: {COMMAND} uninstall {text.path}"
 
 
-def size_of_package() -> str:
-    sizes = [len(content) for content in package_copy.package_files().values()]
-    return f"the package, {len(sizes)} files, {sum(sizes) / 1e6:.1f} MB"
+def options_in(words: Sequence[str]) -> str:
+    """Return the options of `translate` among the words of an earlier installation."""
+    return "".join(f" {word}" for word in words if word not in features.FEATURE_NAMES)
 
 
 def excluding(names: Sequence[str]) -> Iterator[str]:
@@ -87,48 +95,144 @@ def excluding(names: Sequence[str]) -> Iterator[str]:
     yield from (" and ".join(group) for group in chosen if len(group) > 1)
 
 
-def missing_files(text: IniText) -> list[str]:
-    """Return the missing files of the copy that the config's lines name."""
-    copy = text.path.parent / package_copy.NAME
-    if copy.exists():
-        return package_copy.missing(copy)
-    return list(package_copy.package_files()) if names_copy(text) else []
+def question_of(control: Control, words: str) -> Iterator[str]:
+    """Yield the question for ``--decimals``, where neither control nor user have answered it."""
+    if not control.decimals and "--decimals" not in words:
+        mm = 1500 * float(control.value("increments", "length_mm", 0.0))
+        yield (
+            f"asked: X1500 has no decimal point. With --decimals least it is {mm:g} mm, with "
+            f"--decimals whole 1500 mm. Install programs-{control.name} with one of them: until "
+            "then such programs are refused."
+        )
 
 
-def write_changes(changes: Mapping[Path, bytes], folder: Path, old_copy: bool) -> list[str]:
-    """Put the changes, and with ``old_copy`` a new copy, in place; return a line for each."""
-    with placing.folder_beside(folder) as place:
-        moves, done = new_copy(place) if old_copy else ([], [])
-        for path, content in changes.items():
-            note = ""
-            if not has_own_lines(path):
-                backup = backup_of(path)
-                moves.append(placing.stage(place, backup, path.read_bytes(), path))
-                note = f"; as it was: {backup.name}"
-            moves.append(placing.stage(place, path, content, path))
-            done.append(f"{path}: changed{note}")
-        placing.put_in_place(place, moves)
-    return done
+def write_all(
+    changes: Mapping[Path, bytes], copy: Path, files: Mapping[str, bytes], has_backups: bool
+) -> Iterator[str]:
+    """Put a new copy and the changed files in place, a backup of the user's first."""
+    for path in changes:  # its owner may protect it
+        path.open("r+b").close()
+    for name in package_copy.replace(copy, files) if files else ():
+        yield f"{copy / name}: your version, kept beside the new one"
+    for path, content in changes.items():
+        backup = path if has_backups else backup_of(path)
+        if not backup.exists():
+            write(backup, path.read_bytes())
+            take_after(backup, path)
+        write(path, content)
+        yield f"{path}: changed" + f"; as it was: {backup.name}" * (not has_backups)
 
 
-def new_copy(place: Path) -> tuple[list[placing.Move], list[str]]:
-    """Build a new copy of the package; return its move, and a line for each change."""
-    new, copy = place / package_copy.NAME, place.parent / package_copy.NAME
-    renamed = package_copy.build(new, copy, package_copy.package_files())
-    notes = [f"{copy / name}: your version, kept beside the new one" for name in renamed]
-    return [(new, copy)], [f"{copy}: {size_of_package()}", *notes]
+# The trial.
 
 
-def out_of_date(copy: Path) -> bool:
-    """Return whether a copy lacks files of this package; a copy cannot repair itself."""
-    if not copy.exists() or not copy.samefile(features.ROOT):
-        return not package_copy.is_current(copy)
-    for name in package_copy.missing(copy):
-        raise UsageError(f"{copy / name}: is missing; run install from the package itself, "
-                         "not from this copy of it")  # fmt: skip
+def try_out(plan: InstallPlan, before: Sequence[ConfigFinding]) -> list[ConfigFinding]:
+    """Return the warnings of `check` for the plan; refuse if it causes a problem.
+
+    What was found before, and a spindle that may not be there, are no reason. Another INI of the
+    folder that includes a changed file has to load as well.
+    """
+    warnings = refuse_problems(
+        replace(each, level=WARNING) if each in before or each.kind == "live-spindle" else each
+        for each in trial(plan, plan.text)
+        if each.kind != "copy"  # which is renewed
+    )
+    for other in other_inis(plan.text):
+        shared = [file.name for file in plan.text.changes() if file in other.files]
+        refuse_problems(
+            of_other(each, other.path.name, shared[0])
+            for each in (trial(plan, other) if shared else ())
+            if each.kind in PREVENTING
+        )
+    return warnings
+
+
+def of_other(finding: ConfigFinding, ini: str, shared: str) -> ConfigFinding:
+    """Return a finding of another INI with that INI's name and why it matters."""
+    text = f"{ini} includes {shared} too and gets the same lines: {finding.text}"
+    cure = f"in {ini}: {finding.cure}; if no machine uses it, rename it to end in .old"
+    return replace(finding, text=text, cure=cure)
+
+
+def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
+    """Return the findings of `check` in an INI with the plan applied.
+
+    The copy of the package that may not be there yet is a folder of links.
+    """
+    ini = text.ini()
+    with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
+        if plan.copied:
+            for part in ("ngc", "python", "configs"):
+                (Path(scratch) / part).symlink_to(features.ROOT / part)
+            ini = replace(ini, lines=tuple(relocated(ini.lines, scratch)))
+        return check_config(text, ini)[1]
+
+
+def relocated(lines: Sequence[str], folder: str) -> Iterator[str]:
+    """Yield an INI's lines with another folder instead of the copy's."""
+    copy = re.compile(rf"(?<![^\s:=]){HERE}(?=[/\s:]|$)")
+    for line in lines:
+        moved = copy.sub(folder, line)
+        yield from [line] if moved == line else broken_line(moved)
+
+
+# Uninstallation.
+
+
+def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
+    copy, blocks = text.path.parent / package_copy.NAME, text.blocks()
+    if not dry_run:
+        package_copy.recover(copy)
+    users = text.take_out(shared_files(text))
+    used = is_used_by_others(text)
+    if not blocks and (used or not package_copy.is_copy(copy)):
+        yield f"{text.path}: nothing that install put in"
+        return
+    changes = text.changes()
+    for path, content in changes.items():
+        yield from difference(path, content)
+    for line in users:
+        yield f"{line.location}: stays, it is not by install, or you changed it: {line.text}"
+    needing = [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
+    for line in sorted({line.location: line for line in needing}.values()):
+        yield f"{line.location}: still needs the package: {line.text.strip()}"
+    if dry_run:
+        yield "dry run: nothing was written"
+        return
+    for path, content in changes.items():
+        write(path, content)
+    for path in text.files:
+        drop_backups(path, path.read_bytes())
+        backups = ", ".join(backup.name for backup in backups_of(path))
+        if path in changes:
+            yield f"{path}: changed" + f"; you changed it since, {backups} stays" * bool(backups)
+    if used or needing:
+        yield f"{copy}: stays, {'another INI of this folder uses it' if used else 'lines need it'}"
+    elif package_copy.is_copy(copy):
+        package_copy.replace(copy, {})
+        kept = ", ".join(package_copy.files_below(copy))
+        yield f"{copy}: taken away" + f" but for what you changed: {kept}" * bool(kept)
+
+
+def names_copy(text: IniText) -> list[IniLine]:
+    """Return the lines of an INI that need the copy, by `install` or by hand."""
+    return [line for line in text.lines() if NAMES_COPY.match(line.text)]
+
+
+def is_used_by_others(text: IniText) -> bool:
+    """Return whether another INI of the folder has the package."""
+    for other in other_inis(text):
+        if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
+            return True
     return False
 
 
-def has_own_lines(path: Path) -> bool:
-    """Return whether a file has lines of an earlier installation, and so a backup."""
-    return any(mark.encode() in path.read_bytes() for mark in (MODULE_MARK, BEGIN_MARK))
+def shared_files(text: IniText) -> list[Path]:
+    """Return the included files that another INI, which has blocks of its own, includes too."""
+    return [
+        file
+        for other in other_inis(text)
+        if any(block[0].file not in text.files for block in other.blocks())
+        for file in other.files
+        if file in text.files
+    ]

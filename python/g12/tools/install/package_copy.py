@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The package's own copy inside a machine config: folder ``g12`` with a list of its files."""
+"""The package's own copy inside a machine config: folder ``g12`` with a list of its files.
 
+A new copy is made whole in a folder beside the old one, and takes its place in one step.
+"""
+
+import ctypes
 import hashlib
 import os
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
-from g12.tools.errors import UsageError
 from g12.tools.install.config.features import ROOT
 from g12.tools.machine.files import free_name, take_owner
 
@@ -39,7 +42,10 @@ CODE_FILES = (
 )
 FILES = ("LICENSE", *CODE_FILES, *PAGE_FILES)
 EDITED_SUFFIX = ".edited"
-MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)")
+MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)", re.MULTILINE)
+BESIDE, ASIDE = ".g12-new", ".g12-old"  # the new copy; the old one, where two cannot be exchanged
+RENAME_EXCHANGE, AT_FDCWD = 2, -100  # of Linux
+LIBC = ctypes.CDLL(None)
 
 
 def package_files() -> dict[str, bytes]:
@@ -52,17 +58,8 @@ def digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def digest_of(path: Path) -> str:
-    """Return the SHA-256 of a file in hexadecimal, "" if it is missing."""
-    return digest(path.read_bytes()) if path.is_file() else ""
-
-
-LOST_DIGESTS = ("", digest(b""))  # of a missing file, and of one that a crash left empty
-
-
-def is_package(folder: Path) -> bool:
-    """Return whether a folder holds the package, copied by `install` or by hand."""
-    return (folder / "python" / "g12" / "__init__.py").is_file() and (folder / "ngc").is_dir()
+def digests(files: Mapping[str, bytes]) -> dict[str, str]:
+    return {name: digest(content) for name, content in files.items()}
 
 
 def is_copy(folder: Path) -> bool:
@@ -71,68 +68,67 @@ def is_copy(folder: Path) -> bool:
 
 
 def listed(folder: Path) -> dict[str, str]:
-    """Return the files of a copy with the digest they were installed with.
-
-    Raises UsageError for a list with names outside the copy.
-    """
-    manifest = folder / MANIFEST
-    content = manifest.read_bytes() if manifest.is_file() else b""
-    lines = content.decode("utf-8", "replace").splitlines()
-    entries = [MANIFEST_ENTRY.fullmatch(line) for line in lines]
-    folders = {os.path.dirname(entry[2]) for entry in entries if entry}
-    inside = {name for name in folders if is_inside(folder, name)}
-    for number, (line, entry) in enumerate(zip(lines, entries), start=1):
-        if not entry or os.path.dirname(entry[2]) not in inside:
-            raise UsageError(f"{manifest}:{number}: not a line that install wrote: {line[:80]!r}; "
-                             "take that line out")  # fmt: skip
-    return {entry[2]: entry[1] for entry in entries}
-
-
-def is_inside(folder: Path, name: str) -> bool:
-    """Return whether a name is that of a folder in another one, with all its links followed."""
-    found = (folder / name).resolve()
-    return ".." not in Path(name).parts and found.is_relative_to(folder.resolve())
-
-
-def differing(folder: Path) -> dict[str, str]:
-    """Return the files of a copy that are not as they were installed, with their digests now."""
-    found = ((name, value, digest_of(folder / name)) for name, value in listed(folder).items())
-    return {name: present for name, value, present in found if present != value}
-
-
-def edited(folder: Path) -> list[str]:
-    return [name for name, found in differing(folder).items() if found not in LOST_DIGESTS]
+    """Return the files of a copy with the digests they were installed with."""
+    text = (folder / MANIFEST).read_text(errors="replace") if is_copy(folder) else ""
+    return {name: value for value, name in MANIFEST_ENTRY.findall(text)}
 
 
 def missing(folder: Path) -> list[str]:
-    """Return the missing files of a copy, and those that have become empty."""
-    return [name for name, found in differing(folder).items() if found in LOST_DIGESTS]
+    return [name for name in listed(folder) if not (folder / name).is_file()]
 
 
-def digests(files: Mapping[str, bytes]) -> dict[str, str]:
-    return {name: digest(content) for name, content in files.items()}
+def edited(folder: Path) -> list[str]:
+    """Return the files of a copy that the user has changed."""
+    there = ((name, value, folder / name) for name, value in listed(folder).items())
+    return [name for name, value, file in there if file.is_file() and value != digest_of(file)]
+
+
+def digest_of(file: Path) -> str:
+    return digest(file.read_bytes()) if file.is_file() else ""
 
 
 def is_current(folder: Path) -> bool:
-    """Return whether a copy is one of this package, with all its files."""
+    """Return whether a copy is one of this package, with all its files, or is this package."""
+    if folder.exists() and folder.samefile(ROOT):
+        return True
     return listed(folder) == digests(package_files()) and not missing(folder)
 
 
-def write_files(folder: Path, files: Mapping[str, bytes]) -> None:
-    for name, content in files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+def replace(copy: Path, files: Mapping[str, bytes]) -> list[str]:
+    """Put a new copy in the place of the present one, with the user's files of that.
+
+    ``files`` is the package, nothing for an uninstallation: there is no folder without files.
+    Returns the user's files that get another name.
+    """
+    new, old = recover(copy)
+    renamed = build(new, copy, files)
+    sync(copy.parent, LIBC.syncfs)
+    put_in_place(new, copy, old)
+    sync(copy.parent, os.fsync)
+    remove(new)
+    remove(old)
+    return renamed
+
+
+def recover(copy: Path) -> tuple[Path, Path]:
+    """Remove what a killed command left beside a copy; return the names of these folders.
+
+    The old copy goes back if it was killed between two renames.
+    """
+    new, old = copy.with_name(BESIDE), copy.with_name(ASIDE)
+    if old.exists() and not copy.exists():
+        old.rename(copy)
+    remove(new)
+    remove(old)
+    return new, old
 
 
 def build(new: Path, copy: Path, files: Mapping[str, bytes]) -> list[str]:
-    """Write the next copy of the package with the user's files of the present one.
-
-    ``files`` is the package, nothing for an uninstallation. Returns the user's files that get
-    another name. There is no folder without files.
-    """
-    lines = [f"{value}  {name}\n" for name, value in digests(files).items()]
-    write_files(new, {**files, MANIFEST: "".join(lines).encode()} if files else {})
+    """Write a new copy with the user's files of the present one; return those renamed."""
+    manifest = "".join(f"{value}  {name}\n" for name, value in digests(files).items())
+    for name, content in {**files, MANIFEST: manifest.encode()}.items() if files else ():
+        (new / name).parent.mkdir(parents=True, exist_ok=True)
+        (new / name).write_bytes(content)
     names = dict(users_files(copy, digests(files)))
     for name, target in names.items():
         (new / target).parent.mkdir(parents=True, exist_ok=True)
@@ -150,12 +146,10 @@ def users_files(copy: Path, new: Mapping[str, str]) -> Iterator[tuple[str, str]]
     """
     old = listed(copy)
     for name in files_below(copy):
-        versions, found = (old.get(name), new.get(name)), digest_of(copy / name)
-        lost = found in LOST_DIGESTS and any(versions)
-        if name == MANIFEST or found in versions or lost:
-            continue
-        aside = free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
-        yield name, name if versions[0] == versions[1] else aside
+        versions = old.get(name), new.get(name)
+        if name != MANIFEST and digest_of(copy / name) not in versions:
+            aside = free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
+            yield name, name if versions[0] == versions[1] else aside
 
 
 def files_below(folder: Path) -> list[str]:
@@ -167,3 +161,30 @@ def files_below(folder: Path) -> list[str]:
         here = Path(above).relative_to(folder)
         found += [(here / name).as_posix() for name in (*links, *sorted(files))]
     return found
+
+
+def put_in_place(new: Path, copy: Path, old: Path) -> None:
+    """Let a new folder, if there is one, take the place of a copy in one step.
+
+    A file system that cannot exchange folders (NFS, exFAT) renames both: between these moments the
+    folder is missing.
+    """
+    names = os.fsencode(new), os.fsencode(copy)
+    exchanged = LIBC.renameat2(AT_FDCWD, names[0], AT_FDCWD, names[1], RENAME_EXCHANGE) == 0
+    if not exchanged and copy.exists():
+        copy.rename(old)
+    if not exchanged and new.exists():
+        new.rename(copy)
+
+
+def sync(folder: Path, function: Callable[[int], object]) -> None:
+    handle = os.open(folder, os.O_DIRECTORY)
+    function(handle)
+    os.close(handle)
+
+
+def remove(path: Path) -> None:
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)

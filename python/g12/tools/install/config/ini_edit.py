@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Machine INI files on disk: the location of lines, and edits that change nothing else.
 
-Bytes that are no UTF-8, line ends and a missing last line end survive. Insertions are enclosed in
-two marker comments, by which they are found and removed again.
+Bytes that are no UTF-8, line ends and a missing last line end survive. What is written is between
+two markers: the first names the words of ``install``, the second has a digest of each line. A line
+between them with another digest is the user's.
 """
 
+import hashlib
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from g12.errors import LONGEST_BLOCK
 from g12.machine_ini import entries_of, included_file, key_and_value, section_extent
-from g12.tools.machine.ini import Ini, IniError, as_included
+from g12.tools.machine.ini import Ini, IniError, as_included, broken_line
 
-BEGIN_MARK = "# >>> g12 install"
-END_MARK = "# <<< g12 install"
-WAS = "# was: "
-NOW = "# now: "  # the inserted text, several separated by NEXT, to detect later edits
-NEXT = "; "
+BEGIN_MARK, END_MARK = "# >>> g12 install", "# <<< g12 install"
+WAS = "# was: "  # before the user's line that one of ours replaces
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
+DIGITS = 4  # of a digest: a section of ours has 30 lines at most
 
 
 class IniLine(NamedTuple):
@@ -45,16 +46,6 @@ class InsertionPoint(NamedTuple):
     row: int
 
 
-def lines_with_ends(path: Path) -> list[str]:
-    """Return a text file's lines with their line ends, exactly as they are."""
-    return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
-
-
-def to_bytes(lines: Sequence[str]) -> bytes:
-    """Return the file that `lines_with_ends` read the lines from."""
-    return "".join(lines).encode("utf-8", "surrogateescape")
-
-
 def line_end(lines: Sequence[str]) -> str:
     return "\r\n" if lines and lines[0].endswith("\r\n") else "\n"
 
@@ -64,11 +55,14 @@ def belongs(text: str) -> bool:
     return bool(key_and_value(text)[0]) or text.startswith(END_MARK)
 
 
-def without(lines: Sequence[str], removed: set[int]) -> list[str]:
-    """Return lines without those at the indices; a missing last line end remains missing."""
-    kept = [line for index, line in enumerate(lines) if index not in removed]
-    unended = lines and not lines[-1].endswith("\n") and len(lines) - 1 in removed
-    return [*kept[:-1], kept[-1].rstrip("\r\n")] if unended and kept else kept
+def digest_of(text: str) -> str:
+    return hashlib.sha256(text.encode("utf-8", "surrogateescape")).hexdigest()[:DIGITS]
+
+
+def between_marks(words: str, lines: Sequence[str]) -> list[str]:
+    """Return a block: lines between the markers, with the words of ``install``."""
+    digests = " ".join(map(digest_of, lines))
+    return [f"{BEGIN_MARK} {words}", *lines, f"{END_MARK} {digests}"]
 
 
 class IniText:
@@ -77,19 +71,14 @@ class IniText:
     def __init__(self, path: Path) -> None:
         self.path = path.absolute()
         self.files: dict[Path, list[str]] = {self.path: self._read(self.path)}
-        self.unreadable: list[IniLine] = []
-        self._lines: list[IniLine] = []
-        self._files_of_lines: dict[Path, list[str]] = {}
         for line in self._lines_of(self.path):
             included = included_file(line.text, self.path.parent)
             if included and included.is_file():
                 self.files[included] = self._read(included)
-            elif included or line.text.split() == ["#INCLUDE"]:
-                self.unreadable.append(line)
 
     def _read(self, path: Path) -> list[str]:
         try:
-            return lines_with_ends(path)
+            return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
         except OSError as error:
             raise IniError(f"{path}: {error.strerror}") from error
 
@@ -97,15 +86,9 @@ class IniText:
         for row, text in enumerate(self.files[file]):
             yield IniLine(file, row, text.rstrip("\r\n"), row if host is None else host)
 
-    def lines(self) -> Sequence[IniLine]:
-        """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes.
-
-        They are cached until an edit: `install` reads them some hundred times.
-        """
-        if self._files_of_lines != self.files:
-            self._lines = list(self._expanded())
-            self._files_of_lines = {file: list(lines) for file, lines in self.files.items()}
-        return self._lines
+    def lines(self) -> list[IniLine]:
+        """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes."""
+        return list(self._expanded())
 
     def _expanded(self) -> Iterator[IniLine]:
         for line in self._lines_of(self.path):
@@ -121,11 +104,13 @@ class IniText:
         texts = (line.text if line.file == self.path else as_included(line.text) for line in kept)
         return Ini(self.path, tuple(texts))
 
-    def contents(self) -> dict[Path, bytes]:
-        """Return the content of each file, that with the codes last: it needs the others."""
+    def changes(self) -> dict[Path, bytes]:
+        """Return the changed files with their content, that with the codes last."""
         codes = {line.file for line in self.section("RS274NGC")}
         files = sorted(self.files, key=lambda file: (file in codes, file == self.path))
-        return {file: to_bytes(self.files[file]) for file in files}
+        contents = {file: "".join(self.files[file]).encode("utf-8", "surrogateescape")
+                    for file in files}  # fmt: skip
+        return {file: content for file, content in contents.items() if content != file.read_bytes()}
 
     def headers(self, section: str) -> list[IniLine]:
         """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
@@ -146,17 +131,8 @@ class IniText:
     def end_of_section(self, section: str) -> InsertionPoint | None:
         """Return the point after the section's last entry, in the INI itself if possible.
 
-        For RS274NGC that is before the empty line here::
-
-            [RS274NGC]
-            PARAMETER_FILE = mill.var
-            #INCLUDE remaps.inc
-
-            # Axes.
-            [TRAJ]
-
-        unless remaps.inc ends in another section: then it is before the #INCLUDE. Where another
-        file has the header, too, it is in that file.
+        A section that goes on in an included file ends behind that #INCLUDE, unless another section
+        begins in the file: then before it. Where the file has the header, too, it is in the file.
         """
         found = self.section(section)
         last_of = {line.host: line for line in self.lines()}  # of each line of the INI
@@ -177,7 +153,21 @@ class IniText:
             index += 1
         return index + 1
 
-    def insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
+    def add(self, section: str, lines: Sequence[str], words: str) -> None:
+        """Add a block to a section; a new one goes into [RS274NGC]'s file.
+
+        In an included file that is before a header, where it divides no other section.
+        """
+        point = self.end_of_section(section)
+        if not point:
+            lines = [f"[{section}]", *lines]
+            point = InsertionPoint(self.path, len(self.files[self.path]))
+            if self.end_of_section("RS274NGC").file != self.path:
+                header = self.headers("RS274NGC")[0]
+                point = InsertionPoint(header.file, header.row)
+        self._insert(point, between_marks(words, lines))
+
+    def _insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
         """Insert lines. At the end of a file without a last line end they have none either."""
         lines = self.files[point.file]
         end = line_end(lines)
@@ -187,61 +177,87 @@ class IniText:
             new[-1] = texts[-1]
         lines[point.row : point.row] = new
 
-    def put_in_place(self, line: IniLine, text: str, begin: str) -> None:
-        """Insert an entry between markers instead of a line, which becomes a comment."""
-        if CONTINUED.search(self.files[line.file][line.row]):
-            raise IniError(f"{line.location}: goes on in the next line; write it in one line")
-        self.insert(InsertionPoint(line.file, line.row + 1), [NOW + text, text, END_MARK])
-        self.replace(line, WAS + line.text)
-        self.insert(InsertionPoint(line.file, line.row), [begin])
-
-    def replace(self, line: IniLine, text: str) -> None:
-        """Replace the text of a line, but not its line end."""
+    def replace(self, section: str, key: str, value: str, words: str) -> None:
+        """Replace the first value of a key by a block, in which the user's lines are comments."""
+        (line, _), *_ = self.entries(section, key)
         lines = self.files[line.file]
-        lines[line.row] = text + lines[line.row][len(line.text) :]
-
-    def append_to_value(self, line: IniLine, text: str) -> None:
-        index = self._after(line.file, line.row) - 1
-        lines = self.files[line.file]
-        body = lines[index].rstrip()
-        lines[index] = body + text + lines[index][len(body) :]
-
-    def remove_from_value(self, line: IniLine, entry: str) -> None:
-        """Remove an entry from the list, separated by colons, that begins at ``line``."""
-        lines = self.files[line.file]
-        lines[line.row] = re.sub(rf"(=\s*){re.escape(entry)}:", r"\1", lines[line.row], count=1)
-        for index in range(line.row, self._after(line.file, line.row)):
-            lines[index] = re.sub(rf":{re.escape(entry)}(?=[:\s]|$)", "", lines[index])
+        extent = slice(line.row, self._after(line.file, line.row))
+        users = [text.rstrip("\r\n") for text in lines[extent]]
+        ends = [text[len(kept) :] for text, kept in zip(lines[extent], users)]
+        if max(map(len, users)) + len(WAS) > LONGEST_BLOCK:
+            raise IniError(f"{line.location}: {key} is too long; break it with a backslash")
+        ours = broken_line(f"{key} = {value}")
+        begin, *block, last = between_marks(words, [*(WAS + text for text in users), *ours])
+        end = line_end(lines)
+        kept_ends = [text_end or end for text_end in ends] + [end] * len(ours)
+        block = [text + text_end for text, text_end in zip(block, kept_ends)]
+        lines[extent] = [begin + end, *block, last + ends[-1]]
 
     def blocks(self) -> list[list[IniLine]]:
-        """Return the marked blocks, markers included, of the INI and its included files."""
+        """Return the blocks, markers included, of the INI and its included files."""
         blocks: list[list[IniLine]] = []
-        block: list[IniLine] = []
+        inside = False
         for line in self.lines():
             begins, ends = map(line.text.startswith, (BEGIN_MARK, END_MARK))
-            if begins and block:
-                break
-            if ends and not block:
+            if (begins and inside) or (ends and not inside):
+                raise unpaired(line)
+            if begins:
+                blocks.append([])
+            if begins or inside:
+                blocks[-1].append(line)
+            if ends and line.text == END_MARK:
+                cure = f"by itself first: python3 g12/python/g12 uninstall {self.path}"
                 raise IniError(
-                    f'{line.location}: the line "{BEGIN_MARK}" that begins this is missing: '
-                    "put it in front of the first line that install wrote"
+                    f"{line.location}: an earlier version wrote this: take it out {cure}"
                 )
-            if begins or block:
-                block.append(line)
-            if ends:
-                blocks.append(block)
-                block = []
-        if block:
-            raise IniError(
-                f'{block[0].location}: the line "{END_MARK}" that ends this is missing: '
-                "put it after the last line that install wrote there"
-            )
+            inside = (inside or begins) and not ends
+        if inside:
+            raise unpaired(blocks[-1][0])
         return blocks
 
-    def remove(self, removed: Sequence[IniLine]) -> None:
+    def words(self) -> list[str]:
+        """Return the words of ``install`` in its blocks, each once."""
+        found = (word for block in self.blocks()
+                 for word in block[0].text[len(BEGIN_MARK) :].split())  # fmt: skip
+        return list(dict.fromkeys(found))
+
+    def take_out(self, shared: Sequence[Path] = ()) -> list[IniLine]:
+        """Remove the blocks, but for those in the files ``shared``; return the user's lines there.
+
+        A header of ours stays where the section has other entries by now.
+        """
+        users: list[IniLine] = []
+        removed: list[IniLine] = []
+        for first, *lines, last in self.blocks():
+            if first.file in shared:
+                continue
+            digests = set(last.text[len(END_MARK) :].split())
+            removed += [first, last]
+            for line in lines:
+                own = digest_of(line.text) in digests
+                (removed if own and not line.text.startswith(WAS) else users).append(line)
+        for line in (each for each in removed if each.text.startswith("[")):
+            others = [each for each in self.section(line.text[1:-1]) if each not in removed]
+            if any(key_and_value(each.text)[0] for each in others):
+                removed.remove(line)
+        for line in (each for each in users if each.text.startswith(WAS)):
+            self.files[line.file][line.row] = self.files[line.file][line.row][len(WAS) :]
         for file in {line.file for line in removed}:
-            indices = {line.row for line in removed if line.file == file}
-            self.files[file] = without(self.files[file], indices)
+            self._remove(file, {line.row for line in removed if line.file == file})
+        return [line for line in users if not line.text.startswith(WAS)]
+
+    def _remove(self, file: Path, rows: set[int]) -> None:
+        """Remove lines; a missing last line end remains missing."""
+        lines = self.files[file]
+        kept = [line for row, line in enumerate(lines) if row not in rows]
+        if kept and len(lines) - 1 in rows and not lines[-1].endswith("\n"):
+            kept[-1] = kept[-1].rstrip("\r\n")
+        self.files[file] = kept
+
+
+def unpaired(line: IniLine) -> IniError:
+    cure = "put it back, or take out what install wrote there"
+    return IniError(f"{line.location}: a marker of install without its other one: {cure}")
 
 
 def other_inis(text: IniText) -> Iterator[IniText]:

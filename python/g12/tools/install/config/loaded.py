@@ -22,20 +22,14 @@ ANSWER = "G12 CONFIG "
 QUESTION = f"""\
 def g12_config():
     import json, sys
-    main = vars(sys.modules["__main__"])
-    def functions(name):
-        items = vars(main[name]).items() if hasattr(main.get(name), "__dict__") else ()
-        return {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}}
-    return {ANSWER!r} + json.dumps({{
-        "remap": functions("remap"),
-        "oword": functions("oword"),
-        "remap_file": getattr(main.get("remap"), "__file__", None),
-        "package": getattr(sys.modules.get("g12"), "__file__", None),
-    }})
+    remap = vars(sys.modules["__main__"]).get("remap")
+    items = vars(remap).items() if hasattr(remap, "__dict__") else ()
+    functions = {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}}
+    package = getattr(sys.modules.get("g12"), "__file__", None)
+    return {ANSWER!r} + json.dumps({{"remap": functions, "package": package}})
 print(g12_config(), flush=True)
 """
-UNUSED = ("G99.8", "M20", "M999")  # codes that no LinuxCNC has
-HIGH_M = 200  # from this one on, the error for an unknown M code differs
+UNKNOWN = "Unknown"  # begins LinuxCNC's error for a G code that it does not have
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
@@ -44,14 +38,12 @@ MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 class Python:
     """The definitions of the machine's Python modules in the interpreter.
 
-    ``remap`` and ``oword`` map the functions of these modules to the module that made them, and
-    are empty if the config has none. ``package`` is the folder of the package g12 in use.
-    ``error`` is the exception that stopped the modules, with its file and line.
+    ``remap`` maps the functions of that module to the module that made them, and is empty if the
+    config has none. ``package`` is the folder of the package g12 in use. ``error`` is the exception
+    that stopped the modules, with its file and line.
     """
 
     remap: dict[str, str | None] = field(default_factory=dict)
-    oword: dict[str, str | None] = field(default_factory=dict)
-    remap_file: str | None = None
     package: Path | None = None
     error: str | None = None
 
@@ -132,7 +124,7 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
             python = python_of(tracer)
-            codes = {code.remap.code for code in codes_of(remaps)}
+            codes = {code.remap.code for code in codes_of(remaps) if code.remap.number[0] == "G"}
             if python.error:  # then LinuxCNC 2.9.0~pre1 may crash in the second program
                 codes = set()
             owned = frozenset(code for code in codes if is_owned(tracer, code))
@@ -142,14 +134,9 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
-    """Return whether a code is LinuxCNC's own; the INI must have no REMAP line for it.
-
-    LinuxCNC's error for an unknown M code, unlike that for a G code, ends with the code.
-    """
-    letter, number = code[:1].upper(), float(code[1:])
-    unused = UNUSED[0] if letter == "G" else UNUSED[1 + (number >= HIGH_M)]
-    error, unknown = (tracer.trace_text([text]).error for text in (code, unused))
-    return error is None or error.text.replace(code.upper(), unused) != unknown.text
+    """Return whether a G code is LinuxCNC's own; the INI must have no REMAP line for it."""
+    error = tracer.trace_text([code]).error
+    return error is None or not error.text.startswith(UNKNOWN)
 
 
 def python_of(tracer: Tracer) -> Python:

@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The package's pages on a machine's screen: the lines that show them, and the checks.
+"""The package on a machine's screen: ngcgui's forms, the Cycles page, a lathe's face; the checks.
 
 A page is a file of GladeVCP. It is a tab where the screen has a place for tabs, else a window of
-its own. Some screens show the same by a key of their own.
+its own. Some screens show the same by a key of their own. AXIS loads ngcgui as a Tcl package, some
+screens of QtVCP contain one, GladeVCP makes one from `forms.ui`.
 """
 
-import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.tools.install.config.features import AXES_NEEDED, INCLUDES, ROOT
-from g12.tools.install.config.findings import ConfigFinding, note, problem
-from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.lengths import is_inch
+from g12.tools.forms.table import FORMS
+from g12.tools.install.config.features import INCLUDES, ON_LATHE, ROOT
+from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
+from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 
 
 class Page(NamedTuple):
@@ -40,6 +42,7 @@ class OwnKey(NamedTuple):
     cure: str
 
 
+Lines = dict[str, list[str]]  # to write, by their sections
 INCLUDE = INCLUDES.relative_to(ROOT).as_posix()
 NGCGUI_PAGE = Page("Forms", f"{INCLUDE}/forms.ui")
 CYCLES = Page("Cycles", f"{INCLUDE}/cycles.ui", "python/g12/tools/cycles_page/gtk_view.py")
@@ -67,19 +70,11 @@ TAB_LOCATIONS = {  # start of a screen's name: its widget for tabs, "" if it has
     "woodpecker": "tabWidget_utilities",
     "qtaxis": "rightTab",
 }
+WITH_PREVIEW = (AXIS, "gmoccapy", "gscreen", QTVCP, "touchy")
 FACE_SCREENS = (AXIS, "gmoccapy", "touchy")  # they show a lathe's XZ plane alone
-TAB = "gladevcp -x {XID} "
-OWN_WINDOW = "loadusr gladevcp -c "  # HAL ends it with LinuxCNC
-OWN_FILES = re.compile(r"/(cycles\.ui|cycles_page/gtk_view\.py|face_view\.ui|axis_face\.py"
-                       r"|include/probe_basic/?)$")  # fmt: skip
-GLADE_FILES = r"(-u \S+/gtk_view\.py )?\S+/(forms|cycles|face_view)\.ui"
-SCREEN_LINE = re.compile(
-    r"EMBED_TAB_NAME = (Forms|Cycles|Face)"
-    r"|EMBED_TAB_LOCATION = (ntb_user_tabs|tabWidget_utilities|rightTab)"
-    rf"|EMBED_TAB_COMMAND = gladevcp -x \{{XID\}} {GLADE_FILES}"
-    rf"|HALCMD = loadusr gladevcp -c (forms|cycles) {GLADE_FILES}"
-    r"|USER_COMMAND_FILE = \S+/axis_face\.py|USER_TABS_PATH = \S+/probe_basic/"
-)
+NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
+QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
+HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
 
 
 def words_of(config: Config) -> list[str]:
@@ -111,8 +106,11 @@ def glade_files(config: Config) -> list[str]:
     return [word for command in commands for word in command.split() if word.endswith(".ui")]
 
 
-def page_lines(config: Config, page: Page, prefix: str) -> dict[str, list[str]]:
-    """Return the lines, by section, that show a page; none where the user has them or others."""
+# A page.
+
+
+def page_lines(config: Config, page: Page, prefix: str) -> Lines:
+    """Return the lines that show a page; none where the user has them or others."""
     own = OWN_KEYS.get((screen_of(config), page))
     if own:
         present = config.ini.get("DISPLAY", own.key)
@@ -122,53 +120,30 @@ def page_lines(config: Config, page: Page, prefix: str) -> dict[str, list[str]]:
     return tab_or_window(config, page, prefix)
 
 
-def window_line(page: Page, prefix: str) -> dict[str, list[str]]:
-    return {"HAL": [f"HALCMD = {OWN_WINDOW}{page.name.lower()} {page.command(prefix)}"]}
-
-
-def tab_or_window(config: Config, page: Page, prefix: str) -> dict[str, list[str]]:
+def tab_or_window(config: Config, page: Page, prefix: str) -> Lines:
     """Return the lines of a page's tab, or of its window where the screen has no tabs.
 
     Screens pair names and locations by number: if a tab of the user has none, this one has none.
-    QtVCP would not show it then: there it gets a window.
+    QtVCP would not show it then, nor ngcgui, which needs the width: there it gets a window, which
+    HAL ends with LinuxCNC.
     """
-    location = tab_location(config)
+    location, is_qtvcp = tab_location(config), screen_of(config) == QTVCP
     locations, names = (config.ini.all("DISPLAY", f"EMBED_TAB_{key}")
                         for key in ("LOCATION", "NAME"))  # fmt: skip
     paired = len(locations) == len(names)
-    if location is None or (screen_of(config) == QTVCP and not paired):
-        return window_line(page, prefix)
+    if location is None or (is_qtvcp and (page == NGCGUI_PAGE or not paired)):
+        window = f"loadusr gladevcp -c {page.name.lower()} {page.command(prefix)}"
+        return {"HAL": [f"HALCMD = {window}"]}
     place = [f"EMBED_TAB_LOCATION = {location}"] if location and paired else []
-    command = f"EMBED_TAB_COMMAND = {TAB}{page.command(prefix)}"
+    command = f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} {page.command(prefix)}"
     return {"DISPLAY": [f"EMBED_TAB_NAME = {page.name}", *place, command]}
-
-
-def screen_findings(config: Config) -> Iterator[ConfigFinding]:
-    yield from missing_files(config)
-    if is_for_face(config) and not config.features.keys().isdisjoint(AXES_NEEDED):
-        yield from key_taken(config, FACE)
-
-
-def missing_files(config: Config) -> Iterator[ConfigFinding]:
-    """Find lines that name a page's file where it is not."""
-    keys = ("EMBED_TAB_COMMAND", "USER_COMMAND_FILE", "USER_TABS_PATH")
-    entries = [("DISPLAY", key) for key in keys] + [("HAL", "HALCMD")]
-    for section, key in entries:
-        for value in config.ini.all(section, key):
-            for word in filter(OWN_FILES.search, value.split()):
-                if not folder_from_ini(config.ini, word).exists():
-                    yield problem(
-                        "screen",
-                        f"[{section}] {key}: {word} is not there, the screen cannot show it",
-                        "name it where the package is (g12/…), or run install again",
-                    )
 
 
 def key_taken(config: Config, page: Page) -> Iterator[ConfigFinding]:
     """Report the user's own file or folder, which takes the key that would show a page."""
     own = OWN_KEYS.get((screen_of(config), page))
     value = config.ini.get("DISPLAY", own.key) if own else None
-    if not own or not value or OWN_FILES.search(value):
+    if not own or not value or value.endswith(own.value):
         return
     place = folder_from_ini(config.ini, value)
     within = (place / own.mark).exists()
@@ -178,4 +153,108 @@ def key_taken(config: Config, page: Page) -> Iterator[ConfigFinding]:
             f"[DISPLAY] {own.key} = {value} is yours and stays: the screen does not show "
             f"{page.name}",
             own.cure,
+        )
+
+
+# The forms of ngcgui.
+
+
+def form_files(config: Config, features: Iterable[str]) -> list[str]:
+    """Return the files of the features' forms, in the machine's unit."""
+    unit = "inch" if is_inch(config.ini.mm) else "mm"
+    forms = (form for feature in features for form in FORMS if form.feature == feature)
+    return [f"form_{form.name}_{unit}.ngc" for form in forms]
+
+
+def form_lines(config: Config, features: Sequence[str], prefix: str) -> Lines:
+    """Return the missing lines that show the features' forms."""
+    present = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
+    lines, folder = ngcgui_lines(config, prefix), ""
+    path = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+    if has_own_ngcgui(config) and path not in (None, f"{prefix}/ngc"):  # QtVCP searches that alone
+        folder = f"{HERE / Path(prefix)}/ngc/"
+    pages = [f"NGCGUI_SUBFILE = {folder}{name}" for name in form_files(config, features)
+             if name not in present]  # fmt: skip
+    return {**lines, "DISPLAY": [*lines.get("DISPLAY", []), *pages]}
+
+
+def has_own_ngcgui(config: Config) -> bool:
+    """Return whether a screen is one of QtVCP that contains ngcgui."""
+    names = words_of(config)[1:]
+    return screen_of(config) == QTVCP and any(map(is_with_ngcgui, names))
+
+
+def is_with_ngcgui(name: str) -> bool:
+    return name.startswith(QTVCP_WITH_NGCGUI)
+
+
+def ngcgui_lines(config: Config, prefix: str) -> Lines:
+    """Return the lines that make a screen show ngcgui; none where it does already."""
+    if screen_of(config) == AXIS:
+        packages = [value.split()[:1] for value in config.ini.all("DISPLAY", "TKPKG")]
+        return {} if [NGCGUI] in packages else {"DISPLAY": [f"TKPKG = {NGCGUI} 1.0"]}
+    if has_own_ngcgui(config):
+        present = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
+        return {} if present else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
+    files = [folder_from_ini(config.ini, name) for name in glade_files(config)]
+    if any(file.is_file() and b"PyNgcGui" in file.read_bytes() for file in files):
+        return {}
+    return page_lines(config, NGCGUI_PAGE, prefix)
+
+
+def forms_shown(config: Config) -> list[str]:
+    """Return the package's forms that a config names, without ``.ngc``."""
+    names = (Path(value).name for value in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"))
+    return [name.removesuffix(".ngc") for name in names if name.startswith("form_")]
+
+
+# Checks.
+
+
+def screen_findings(config: Config) -> Iterator[ConfigFinding]:
+    if "C" in config.ini.axes and not config.features.keys().isdisjoint(ON_LATHE):
+        yield from key_taken(config, FACE) if is_for_face(config) else ()
+        yield from part_not_turned(config)
+    shown = forms_shown(config)
+    for form in shown:
+        yield from form_findings(config, form)
+    for section, lines in ngcgui_lines(config, "g12").items() if shown else ():
+        yield problem(
+            "form",
+            f"{screen_of(config)} shows no forms: nothing makes it show ngcgui",
+            f"have: [{section}] {', '.join(lines)}",
+        )
+
+
+def geometry_for(axes: str) -> str:
+    """Return the GEOMETRY of a lathe's axes: C, which rotates the part, before the slides."""
+    return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
+
+
+def part_not_turned(config: Config) -> Iterator[ConfigFinding]:
+    found = config.ini.get("DISPLAY", "GEOMETRY") or ""
+    turns_first = 0 <= found.upper().find("C") < found.upper().find("X")
+    if screen_of(config) in WITH_PREVIEW and not turns_first:
+        yield warning(
+            "geometry",
+            f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a "
+            "section as a line to and fro along X",
+            f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
+        )
+
+
+def form_findings(config: Config, form: str) -> Iterator[ConfigFinding]:
+    name = form.removeprefix("form_").rpartition("_")[0]
+    own = [each.feature for each in FORMS if each.name == name]
+    if not subs_named(config.ini, form):
+        yield problem(
+            "form",
+            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc is in none of the folders of SUBROUTINE_PATH",
+            "add the package's folder ngc to SUBROUTINE_PATH, or correct the name",
+        )
+    elif own and config.features.keys().isdisjoint(own):
+        yield problem(
+            "form",
+            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc: the codes of {own[0]} are not set up here",
+            "take the line out, or install that feature",
         )

@@ -3,17 +3,16 @@
 
 import re
 import shutil
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from functools import cache
-from itertools import chain, product
+from itertools import chain
 from pathlib import Path
 from typing import NamedTuple
 
 from g12.machine_ini import continued
-from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config, folder_from_ini
 
-ARROW = re.compile(r"\s<?=>?\s")
+ARROW = re.compile(r"<?=>?")
 FROM_INI = re.compile(r"\[(\w+)\]\(?(\w+)\)?")
 LIBRARY = "LIB:"  # before the name of a file of LinuxCNC's own
 
@@ -81,22 +80,18 @@ def names(lines: list[HalLine], *words: str) -> bool:
     return any(word in line.text for line in lines for word in words)
 
 
+def words_of(text: str) -> list[str]:
+    """Return the words of a HAL line, its command first, without arrows."""
+    return [word for word in text.split() if not ARROW.fullmatch(word)] or [""]
+
+
 def signals(config: Config, lines: Iterable[HalLine]) -> dict[str, str]:
     """Return the signal of each pin that HAL lines connect, with the INI's values in both."""
     found = {}
     for text, _ in lines:
-        command, *words = ARROW.sub(" ", substituted(text, config)).split() or [""]
+        command, *words = words_of(substituted(text, config))
         if command == "linkps":
             words.reverse()
         if command in ("net", "linkps", "linksp") and words:
             found.update(dict.fromkeys(words[1:], words[0]))
     return found
-
-
-def pins_taken(
-    lines: Iterable[HalLine], pins: Iterable[str], owner: str, cure: str
-) -> Iterator[ConfigFinding]:
-    """Find pins in HAL lines that belong to ``owner``."""
-    for (text, location), pin in product(lines, pins):
-        if pin in text.split():
-            yield problem("pin-taken", f"{location}: {text}: {pin} {owner}", cure)

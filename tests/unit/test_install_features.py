@@ -1,0 +1,423 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The lines that `install` writes for screens, programs, kinematics and a spindle as C.
+
+Each goes in, is found in order by `check`, and comes out again; without LinuxCNC.
+"""
+
+import re
+
+import pytest
+
+from g12.tools.errors import UsageError
+from g12.tools.install.config import features
+from g12.tools.install.config.filters import filter_findings, installed_programs
+from g12.tools.install.config.findings import Refused
+from g12.tools.install.config.screen import screen_findings
+from g12.tools.install.installation import question_of
+from g12.tools.install.lathe import kinematics
+from g12.tools.install.lathe.kinematics import kinematics_findings
+from g12.tools.install.lathe.pins import pins_taken
+from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
+from g12.tools.translate.blocks.control import read_control
+from support.small_configs import (
+    FILES_OF_PAGES,
+    LATHE,
+    MILL,
+    TURNING,
+    TURNING_HAL,
+    config_of,
+    content_of,
+    files_of_package,
+    package_of,
+    planned,
+    put_in,
+    restored,
+    with_lines,
+    write_config,
+)
+
+FORMS = ("form_haas_mm", "form_haas_inch", "form_circle_mill_mm")
+INCLUDES = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
+GUARDS = [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
+small_package = package_of(
+    {"python/g12/__init__.py": b"", "python/g12/__main__.py": b""}
+    | {f"ngc/{name}.ngc": b"(a sub)\n" for name in FORMS}
+    | files_of_package(*FILES_OF_PAGES, *INCLUDES, *GUARDS, "python/toplevel.py")
+)
+
+
+def refused(ini, *names, **options):
+    """Return the findings of a refusal, which writes nothing."""
+    before = content_of(ini.parent)
+    with pytest.raises(Refused) as caught:
+        put_in(ini, *names, **options)
+    assert content_of(ini.parent) == before
+    return caught.value.args
+
+
+# Screens.
+
+AXIS = f"[DISPLAY]\nDISPLAY = axis\nCYCLE_TIME = 0.1\n\n{MILL}"
+GMOCCAPY, TOUCHY, TK, PROBE_BASIC, QTVCP, QTAXIS, QTLATHE = (
+    AXIS.replace("axis", name)
+    for name in ("gmoccapy", "touchy", "tklinuxcnc", "probe_basic", "qtvcp qtdragon",
+                 "qtvcp -d qtaxis", "qtvcp qtlathe")
+)  # fmt: skip
+OWN_TAB = with_lines(GMOCCAPY, "DISPLAY", "EMBED_TAB_NAME = Mine\nEMBED_TAB_COMMAND = mine\n")
+OWN_PATH, CWD = "NGCGUI_SUBFILE_PATH = ../nc_files\n", "/proc/self/cwd/g12/ngc/"
+PAGES = "NGCGUI_SUBFILE = form_haas_mm.ngc\nNGCGUI_SUBFILE = form_circle_mill_mm.ngc\n"
+GLADE = "EMBED_TAB_COMMAND = gladevcp -x {XID} "
+WINDOW = "HALCMD = loadusr gladevcp -c "
+FORMS_UI = "g12/configs/include/forms.ui\n"
+CYCLES_UI = "-u g12/python/g12/tools/cycles_page/gtk_view.py g12/configs/include/cycles.ui\n"
+QTDRAGON_TAB = "EMBED_TAB_LOCATION = tabWidget_utilities\n"
+ON_LATHE = f"[DISPLAY]\nDISPLAY = axis\nLATHE = 1\n\n{LATHE}"
+MILL_CODES = ("haas", "circle-mill")
+SCREENS = [  # a config, features, lines that it gets
+    (AXIS, (*MILL_CODES, "forms"), f"TKPKG = Ngcgui 1.0\n{PAGES}"),
+    (QTVCP, (*MILL_CODES, "forms"), f"NGCGUI_SUBFILE_PATH = g12/ngc\n{PAGES}"),
+    (with_lines(QTVCP, "DISPLAY", OWN_PATH), (*MILL_CODES, "forms"),
+     PAGES.replace("form_", f"{CWD}form_")),
+    (GMOCCAPY, (*MILL_CODES, "forms"), "EMBED_TAB_NAME = Forms\n"
+     f"EMBED_TAB_LOCATION = ntb_user_tabs\n{GLADE}{FORMS_UI}{PAGES}"),
+    (OWN_TAB, (*MILL_CODES, "forms"), f"EMBED_TAB_NAME = Forms\n{GLADE}{FORMS_UI}{PAGES}"),
+    (QTAXIS, (*MILL_CODES, "forms"), f"{WINDOW}forms {FORMS_UI}"),
+    (TK, (*MILL_CODES, "forms"), f"{WINDOW}forms {FORMS_UI}"),
+    (AXIS.replace("= mm", "= inch"), ("haas", "forms"), "NGCGUI_SUBFILE = form_haas_inch.ngc\n"),
+    (TOUCHY, ("haas", "cycles-page"), f"EMBED_TAB_NAME = Cycles\n{GLADE}{CYCLES_UI}"),
+    (QTVCP, ("haas", "cycles-page"), f"EMBED_TAB_NAME = Cycles\n{QTDRAGON_TAB}{GLADE}{CYCLES_UI}"),
+    (QTAXIS, ("haas", "cycles-page"), f"EMBED_TAB_LOCATION = rightTab\n{GLADE}{CYCLES_UI}"),
+    (OWN_TAB.replace("gmoccapy", "qtvcp qtdragon"), ("haas", "cycles-page"),
+     f"{WINDOW}cycles {CYCLES_UI}"),
+    (QTLATHE, ("haas", "cycles-page"), f"{WINDOW}cycles {CYCLES_UI}"),
+    (PROBE_BASIC, ("haas", "cycles-page"), "USER_TABS_PATH = g12/configs/include/probe_basic/\n"),
+    (ON_LATHE, ("polar",), "USER_COMMAND_FILE = g12/configs/include/axis_face.py\n"
+     "GEOMETRY = CXZ!\n"),
+    (ON_LATHE.replace("axis", "gmoccapy"), ("cylinder",), "EMBED_TAB_NAME = Face\n"
+     f"EMBED_TAB_LOCATION = ntb_user_tabs\n{GLADE}g12/configs/include/face_view.ui\n"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("screen", "names", "lines"), SCREENS)
+def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, names, lines):
+    ini = write_config(tmp_path, screen)
+    with restored(ini):
+        put_in(ini, *names)
+        text = ini.read_text()
+        assert text.count(lines) == 1 and text.count("[DISPLAY]") == 1
+        assert list(screen_findings(config_of(ini))) == []
+        assert put_in(ini, names[-1]) == []
+
+
+def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
+    own = "TKPKG = Ngcgui 1.0\nNGCGUI_SUBFILE = simp.ngc\nNGCGUI_SUBFILE = form_haas_mm.ngc\n"
+    ini = write_config(tmp_path, with_lines(AXIS, "DISPLAY", own))
+    put_in(ini, "haas", "forms")
+    text = ini.read_text()
+    assert text.count("TKPKG") == text.count("form_haas_mm") == 1
+    geometry = with_lines(ON_LATHE, "DISPLAY", "GEOMETRY = XZ\n")
+    put_in(write_config(tmp_path, geometry, "lathe.ini"), "polar")
+    assert (tmp_path / "lathe.ini").read_text().count("GEOMETRY") == 1
+
+
+@pytest.mark.parametrize("screen", [ON_LATHE.replace("LATHE = 1\n", ""), QTVCP + LATHE])
+def test_other_screens_show_the_face_already(tmp_path, screen):
+    ini = write_config(tmp_path, screen)
+    put_in(ini, "polar")
+    assert "face" not in ini.read_text()
+
+
+def test_a_file_of_the_users_own_in_the_place_of_the_face_is_named(tmp_path):
+    ini = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", "USER_COMMAND_FILE = own.py\n"),
+                       own_py="print()\n")  # fmt: skip
+    put_in(ini, "polar")
+    (said,) = screen_findings(config_of(ini))
+    assert "USER_COMMAND_FILE = own.py is yours and stays" in said.text
+    (tmp_path / "own.py").write_text("# axis_face.py\n")
+    assert list(screen_findings(config_of(ini))) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "names", "why"),
+    [
+        (MILL, ["haas", "forms"], "[DISPLAY] DISPLAY is missing"),
+        (AXIS, ["cycles-page"], "no code here has a form"),
+        (with_lines(PROBE_BASIC, "DISPLAY", "USER_TABS_PATH = own/\n"), ["haas", "cycles-page"],
+         "USER_TABS_PATH = own/ is yours"),
+    ],
+)  # fmt: skip
+def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why):
+    assert why in refused(write_config(tmp_path, text), *names)[0].text
+
+
+# Programs of other controls.
+
+COMMAND = "python3 g12/python/g12 translate --control"
+
+
+@pytest.mark.parametrize(
+    ("control", "suffixes", "options"),
+    [
+        ("haas-mill", "nc NC", " --decimals least --units inch"),
+        ("fanuc-mill", "nc NC tap TAP", ""),
+        ("okuma-lathe", "min MIN nc NC", ""),
+        ("mazak-integrex", "eia EIA nc NC", ""),
+    ],
+)
+def test_each_usual_extension_is_opened_in_both_cases(tmp_path, control, suffixes, options):
+    ini = write_config(tmp_path)
+    with restored(ini):
+        put_in(ini, f"programs-{control}", numbers=options)
+        put_in(ini, "circle-mill", numbers=options)
+        filters = ini.read_text().partition("[FILTER]\n")[2].partition("# <<<")[0]
+        shown = ",".join(f".{suffix}" for suffix in suffixes.split())
+        assert filters.splitlines() == [
+            f"PROGRAM_EXTENSION = {shown} Programs of {control}",
+            *(f"{suffix} = {COMMAND} {control}{options}" for suffix in suffixes.split()),
+        ]
+        assert installed_programs(config_of(ini)) == [control]
+        assert list(filter_findings(config_of(ini))) == []
+
+
+def test_a_filter_of_the_users_own_for_a_suffix_is_refused(tmp_path):
+    ini = write_config(tmp_path, f"{MILL}\n[FILTER]\nTAP = mine\n")
+    (finding,) = refused(ini, "programs-fanuc-mill")
+    assert finding.text == "[FILTER] TAP = mine is there already"
+
+
+@pytest.mark.parametrize(
+    ("spindles", "control", "settings"),
+    [
+        (2, "doosan-lathe", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
+        (1, "mill-on-face", "[G12]\nPOLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
+    ],
+)
+def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings):
+    ini = write_config(tmp_path, LATHE.replace("[TRAJ]\n", f"[TRAJ]\nSPINDLES = {spindles}\n"))
+    with restored(ini):
+        put_in(ini, f"programs-{control}")
+        assert settings in ini.read_text()
+        assert put_in(ini, f"programs-{control}") == []
+
+
+def test_what_a_number_without_a_point_is_is_asked_once():
+    fanuc = read_control("fanuc-lathe")
+    (question,) = question_of(fanuc, "programs-fanuc-lathe")
+    assert question.startswith("asked: X1500 has no decimal point. With --decimals least it is 1.5")
+    assert list(question_of(fanuc, "programs-fanuc-lathe --decimals whole")) == []
+    assert list(question_of(read_control("mill-on-face"), "")) == []
+
+
+# The kinematics of the face, and a spindle that becomes C.
+
+PINS = """\
+velocity = "drive.velocity"
+velocity_scale = 60
+position = "drive.position"
+holds = "drive.mode"
+brake = "drive.brake"
+"""
+TURNS_ONLY = TURNING_HAL.replace("net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb\n", "")
+
+
+@pytest.fixture(autouse=True)
+def module(tmp_path, monkeypatch):
+    """LinuxCNC has the module of the kinematics."""
+    module = tmp_path.parent / "polar_xzc.so"
+    module.write_bytes(kinematics.NEWEST_PIN)
+    monkeypatch.setattr(kinematics, "module_file", lambda: module)
+
+
+def lathe_in(folder, text=TURNING, hal=TURNING_HAL):
+    return write_config(folder, text, "lathe.ini", motion_hal=hal, later_hal="# nothing\n")
+
+
+def pins_of(folder, text=PINS):
+    path = folder.parent / f"{folder.name}.toml"
+    path.write_text(text)
+    return read_pins(path)
+
+
+def found(ini):
+    config = config_of(ini)
+    rules = (spindle_c_findings, kinematics_findings, pins_taken)
+    return [finding for rule in rules for finding in rule(config)]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"[DISPLAY]\nDISPLAY = axis\n{TURNING}",
+        TURNING.replace("\n", "\r\n"),
+        TURNING.rstrip() + "\n[G12]\nPOLAR_KINEMATICS = 0 \nPOLAR_TOOL_OFFSET = 2",
+    ],
+)
+@pytest.mark.parametrize(
+    "steps",
+    [
+        [["polar", "polar-kinematics"]],
+        [["polar", "spindle-c"], ["polar-kinematics"]],
+        [["polar-g12.3", "polar-kinematics"], ["spindle-c"]],
+    ],
+)
+def test_kinematics_and_spindle_go_in_in_each_order_and_out(tmp_path, text, steps):
+    ini = lathe_in(tmp_path, text)
+    with restored(ini):
+        for names in steps:
+            put_in(ini, *names, pins=pins_of(tmp_path) if "spindle-c" in names else None)
+        assert found(ini) == []
+        ini_now = config_of(ini).ini
+        assert ini_now.axes == "XYZC"
+        assert ini_now.get("SPINDLE_C", "ENABLED") in (None, "polar-enabled")
+        assert ini_now.get("DISPLAY", "GEOMETRY") in (None, "CXYZ!")
+
+
+def test_what_the_kinematics_write(tmp_path):
+    ini = lathe_in(tmp_path)
+    put_in(ini, "polar", "polar-kinematics")
+    text = ini.read_text()
+    for lines in (
+        "# was: KINEMATICS = trivkins coordinates=xzc kinstype=B\n"
+        "KINEMATICS = polar_xzc coordinates=XZC\n# <<<",
+        "# was: COORDINATES =   X Z C\nCOORDINATES = X Y Z C\n# <<<",
+        "# was: MIN_LIMIT = -5.0\nMIN_LIMIT = -200\n# <<<",
+        "# was: MAX_ACCELERATION = 1000\nMAX_ACCELERATION = 700\n# <<<",
+        "[AXIS_Y]\nMIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
+        "HALFILE = g12/configs/kinematics/polar_kinematics.hal\n# <<<",
+        "[G12]\nPOLAR_KINEMATICS = 1\n",
+    ):
+        assert lines in text
+    assert "[JOINT_0]\nMIN_LIMIT = -5\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACC" in text
+
+
+@pytest.mark.parametrize(
+    ("usual", "unusual", "says"),
+    [
+        ("trivkins coordinates=xzc kinstype=B", "trivkins", "is not trivkins coordinates=…"),
+        ("coordinates=xzc", "coordinates=xyzc", "without Y"),
+        ("COORDINATES =   X Z C", "COORDINATES = X Y Z C", "COORDINATES = X Y Z C is not"),
+        ("MAX_VELOCITY = 360\n", "", "[AXIS_C] has no MAX_VELOCITY"),
+        ("MAX_LIMIT = 200.0", "MAX_LIMIT = 150", "MAX_LIMIT 150 and 200"),
+        ("[AXIS_C]", "[AXIS_Y]\nMAX_LIMIT = 1\n[AXIS_C]", "there is an [AXIS_Y]"),
+        ("HALFILE = motion.hal", "HALFILE = motion.tcl", "motion.tcl is no HAL file"),
+    ],
+)
+def test_an_unusual_lathe_keeps_its_kinematics(tmp_path, usual, unusual, says):
+    assert usual in TURNING
+    findings = refused(lathe_in(tmp_path, TURNING.replace(usual, unusual, 1)), "polar",
+                       "polar-kinematics")  # fmt: skip
+    assert {finding.kind for finding in findings} == {"kinematics"}
+    assert any(says in finding.text for finding in findings)
+
+
+def test_without_g12_1_the_kinematics_say_how(tmp_path):
+    (finding,) = refused(lathe_in(tmp_path), "polar-kinematics")
+    assert "--with polar polar-kinematics" in finding.cure
+
+
+def test_what_a_spindle_that_becomes_c_gets(tmp_path):
+    ini = lathe_in(tmp_path)
+    put_in(ini, "spindle-c", pins=pins_of(tmp_path))
+    text = ini.read_text()
+    for lines in (
+        "HALFILE = g12/configs/include/spindle_c.hal\n"
+        "HALCMD = unlinkp drive.velocity\nHALCMD = net spindle-c-velocity => drive.velocity\n",
+        "HALCMD = net spindle-c-brake => drive.brake\n"
+        "HALCMD = loadusr sh g12/configs/include/spindle_c_limits.sh\n",
+        "[SPINDLE_C]\nJOINT = 2\nTURNS = turns\nRPS = rps\nINDEX = index\n"
+        "REACHED = spindle-c-always\nENABLED = sc-enabled\n",
+        "COMMAND = c\n",
+        "VELOCITY_SCALE = 60\nPOSITION_SCALE = 1\n",
+    ):
+        assert lines in text
+    ini.write_text(text.replace("TOLERANCE = 0.02", "TOLERANCE = 0.2"))
+    put_in(ini, "polar")  # without the file of pins; the owner's value stays
+    assert config_of(ini).ini.all("SPINDLE_C", "TOLERANCE") == ["0.2"]
+    assert "VELOCITY_SCALE = 60\n" in ini.read_text() and found(ini) == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("trivkins coordinates=xzc", "trivkins coordinates=xza", "no joint is C alone"),
+        ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
+        ("HALFILE = motion.hal", "HALFILE = LIB:basic_sim.tcl",
+         "no HAL file connects spindle.0.index-enable (LIB:basic_sim.tcl is Tcl"),
+        ("loadrt [KINS]", "loadrt pid names=drive\nloadrt [KINS]",
+         'velocity = "drive.velocity": there is no such pin: LinuxCNC would not start'),
+    ],
+)  # fmt: skip
+def test_a_spindle_is_refused_for_what_the_machine_has(tmp_path, old, new, said):
+    ini = lathe_in(tmp_path, TURNING.replace(old, new), TURNING_HAL.replace(old, new))
+    findings = refused(ini, "spindle-c", pins=pins_of(tmp_path))
+    assert said in "".join(finding.text for finding in findings)
+
+
+def test_install_asks_for_the_pins(tmp_path):
+    (finding,) = refused(lathe_in(tmp_path), "spindle-c")
+    assert finding.kind == "pins" and "--pins spindle.toml" in finding.cure
+
+
+def without_c():
+    """Return a lathe's INI without C."""
+    text = TURNING
+    for old, new in (("xzc", "xz"), ("X Z C", "X Z"), ("JOINTS = 3", "JOINTS = 2")):
+        text = text.replace(old, new)
+    return text[: text.index("[AXIS_C]")]
+
+
+def said_to(folder, text):
+    """Return what install tells the owner of a lathe without C to write."""
+    (finding,) = refused(lathe_in(folder, text, TURNS_ONLY), "spindle-c", pins=pins_of(folder))
+    return finding.cure
+
+
+def test_a_lathe_without_c_is_told_its_lines_and_with_them_it_is_installed(tmp_path):
+    text = without_c()
+    first, *lines = said_to(tmp_path, text).splitlines()
+    assert "configs/spindle_c.md" in first
+    blank = lines.index("")
+    for line in lines[:blank]:
+        section, key, value = re.fullmatch(r"(\[\w+\]) (\w+) = (.*)", line).groups()
+        head, tail = text.split(section, 1)
+        text = head + section + re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", tail, count=1)
+    assert "KINEMATICS = trivkins coordinates=XZC kinstype=B\nJOINTS = 3\n" in text
+    assert "COORDINATES = X Z C\n" in text
+    ini = lathe_in(tmp_path, "\n".join((text, *lines[blank:], "")), TURNS_ONLY)
+    put_in(ini, "spindle-c", pins=pins_of(tmp_path))
+    assert found(ini) == []
+    simulated = (features.ROOT / "configs" / "sim" / "lathe_spindle_c_mm.ini").read_text()
+    assert "\n".join(lines[blank:]) in simulated  # that machine runs with these sections
+
+
+def test_only_what_is_missing_is_told(tmp_path):
+    cure = said_to(tmp_path, f"{without_c()}\n[JOINT_2]\nTYPE = ANGULAR\n")
+    assert "[AXIS_C]" in cure and "[JOINT_2]" not in cure
+    text = TURNING.replace("trivkins coordinates=xzc kinstype=B", "mykins")
+    assert said_to(tmp_path, text) == (
+        "make C a joint of its own, as the steps in configs/spindle_c.md say"
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("velocity = 'a'", "position, holds: missing"),
+        (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
+        (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (PINS.replace("60", "9" * 400), "velocity_scale = 9999"),
+        (f"{PINS}\ntimeout = -5", "timeout = -5: must be above 0"),
+        (f"{PINS}\nindex_speed = 0", "index_speed = 0: must not be 0"),
+        (f"{PINS}\ntolerance = nan", "tolerance = nan: must be 1e.09 at most"),
+        (PINS.replace('"drive.mode"', "3"), "holds is the name of a pin, not 3"),
+        ("velocity", "Expected .=. after a key"),
+    ],
+)
+def test_a_file_of_pins_that_says_something_else(tmp_path, text, said):
+    with pytest.raises(UsageError, match=said):
+        pins_of(tmp_path, text)
+
+
+def test_each_feature_has_a_first_step(tmp_path):
+    assert all(map(features.first_step, features.FEATURE_NAMES))
+    assert planned(write_config(tmp_path), "haas").codes == ["haas"]
