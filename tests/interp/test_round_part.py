@@ -31,7 +31,7 @@ RADII = (3.0, 25.0, 80.0)
 CONTOURS = 60
 
 mill = kept_tracer("mill_mm")
-mill_a = kept_tracer("mill_a_mm")
+mill_a = kept_tracer("mill_a_mm", overrides={"G12": {"CYLINDER_X": "refuse"}})
 mill_b = kept_tracer("mill_a_mm", overrides=WITH_B)
 reversed_a = kept_tracer("mill_a_mm", overrides={"G12": {"ROTARY_SENSE": "reversed"}})
 

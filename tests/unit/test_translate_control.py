@@ -9,7 +9,7 @@ from g12.tools.translate.listing import listing_of
 NAMES = [
     "colchester-lathe", "dmg-mori-lathe", "doosan-lathe", "fanuc-lathe", "fanuc-lathe-b",
     "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill", "mazak-integrex", "mazak-lathe",
-    "mill-on-face", "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe",
+    "mill-on-face", "mill-round-part", "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe",
     "takisawa-lathe", "yasnac-mill",
 ]  # fmt: skip
 
