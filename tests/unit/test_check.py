@@ -124,14 +124,11 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "have: GEOMETRY = CXZ!"),
     (GOOD + FORM, HAAS_FORM, "form", f"have: [DISPLAY] {TKPKG.strip()}"),
     (GOOD + FORM + TKPKG, {}, "form", "form_haas_mm.ngc is in none of the folders"),
-    (ON_LATHE + FORM + TKPKG + "GEOMETRY = CXZ!\n", HAAS_FORM, "form", "codes of haas are not set"),
     (GOOD + FORM.replace("axis", "gmoccapy"), HAAS_FORM, "form", "gmoccapy shows no forms"),
     (GOOD + f"{FILTER} haas-mill\n", {}, "filter", "nc is not for .NC files"),
     (GOOD + f"{FILTER} haas-mill\nNC = mine\n", {}, "filter", "nc is not for .NC files"),
     (GOOD + "[FILTER]\ndyn = python3 ngc/g12 dynapath\nDYN = python3 ngc/g12 dynapath\n",
      {"files": {"ngc__g12_x": ""}}, "filter filter", "ngc/g12 is not there"),
-    (GOOD + f"{FILTER} own.toml\nNC = python3 ngc translate --control own.toml\n",
-     {"files": {"own_toml": "colour = 1\n"}}, "filter filter", "own.toml:1: colour is no key"),
 ]  # fmt: skip
 
 
@@ -242,8 +239,6 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
     ("[AXIS_Y]", "[AXIS_Y]\nMAX_VELOCITY = 150", "face-axis", "MAX_VELOCITY is more"),
     ("MAX_ACCELERATION = 700\n#", "MAX_ACCELERATION = 1000\n#", "face-axis", "= 700 in both"),
     ("MAX_ACCELERATION = 700\n#", "MAX_ACCELERATION = 0\n#", "face-axis", "must be above 0"),
-    (GUARD, f"{GUARD}HALCMD = setp polar-xzc.tool-offset 0.02\n", "tool-offset",
-     "POLAR_TOOL_OFFSET = 0, but polar-xzc.tool-offset is 0.02"),
     (GUARD, f"{GUARD}HALCMD = net a => motion.adaptive-feed\n", "pin-taken",
      "HALCMD: net a => motion.adaptive-feed: motion.adaptive-feed is on polar"),
     ("later.hal\n", "later.hal\nHALCMD = loadrt trivkins\n", "kins", "loads trivkins"),
