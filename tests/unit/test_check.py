@@ -5,12 +5,11 @@ import json
 
 import pytest
 
-from g12.machine_ini import remap_from_value
 from g12.tools.commands import check
 from g12.tools.install import package_copy
 from g12.tools.install.checking import check_report, lines_of_check
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import NOTE, PROBLEM, WARNING, ConfigFinding
+from g12.tools.install.config.findings import NOTE, PROBLEM, WARNING
 from g12.tools.install.lathe import hal, kinematics, pins
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.rules import findings_of
@@ -185,13 +184,6 @@ def test_python_errors_name_the_module_and_its_line():
     )
     assert python_error(printed) == ("ModuleNotFoundError: No module named 'remap' (toplevel.py:4)")
     assert python_error("hello from toplevel\n") is None
-
-
-def test_a_users_own_cycle_may_use_our_epilog():
-    remap = remap_from_value("g88.1 MODAL=1 epi=cycle_done ngc=  # mine prolog=x")
-    assert remap.code == "G88.1" and remap.number == ("G", 881)
-    assert remap.keywords == {"modalgroup": "1", "epilog": "cycle_done", "ngc": ""}
-    assert features.model_of(remap) is None
 
 
 # A lathe's kinematics, its spindle as C, its HAL files.
@@ -387,19 +379,6 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.startswith("g12 check: ")
     assert says in error
     assert error.count("\n") == 1
-
-
-def test_only_a_problem_is_a_reason_to_fail_and_every_finding_shows_its_name(
-    tmp_path, capsys, monkeypatch
-):
-    ini = write_config(tmp_path, GOOD)
-    said = {}
-    for level, code in ((NOTE, 0), (WARNING, 0), (PROBLEM, 1)):
-        finding = ConfigFinding(level, "some-name", "something", "a cure")
-        monkeypatch.setattr(check, "check_config", lambda text, f=finding: (config_of(ini), [f]))
-        assert check.main([str(ini)]) == code
-        said[level] = capsys.readouterr().out
-    assert all(f"{level} [some-name]: something\n" in text for level, text in said.items())
 
 
 def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
