@@ -450,12 +450,40 @@ def cylinder(plan: Axes, side: Axes) -> None:
     side.text(-0.5, 0.25, "X", **WORDS)
 
 
+def round_part(plan: Axes, side: Axes) -> None:
+    """Draw the words of a section round a mill's part, unrolled and seen from the tool."""
+    box(plan, -0.9, -0.8, 1.9, 1.75, STOCK)
+    axes_of(plan, "X", "A−")
+    tool(plan, 0.16, (0.6, 0.55))
+    corner = (-0.5, 0.1)
+    arc = [at_from(corner, 0.3, angle) for angle in range(0, 91, 10)]
+    plan.plot(*zip((-0.2, -0.5), *arc, (-0.8, 0.4)), color=INK, lw=1.2)
+    measure(plan, corner, (-0.5, 0.4), "J", 0.45)
+    measure(plan, corner, (-0.2, 0.1), "I")
+    measure(plan, corner, at_from(corner, 0.3, 40), "R", 0.85)
+    measure(plan, (-1.03, -0.8), (-1.03, 0.95), "")
+    plan.text(0.05, -1.0, "360° of A: π · diameter long", **NOTE)
+    plan.text(0, 1.15, "the surface unrolled, seen from the tool", **NOTE)
+    circle(side, 0.5, centre=(0.1, -0.2), fill=STOCK)
+    box(side, 0.02, 0.15, 0.16, 0.9, TOOL)
+    measure(side, (0.1, -0.2), at_from((0.1, -0.2), 0.5, 240), "")
+    side.text(0.14, -0.85, "A of G7.1: radius", **WORDS)
+    side.text(0.14, -1.1, "seen from X+, Y to the right", **NOTE)
+    measure(side, (-0.3, -0.2), (-0.3, 0.15), "")
+    side.plot((-0.42, 0.1), (0.15, 0.15), color=WORD, lw=0.5, ls=(0, (2, 2)))
+    side.text(-0.5, 0.25, "Z", **WORDS)
+    turns = [at_from((0.1, -0.2), 0.6, angle) for angle in range(65, 14, -5)]
+    side.plot(*zip(*turns), color=WORD, lw=0.8)
+    side.annotate("", turns[-1], turns[-2], arrowprops={**ARROW, "arrowstyle": "-|>"})
+    side.text(0.68, 0.32, "A+", **WORDS)
+
+
 ON_A_MILL = (haas, yasnac, mitsubishi, circle_mill, bore, thread, frame)
 ON_A_BAR = (polygon, slot, face_pocket, face_holes, side_holes)
 
 
 ON_PAGES = ON_A_MILL
-ON_A_LATHE = (polar, cylinder)
+IN_SECTIONS = (polar, cylinder, round_part)
 
 
 def plate(plan: Axes) -> None:
@@ -465,7 +493,7 @@ def plate(plan: Axes) -> None:
 
 def draw_pages() -> None:
     """Write the drawings of the codes' pages."""
-    for draw in (*ON_PAGES, *ON_A_LATHE):
+    for draw in (*ON_PAGES, *IN_SECTIONS):
         figure, plan, side = views()
         if draw in ON_PAGES:
             plate(plan)

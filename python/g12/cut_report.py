@@ -33,6 +33,10 @@ class ProgramFrame(NamedTuple):
     rotation: float
     shifted: bool
 
+    def turned_by(self, zero: float) -> ProgramFrame:
+        """Return the frame with the zero of another rotary axis in the place of C's."""
+        return self._replace(zero=(*self.zero[:3], zero))
+
     def level(self, z: float) -> float:
         """Return a program's Z on the machine, in mm."""
         return (self.zero[2] + z) * self.mm
@@ -144,12 +148,16 @@ class SectionCut(NamedTuple):
     """A section: on the face with ``surface`` 0, else on the cylinder of that radius.
 
     On the face the zero line of its plane is where C is before, and levels are Z; on a cylinder
-    they are X. ``diameters``: its X words are.
+    they are X. ``diameters``: its X words are. ``turn`` is the rotary axis: round a mill's part its
+    plane is X + jA or B + jY, and levels are Z. ``sense`` is -1 where a positive angle leads to the
+    left or down. Its angle is in the place of C in the frame and in the position.
     """
 
     surface: float
     diameters: bool
     elements: tuple[CutElement, ...]
+    turn: str = "C"
+    sense: float = 1.0
 
 
 class ShapePasses(NamedTuple):

@@ -28,6 +28,7 @@ MACHINES = {
     "ngc/polar_shapes.md": "lathe_mm",
     "ngc/holes.md": "lathe_mm",
     "ngc/cylinder.md": "lathe_mm",
+    "ngc/round_part.md": "mill_a_mm",
 }
 CUTS = {  # of the first program of a page
     "ngc/haas.md": 3,
@@ -40,6 +41,7 @@ CUTS = {  # of the first program of a page
     "ngc/polar.md": 1,
     "ngc/polar_shapes.md": 3,
     "ngc/cylinder.md": 1,
+    "ngc/round_part.md": 1,
 }
 BORED = {"ngc/yasnac.md": "bore 80"}  # the tool enters such a hole by rapid
 AIR = {"ngc/compensation.md": ["air"]}  # the contours alone
@@ -103,6 +105,7 @@ MILL = "T1 M6 G43\nG20 G17 G90 G54 G64 P.001 S3000 M3\nG0 X0 Y0\nZ.1\nF20\n"
 MILL_MM = "T10 M6 G43\nG21 G17 G90 G54 G64 P.02 S3000 M3\nG0 X0 Y0\nZ-4\nF300\n"
 HOLE = MILL_MM.replace("T10", "T3").replace("Z-4", "Z5")
 EVENT = MILL_MM.replace("T10", "T5")
+MILL_A = "T3 M6 G49\nG21 G17 G90 G54 G64 P.02 S3000 M3\nG0 X0 Y0 Z25 A0\nF300\n"
 LATHE = "G21 G18 G7 G40 G90 G94\nT3 M6\nS2000 M3\nF500\nG0 X60 Z5 C0\n"
 POCKET = "o<polar_pocket> call [800] [9] [7] [2] [-9999] [-9999] [800] [400]"
 MESSAGES = {
@@ -196,6 +199,13 @@ MESSAGES = {
         "G7.1 C20\nG1 X50 Z-10\nG7.1 C0",
         "G7.1 C57\nG1 C30\nG2 Z70 R5\nG7.1 C0",
         "G7.1 C20\nG1 Z501\nG7.1 C0",
+    ),
+    "ngc/round_part.md": (
+        MILL_A,
+        "G0 Y.5\nG7.1 A25\nG1 X1\nG7.1 A0",
+        "G92 Z30\nG7.1 A25\nG1 X1\nG7.1 A0",
+        "G7.1 A25\nG1 Y1\nG7.1 A0",
+        "G7.1 A25\nG18\nG7.1 A0",
     ),
     "ngc/polar_shapes.md": (
         LATHE,

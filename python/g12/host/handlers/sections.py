@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -125,12 +126,16 @@ def begin_report(interp: Interp, kind: SectionKind, contour: Contour) -> None:
         emccanon.COMMENT(more_text(elements))
         return
     memory[SECTION_BEGAN] = True
-    cut = SectionCut(kind.surface, kind.rules.diameter, elements)
+    turn = kind.words.axes.turn
+    sense = math.copysign(1.0, kind.rules.turn_scale)
+    cut = SectionCut(kind.surface, kind.rules.diameter, elements, turn, sense)
     report = report_of(interp, start.location.code, start.location.line, start.words, cut)
+    turn_zero = start.offsets[turn] - getattr(interp.tool_offset, turn.lower())
     home = interp.filename
     report = report._replace(  # since the lines of the section were read other modes are in force
         file="" if home == running_file(interp) else os.path.basename(home),
-        at=(start.position["X"], interp.current_y, start.position["Z"], start.position["C"]),
+        frame=report.frame.turned_by(turn_zero),
+        at=(start.position["X"], interp.current_y, start.position["Z"], start.position[turn]),
         feed=start.modes.feed,
         per_revolution=start.modes.per_revolution,
         incremental=start.modes.incremental,

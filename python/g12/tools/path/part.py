@@ -13,6 +13,7 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from shapely.geometry import LineString, MultiLineString, Point
@@ -20,7 +21,7 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.lengths import MM_PER_INCH
-from g12.machine_ini import face_joints
+from g12.machine_ini import AXIS_LETTERS, face_joints
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
 from g12.tools.units import Unit
@@ -31,6 +32,24 @@ DISC_SEGMENTS = 64  # per quarter of a swept disc
 X, Y, Z, C = 0, 1, 2, 5
 FLAT = 17  # the plane whose arcs keep their level
 INCHES = 1  # length_units of the interpreter
+
+
+class Roles(NamedTuple):
+    """The axes of a part that turns, by their places in a position.
+
+    The slide ``along`` its axis, the one square to it, and the one ``across`` both.
+    """
+
+    turn: int
+    along: int
+    height: int
+    across: int
+
+
+ROLES = {  # by the rotary axis
+    turn: Roles(*(AXIS_LETTERS.index(axis) for axis in (turn, *others)))
+    for turn, others in {"C": "ZXY", "A": "XZY", "B": "YZX"}.items()
+}
 
 
 @dataclass(frozen=True)
@@ -45,6 +64,7 @@ class Part:
     turning: bool
     beside: float = 0.0
     centre: float = 0.0
+    roles: Roles = ROLES["C"]
 
     @property
     def letters(self) -> str:
@@ -233,13 +253,6 @@ def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
 def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERROR) -> BaseGeometry:
     segments = arc_segments(radius, math.pi / 2, chord_error)
     return Point(centre[0], centre[1]).buffer(radius, segments)
-
-
-def is_sideways(move: Move) -> bool:
-    """Return whether a move has a component across the tool's axis Z."""
-    if move.kind == "arc":
-        return True
-    return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))
 
 
 def plane_axes(move: Move) -> np.ndarray:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The part as its unrolled surface, for a tool that points at a turning part's axis.
 
-The coordinates are the length around it, which grows with C, Z, and X as the height above the axis.
-Seen from outside, with Z upwards, C grows to the right.
+The coordinates are the length around it, the length along its axis, and the height above the axis.
+Seen from outside, with the axis upwards, the length around grows to the right.
 """
 
 import math
@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from g12.tools.path.part import C, Part, X, Z
+from g12.machine_ini import AXIS_LETTERS
+from g12.tools.path.part import Part
 from g12.tools.preview.moves import Move
 
 LONGEST_SEGMENT, LEAST_SEGMENTS, MOST_SEGMENTS = 0.5, 4, 5000  # mm, of a move
@@ -20,19 +21,22 @@ LONGEST_SEGMENT, LEAST_SEGMENTS, MOST_SEGMENTS = 0.5, 4, 5000  # mm, of a move
 class Surface(Part):
     """The unrolled surface of a cylinder of ``radius``, mm.
 
-    A move is straight there; points between its ends are for measuring.
+    A move is straight there; points between its ends are for measuring. ``sense`` is 1 where the
+    length around grows with the angle.
     """
 
     radius: float = 0.0
+    sense: float = 1.0
 
     @property
     def letters(self) -> str:
-        return "CZX"
+        return "".join(AXIS_LETTERS[axis] for axis in self.roles[:3])
 
     def points(self, positions: np.ndarray) -> np.ndarray:
+        turn, along, height, _ = self.roles
         positions = np.atleast_2d(positions)
-        around = np.radians(positions[:, C]) * self.radius
-        return np.stack([around, positions[:, Z], positions[:, X]], axis=1)
+        around = np.radians(positions[:, turn]) * self.radius * self.sense
+        return np.stack([around, positions[:, along], positions[:, height]], axis=1)
 
     def _segments(self, move: Move, chord_error: float) -> int:
         if move.kind == "arc":

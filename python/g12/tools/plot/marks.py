@@ -58,7 +58,7 @@ def marks_of(judgement: Judgement) -> Marks:
     It is that of a cylinder's surface where all sections and holes are on one.
     """
     program, solids = judgement.program, judgement.solids
-    radii = [cut.surface for cut in program.cuts if program.turning]
+    radii = [cut.surface for cut in program.cuts if program.turning or program.is_round]
     surface = radii[0] if radii and all(radii) else 0.0
     placed = (each for each in judgement.of(FINDING) if each.place is not None)
     marked = (each for each in placed if bool(_surface_of(each, judgement)) == bool(surface))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The picture of cuts on a cylinder: its unrolled surface, and the axes over time.
 
-The surface is seen from outside, C to the right and Z upwards, cut down along X. Lengths are
-millimetres until they are drawn; those of the layout are inches.
+The surface is seen from outside, its axis upwards: C is to the right, Z upwards, X towards the
+viewer, or round a mill's part A, X and Z. Lengths are millimetres until they are drawn; those of
+the layout are inches.
 """
 
 from dataclasses import replace
@@ -47,13 +48,13 @@ def draw_unrolled(scene: Scene) -> Figure:
     across, up = size[0] * scale, max(LEAST, size[1] * scale)
     more = DETAIL_ROW if scene.real is not None else 0.0
     page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
-    figure = style.new_figure(WIDTH, page, scene.title, scene.subtitle)
+    figure = style.new_figure(WIDTH, page, flat.title, flat.subtitle)
     flat = with_bar(flat, scene.marks.stock, low, high)
     view = SceneView(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
     frame_surface(view.axes, flat, low, high, scene.x0_text)
     draw_plan(view, levels)
     panels = panels_of(figure, page - TOP - up - UNDER)
-    draw_history(panels, flat, [], "surface")
+    draw_history(panels, flat, "surface")
     panels[ROWS - 1].tick_params(labelbottom=True)
     panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
     column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2
@@ -78,12 +79,14 @@ def panels_of(figure: Figure, top: float) -> list[Axes]:
 def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:
     """Frame a portion of the surface, with C's angles and ``x0``, the position of X0, above it."""
     radius = scene.marks.surface / scene.unit.mm
-    style.frame(axes, low, high, scene.unit, ("along C", "Z"))
+    turn, along, _ = tuple(scene.path.part.letters)
+    style.frame(axes, low, high, scene.unit, (f"along {turn}", along))
     axes.set_aspect("equal", adjustable="datalim")
-    to_degrees = (lambda length: np.degrees(length / radius)), (lambda c: np.radians(c) * radius)
+    around = radius * getattr(scene.path.part, "sense", 1.0)
+    to_degrees = (lambda length: np.degrees(length / around)), (lambda c: np.radians(c) * around)
     above = axes.secondary_xaxis("top", functions=to_degrees)
     above.xaxis.set_major_locator(MaxNLocator(8, steps=NICE_ANGLES))
-    label = f"C, degrees, on the radius {scene.unit.text(scene.marks.surface)}"
+    label = f"{turn}, degrees, on the radius {scene.unit.text(scene.marks.surface)}"
     above.set_xlabel("; ".join(filter(None, [label, x0])))
 
 

@@ -55,7 +55,8 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
             yield Finding(BEFORE, cut.line, {}, place, cut.file)
     elif _lies_outside(cut, solids):
         yield Finding(OUTSIDE, cut.line, {}, place, cut.file)
-    if cut.surface and not solids.stock and solids.above_face(cut.surface):
+    is_round = solids.program.is_round
+    if cut.surface and not solids.stock and not is_round and solids.above_face(cut.surface):
         yield Finding(ABOVE_ZERO, cut.line, {}, place, cut.file)
     above = [outline for outline in cut.outlines if outline.level > top - LEVEL]
     if above and lowest < top - LEVEL:

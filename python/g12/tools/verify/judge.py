@@ -100,7 +100,7 @@ def judge_trace(
     ``accept`` are codes of warnings, ``opened`` is the user's file where a filter changed it.
     """
     unit = unit_of(program.trace.modes.gcodes, stock.units if stock else None)
-    given = read_stock(stock.text, program.turning, unit) if stock else None
+    given = read_stock(stock.text, program.turning or program.is_round, unit) if stock else None
     tell("looking for material")
     solids = Solids(program, given)
     every = list(

@@ -12,10 +12,10 @@ from typing import Any
 
 from g12.cut_report import CutElement, HolesCut
 from g12.geometry.curve import Arc, Line
-from g12.machine_ini import remap_lines
+from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.lathe_axes import lathe_axes
-from g12.tools.path.part import C
+from g12.tools.path.part import C, X
 from g12.tools.path.section_times import Leg, SectionTimes, section_times
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
@@ -112,31 +112,31 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     fed = [i for i in cut.moves if program.moves[i].kind != "rapid"]
     lengths = [length for i in fed if (length := program.moves[i].length) > 0]
     sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
-    times, factor = (
-        times_of(cut, program.ini),
-        2 if cut.surface and program.diameters(cut.at) else 1,
-    )
+    turn, _, height, _ = cut.roles
+    diameters = cut.surface and height == X and program.diameters(cut.at)
+    times, factor = times_of(cut, program.ini), 2 if diameters else 1
     return {
         "sides": " and ".join(SIDES[side] for side in sides),
         "surface": cut.surface or None,
         "zero_line": None if cut.surface else program.moves[cut.at].start[C],
         "x_words": "diameters" if program.diameters(cut.at) else "radii",
-        "third": "X" if cut.surface else "Z",
+        "third": AXIS_LETTERS[height] if cut.surface else "Z",
         "lowest": factor * (cut.floor - (0.0 if cut.surface else cut.zero[2])),
         "segments": len(fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
         "c_speed": max(_speeds_of_c(cut, program), default=0.0),
-        "c_limit": _finite(program.limits.axes[C]),
+        "c_limit": _finite(program.limits.axes[turn]),
         "seconds_planned": times and times._asdict(),
     }
 
 
 def _speeds_of_c(cut: Cut, program: TracedProgram) -> Iterator[float]:
+    turn = cut.roles.turn
     for index in cut.moves:
         move, seconds = program.moves[index], program.path.seconds(index)
         if seconds:
-            yield abs(move.end[C] - move.start[C]) / seconds
+            yield abs(move.end[turn] - move.start[turn]) / seconds
 
 
 def _finite(value: float) -> float | None:

@@ -151,6 +151,10 @@ def assumption(judgement: Judgement, unit: Unit) -> str:
     """Return what is solid before the first move, in words."""
     solids, program = judgement.solids, judgement.program
     stock, top = solids.stock, f" (machine Z{unit.text(solids.z0)})" if program.is_placed else ""
+    if program.is_round and not solids.stock:
+        return "assumed: solid up to the radius of each section round it"
+    if program.is_round:
+        return f"stock: {stock.text}, about the axis of rotation"
     if stock and (stock.is_whole or program.turning):
         return f"stock: {stock.text}, its top at Z0{top}"
     bar = f", a bar of ⌀ {unit.text(2 * solids.bar)}" if program.turning and solids.bar else ""

@@ -31,7 +31,7 @@ from g12.cut_report import (
     ThreadCut,
     UsedCutter,
 )
-from g12.tools.path.part import arc_segments, disc
+from g12.tools.path.part import ROLES, Roles, arc_segments, disc
 from g12.tools.preview.moves import ReportedCut, Trace
 
 CLOSED = 0.01  # mm between the ends of a contour that is closed
@@ -388,11 +388,27 @@ class Cut:
         lines = lead.line, own[-1].line
         return Outline(np.array(points), own[0].side > 0, self.point(lead.start), lines, level, low)
 
+    @cached_property
+    def roles(self) -> Roles:
+        """The axes of the cylinder on which it is."""
+        return ROLES[getattr(self.plan, "turn", "C")]
+
+    @cached_property
+    def _upright(self) -> complex:
+        """What turns the plane of its words so that the axis of rotation is upwards."""
+        return 1j if self.roles == ROLES["A"] else 1.0
+
+    @property
+    def sense(self) -> float:
+        """1 where the length around the cylinder grows with the angle, else -1."""
+        sense = getattr(self.plan, "sense", 1.0)
+        return -sense if self.roles == ROLES["A"] else sense
+
     def point(self, at: complex) -> complex:
         """Return a point of the program's plane on the part."""
         if self.surface:
-            around = math.radians(self.zero_c) * self.surface
-            return at * self.mm + complex(around, self.zero[2])
+            around = math.radians(self.zero_c) * self.surface * self.sense
+            return at * self._upright * self.mm + complex(around, self.zero[self.roles.along])
         return at * self.mm * self._turned
 
     @cached_property

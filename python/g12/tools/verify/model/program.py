@@ -14,6 +14,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from g12.lengths import MM_PER_INCH
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.nearest import shares_along
@@ -72,6 +73,11 @@ class TracedProgram:
         return part_of(self.ini).turning
 
     @cached_property
+    def is_round(self) -> bool:
+        """Whether a mill cuts round a part that its rotary axis turns."""
+        return not self.turning and any(cut.surface for cut in self.cuts)
+
+    @cached_property
     def texts(self) -> list[str]:
         """The program's lines, without comments, in upper case."""
         text = self.file.read_text(encoding="utf-8", errors="replace")
@@ -96,7 +102,7 @@ class TracedProgram:
     def part(self) -> Part:
         """The part of pictures: about the X0 of its first cut, or the unrolled ``surface``."""
         if self.surface:
-            return Surface(turning=True, radius=self.surface)
+            return self._surface(self.surface)
         found = part_of_program(self.ini, self.trace, bool(self.cuts) and self.turning)
         if found.turning and self.cuts:
             return replace(found, centre=self.cuts[0].zero[X])
@@ -131,10 +137,16 @@ class TracedProgram:
         first = near[0] if near else None
         if len(near) > 1 and first.end <= index and self._changed(first.at, index):
             first = near[1]
+        if radius:
+            return self._surface(radius, first.zero[first.roles.height] if first else 0.0)
         centre = first.zero[X] if first else 0.0
-        if self.turning and radius:
-            return Surface(turning=True, radius=radius, centre=centre)
         return Part(self.turning, self._tool_beside, centre if self.turning else 0.0)
+
+    def _surface(self, radius: float, centre: float = 0.0) -> Surface:
+        own = next((cut for cut in self.cuts if cut.surface == radius), None)
+        if not own:
+            return Surface(True, 0.0, centre, radius=radius)
+        return Surface(True, 0.0, centre, own.roles, radius, own.sense)
 
     def _changed(self, one: int, other: int) -> bool:
         return self.moves[one].tool != self.moves[other].tool
@@ -165,6 +177,8 @@ class TracedProgram:
         """Return a point of a move on a part in the program's words: X Y Z, on a lathe X C Z."""
         cut = self.cut_near(index)
         zero = cut.zero if cut else self.zero
+        if radius and self.is_round:
+            return self._words_round(index, point, radius)
         if not self.turning:
             x, y, z = (at - own for at, own in zip(point, zero))
             turn = math.radians(-(cut.rotation if cut else 0.0))
@@ -180,6 +194,19 @@ class TracedProgram:
             ("X", factor * (position[X] - zero[X])),
             ("C", plain(c, 3)),
             ("Z", position[Z] - zero[Z]),
+        ]
+
+    def _words_round(
+        self, index: int, point: Sequence[float], radius: float
+    ) -> list[tuple[str, float | str]]:
+        """Return a point round a mill's part in the words of its section."""
+        cut = next(each for each in self.cuts if each.surface == radius)
+        position = self._position(index, np.array(point, float), radius)
+        turn, along, height, _ = cut.roles
+        return [
+            (AXIS_LETTERS[along], position[along] - cut.zero[along]),
+            (AXIS_LETTERS[turn], plain(position[turn] - cut.zero_c, 3)),
+            (AXIS_LETTERS[height], position[height] - cut.zero[height]),
         ]
 
     def _position(self, index: int, point: np.ndarray, radius: float) -> np.ndarray:
@@ -272,9 +299,10 @@ class TracedProgram:
     def sides(self) -> list[set[float] | None]:
         """On what the tool of each move may be: the radii of its cuts next to the move.
 
-        On a mill always {0}; of a lathe's tool without a cut None.
+        On a mill always {0}, unless it cuts round a part: then None where the tool is not above
+        the axis of rotation; of a lathe's tool without a cut None.
         """
-        if not self.turning:
+        if not self.turning and not self.is_round:
             return [{0.0}] * len(self.moves)
         of_tool: dict[int, list[Cut]] = {}
         for cut in self.cuts:
@@ -287,7 +315,7 @@ class TracedProgram:
         for index, move in enumerate(self.moves):
             own, inside = of_tool.get(move.tool), self.cut_at(index)
             turned = not inside and (self._is_turned(index) or (turned and move.kind == "rapid"))
-            if turned:
+            if turned or (self.is_round and not inside and self._is_beside_axis(move)):
                 found.append(None)
                 continue
             if not own or inside:
@@ -297,6 +325,12 @@ class TracedProgram:
             after = bisect_right(own, index, key=lambda cut: cut.at)
             found.append({cut.surface for cut in own[max(after - 1, 0) : after + 1]})
         return found
+
+    def _is_beside_axis(self, move: Move) -> bool:
+        """Return whether the tool of a mill's move is not above the axis of rotation all along."""
+        cut = next(each for each in self.cuts if each.surface)
+        across = cut.roles.across
+        return any(abs(at[across] - cut.zero[across]) > SIZE for at in (move.start, move.end))
 
     def _is_turned(self, index: int) -> bool:
         """Return whether the part turns at a move, where tools have a spindle of their own."""
@@ -352,8 +386,18 @@ class TracedProgram:
         """The first move of A or B on a mill: what was solid is not known after it."""
         if self.turning or not {"A", "B"} & set(self.ini.axes):
             return None
+        if self.is_round:
+            return next(filter(self._is_elsewhere, range(len(self.moves))), None)
         turns = (i for i, m in enumerate(self.moves) if any(m.start[k] != m.end[k] for k in (A, B)))
         return next(turns, None)
+
+    def _is_elsewhere(self, index: int) -> bool:
+        """Return whether a move cuts what a round part's sections do not say."""
+        move, first = self.moves[index], self.moves[0]
+        sides = self.sides[index]
+        if sides is None:
+            return move.kind != "rapid"
+        return 0.0 in sides and move.start[A : B + 1] != first.start[A : B + 1]
 
     def is_known(self, index: int) -> bool:
         """Return whether the material is known at a move."""

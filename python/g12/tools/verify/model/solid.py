@@ -71,8 +71,10 @@ class Solids:
         program = self.program
         if side:
             low, high = self._along(side)
-            above = not stock and self.above_face(side)
+            above = self.program.is_round or (not stock and self.above_face(side))
             return box(0.0, low, 2 * math.pi * side, high if above else min(high, self.z0))
+        if program.is_round and all(cut.surface for cut in program.cuts):
+            return NOTHING
         if program.turning:
             return disc((0.0, 0.0), self.bar) if self.bar else NOTHING
         circles = [cut for cut in program.cuts if cut.is_circle and not cut.upright]
@@ -103,10 +105,11 @@ class Solids:
     def _along(self, side: float) -> tuple[float, float]:
         """Return from which to which Z a cylinder is: of a bar all, else where it is cut."""
         if self.stock and self.stock.diameter:
-            return -LONG, math.inf
+            return -LONG, LONG
         own = [cut for cut in self.program.cuts if cut.surface == side and cut.at < cut.end]
-        moves = (self.program.moves[i] for cut in own for i in cut.moves)
-        ends = [(m.start[2], m.end[2]) for m in moves if m.kind != "rapid"]
+        moves, tip = self.program.moves, self.program.tip
+        fed = (i for cut in own for i in cut.moves if moves[i].kind != "rapid")
+        ends = [(line[0][1], line[-1][1]) for line in (tip(i, side) for i in fed)]
         wide = max((self.program.cutter(cut.at) for cut in own), default=0.0) + ALONG
         return np.min(ends, initial=math.inf) - wide, np.max(ends, initial=-math.inf) + wide
 
