@@ -369,11 +369,13 @@ def test_what_is_in_order_in_hal_files(hal_findings, line):
         ("nowhere.ini", "no such file"),
         ("mill.tbl", "no [RS274NGC]"),
         ("mill.ini.expanded", "name mill.ini"),
+        ("odd.ini", "holds NUL bytes"),
     ],
 )
 def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     write_config(tmp_path)
     (tmp_path / "mill.ini.expanded").write_text(MILL)
+    (tmp_path / "odd.ini").write_text(f"{MILL}\0")
     assert check.main([str(tmp_path / name)]) == 2
     error = capsys.readouterr().err
     assert error.startswith("g12 check: ")

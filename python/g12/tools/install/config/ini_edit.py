@@ -71,10 +71,10 @@ class IniText:
                 self.files[included] = self._read(included)
 
     def _read(self, path: Path) -> list[str]:
-        try:
-            return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
-        except OSError as error:
-            raise IniError(f"{path}: {error.strerror}") from error
+        content = path.read_bytes()
+        if b"\0" in content:
+            raise IniError(f"{path}: holds NUL bytes: it is no text")
+        return LINE.findall(content.decode("utf-8", "surrogateescape"))
 
     def _lines_of(self, file: Path, host: int | None = None) -> Iterator[IniLine]:
         for row, text in enumerate(self.files[file]):
