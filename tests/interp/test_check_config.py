@@ -197,17 +197,6 @@ def test_a_lost_copy_comes_back(tmp_path, capsys):
         assert content_of(tmp_path) == whole
 
 
-def test_a_bad_setting_does_not_hinder_uninstall(tmp_path, capsys):
-    ini = write_config(tmp_path)
-    before = ini.read_bytes()
-    installed(ini, "haas")
-    ini.write_text(ini.read_text() + "[G12]\nNONSENSE = 1\n")
-    capsys.readouterr()
-    assert kinds(ini, capsys) == ["setting"]
-    assert uninstall.main([str(ini)]) == 0
-    assert ini.read_bytes() == before + b"[G12]\nNONSENSE = 1\n"
-
-
 G13 = "REMAP = g13 modalgroup=1 ngc=mine\n"
 REFUSED = [  # an INI, other files, the feature, what is said
     (with_lines(MILL, "RS274NGC", G13), {"mine_ngc": "o<mine> sub\no<mine> endsub\n"}, ["haas"],

@@ -397,20 +397,6 @@ def test_wrong_use_of_install(arguments, says, capsys):
     assert said.count("\n") == 1
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["mill.ini", "--with", "haas", "circle-mill"],
-        ["--with", "haas", "circle-mill", "mill.ini"],
-        ["mill.ini", "--with", "Haas,circle-mill,haas"],
-    ],
-)
-def test_the_ways_to_name_features(words):
-    options = install.command_parser().parse_args(words)
-    found = install.ini_and_features(options.ini, options.features)
-    assert found == (Path("mill.ini"), ["haas", "circle-mill"])
-
-
 def test_uninstall_shows_first_and_is_done_to_its_end_though_nobody_reads(
     tmp_path, ini, capsys, monkeypatch
 ):

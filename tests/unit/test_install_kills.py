@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """install, an update and uninstall, killed before each call that changes the file system.
 
-`interp/test_install_kills.py` kills the real commands.
+`soak/soak_kills.py` kills the real commands.
 """
 
 import os

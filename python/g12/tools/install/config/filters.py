@@ -13,7 +13,7 @@ from g12.machine_ini import entries_of
 from g12.tools.install.config.findings import ConfigFinding, problem
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.system import PROGRAM
-from g12.tools.translate.blocks.control import Control, ControlError, read_control
+from g12.tools.translate.blocks.control import Control
 
 TRANSLATE, DYNAPATH = "translate", "dynapath"  # the commands that are filters
 MAX_NAMED = 8  # files are named in a line
@@ -62,11 +62,6 @@ def filter_lines(control: Control, command: str, missing: list[str]) -> list[str
     return [*lines, *(f"{suffix} = {command}" for suffix in missing)]
 
 
-def control_of(config: Config, name: str) -> Control:
-    own = name.endswith(".toml")
-    return read_control(str(folder_from_ini(config.ini, name)) if own else name)
-
-
 def filter_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find a filter that cannot work."""
     for suffix, command, name in filters_of(config):
@@ -78,10 +73,6 @@ def filter_findings(config: Config) -> Iterator[ConfigFinding]:
                 f"[FILTER] {suffix}: {program} is not there: no .{suffix} program opens",
                 f"write {PROGRAM} in its place, or take the line out",
             )
-        try:
-            name and control_of(config, name)
-        except ControlError as wrong:
-            yield problem("filter", f"[FILTER] {suffix}: {wrong}", "correct the control's file")
         for other in both_cases(suffix):
             if config.ini.get("FILTER", other) != command:
                 yield problem(

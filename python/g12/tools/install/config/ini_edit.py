@@ -20,6 +20,7 @@ BEGIN_MARK, END_MARK = "# >>> g12 install", "# <<< g12 install"
 WAS = "# was: "  # before the user's line that one of ours replaces
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
+Point = tuple[Path, int]  # before a line of a file
 DIGITS = 4  # of a digest: a section of ours has 30 lines at most
 
 
@@ -37,13 +38,6 @@ class IniLine(NamedTuple):
     @property
     def location(self) -> str:
         return f"{self.file.name}:{self.row + 1}"
-
-
-class InsertionPoint(NamedTuple):
-    """A gap between lines: before line ``row`` of ``file``."""
-
-    file: Path
-    row: int
 
 
 def line_end(lines: Sequence[str]) -> str:
@@ -77,10 +71,10 @@ class IniText:
                 self.files[included] = self._read(included)
 
     def _read(self, path: Path) -> list[str]:
-        try:
-            return LINE.findall(path.read_bytes().decode("utf-8", "surrogateescape"))
-        except OSError as error:
-            raise IniError(f"{path}: {error.strerror}") from error
+        content = path.read_bytes()
+        if b"\0" in content:
+            raise IniError(f"{path}: holds NUL bytes: it is no text")
+        return LINE.findall(content.decode("utf-8", "surrogateescape"))
 
     def _lines_of(self, file: Path, host: int | None = None) -> Iterator[IniLine]:
         for row, text in enumerate(self.files[file]):
@@ -88,14 +82,13 @@ class IniText:
 
     def lines(self) -> list[IniLine]:
         """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes."""
-        return list(self._expanded())
-
-    def _expanded(self) -> Iterator[IniLine]:
+        lines: list[IniLine] = []
         for line in self._lines_of(self.path):
-            yield line
+            lines.append(line)
             included = included_file(line.text, self.path.parent)
             if included in self.files:
-                yield from self._lines_of(included, line.row)
+                lines += self._lines_of(included, line.row)
+        return lines
 
     def ini(self) -> Ini:
         """Return the expanded INI, edits included, as `read_ini` returns it."""
@@ -128,7 +121,7 @@ class IniText:
         found = entries_of([line.text for line in lines], section)
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
-    def end_of_section(self, section: str) -> InsertionPoint | None:
+    def end_of_section(self, section: str) -> Point | None:
         """Return the point after the section's last entry, in the INI itself if possible.
 
         A section that goes on in an included file ends behind that #INCLUDE, unless another section
@@ -140,10 +133,10 @@ class IniText:
         for host, line in reversed(last_inside.items()):
             included = line.file != self.path
             if line == last_of[host] and (included or belongs(line.text)):
-                return InsertionPoint(self.path, self._after(self.path, host))
+                return (self.path, self._after(self.path, host))
         for line in reversed(found):
             if belongs(line.text):
-                return InsertionPoint(line.file, self._after(line.file, line.row))
+                return (line.file, self._after(line.file, line.row))
         return None
 
     def _after(self, file: Path, index: int) -> int:
@@ -156,26 +149,24 @@ class IniText:
     def add(self, section: str, lines: Sequence[str], words: str) -> None:
         """Add a block to a section; a new one goes into [RS274NGC]'s file.
 
-        In an included file that is before a header, where it divides no other section.
+        In an included file that is before a header, where it divides no other section. At the end
+        of a file without a last line end the block has none either.
         """
         point = self.end_of_section(section)
         if not point:
             lines = [f"[{section}]", *lines]
-            point = InsertionPoint(self.path, len(self.files[self.path]))
-            if self.end_of_section("RS274NGC").file != self.path:
+            point = self.path, len(self.files[self.path])
+            if self.end_of_section("RS274NGC")[0] != self.path:
                 header = self.headers("RS274NGC")[0]
-                point = InsertionPoint(header.file, header.row)
-        self._insert(point, between_marks(words, lines))
-
-    def _insert(self, point: InsertionPoint, texts: Sequence[str]) -> None:
-        """Insert lines. At the end of a file without a last line end they have none either."""
-        lines = self.files[point.file]
-        end = line_end(lines)
+                point = header.file, header.row
+        file, row = point
+        present, texts = self.files[file], between_marks(words, lines)
+        end = line_end(present)
         new = [text + end for text in texts]
-        if point.row == len(lines) and lines and not lines[-1].endswith("\n"):
-            lines[-1] += end
+        if row == len(present) and present and not present[-1].endswith("\n"):
+            present[-1] += end
             new[-1] = texts[-1]
-        lines[point.row : point.row] = new
+        present[row:row] = new
 
     def replace(self, section: str, key: str, value: str, words: str) -> None:
         """Replace the first value of a key by a block, in which the user's lines are comments."""

@@ -216,8 +216,12 @@ def screen_findings(config: Config) -> Iterator[ConfigFinding]:
         yield from key_taken(config, FACE) if is_for_face(config) else ()
         yield from part_not_turned(config)
     shown = forms_shown(config)
-    for form in shown:
-        yield from form_findings(config, form)
+    for form in (form for form in shown if not subs_named(config.ini, form)):
+        yield problem(
+            "form",
+            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc is in none of the folders of SUBROUTINE_PATH",
+            "add the package's folder ngc to SUBROUTINE_PATH, or correct the name",
+        )
     for section, lines in ngcgui_lines(config, "g12").items() if shown else ():
         yield problem(
             "form",
@@ -249,21 +253,4 @@ def part_not_turned(config: Config) -> Iterator[ConfigFinding]:
             f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a "
             "section as a line to and fro along X",
             f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
-        )
-
-
-def form_findings(config: Config, form: str) -> Iterator[ConfigFinding]:
-    name = form.removeprefix("form_").rpartition("_")[0]
-    own = [each.feature for each in FORMS if each.name == name]
-    if not subs_named(config.ini, form):
-        yield problem(
-            "form",
-            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc is in none of the folders of SUBROUTINE_PATH",
-            "add the package's folder ngc to SUBROUTINE_PATH, or correct the name",
-        )
-    elif own and config.features.keys().isdisjoint(own):
-        yield problem(
-            "form",
-            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc: the codes of {own[0]} are not set up here",
-            "take the line out, or install that feature",
         )

@@ -27,14 +27,11 @@ from g12.tools.install.lathe.hal import (
     hal_files,
     linuxcnc_folder,
     names,
-    substituted,
 )
 
 KINEMATICS_PAGE = "configs/kinematics/README.md"
 GUARD_HAL = Path("configs/kinematics/polar_kinematics.hal")
 OFFSET_HAL = Path("configs/kinematics/polar_tool_offset.hal")
-OFFSET = "polar-xzc.tool-offset"
-SETS_OFFSET = re.compile(rf"(?:setp\s+)?{re.escape(OFFSET)}\s*(?:=|\s)\s*(\S+)")
 REQUEST = "polar-xzc.request"  # a pin that only a HAL file with the guard's lines names
 NEWEST_PIN = b".end-request"  # of the module
 LOADS_KINEMATICS = re.compile(r"loadrt\s+(\w*kins)\b")
@@ -136,7 +133,7 @@ def added(config: Config, prefix: str) -> dict[str, list[str]]:
 def kinematics_findings(config: Config) -> Iterator[ConfigFinding]:
     """Check a machine with ``[G12] POLAR_KINEMATICS = 1``, or with these in [KINS]."""
     if uses_face_kinematics(config) or face_joints(config.ini.get):
-        for rule in (module_missing, axes_wrong, hal_wrong, offset_wrong):
+        for rule in (module_missing, axes_wrong, hal_wrong):
             yield from rule(config)
 
 
@@ -220,16 +217,3 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
         if module and module[1] != FACE_KINEMATICS:
             wrong = f"{location}: {text}: loads {module[1]}, whatever [KINS] says"
             yield problem("kins", wrong, "loadrt [KINS]KINEMATICS")
-
-
-def offset_wrong(config: Config) -> Iterator[ConfigFinding]:
-    """Find kinematics with another distance of the tool from the X line than G12.1's."""
-    matches = (SETS_OFFSET.fullmatch(substituted(line.text, config)) for line in all_hal(config))
-    *_, found = 0.0, *(leading_number(match[1]) or 0.0 for match in matches if match)
-    offset = config.settings.polar_tool_offset if config.settings else found
-    if found != offset:
-        yield problem(
-            "tool-offset",
-            f"[G12] POLAR_TOOL_OFFSET = {offset:g}, but {OFFSET} is {found:g}: G12.1 is refused",
-            f"HALFILE = …/{OFFSET_HAL} after the file that loads motion, and nothing else for it",
-        )

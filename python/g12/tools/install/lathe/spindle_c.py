@@ -34,6 +34,7 @@ from g12.tools.machine.tables import MAX_MEASURE
 SPINDLE_C_PAGE = "configs/spindle_c.md"
 SPINDLE_C_HAL = "configs/include/spindle_c.hal"
 LIMITS_SCRIPT = "configs/include/spindle_c_limits.sh"
+JOINT_INC = ROOT / "configs/include/spindle_c_joint.inc"  # its joint is 2
 CONNECTS = "sc-orient.enable"  # a pin that only a HAL file with these lines names
 PROLOG = "spindle_c_on"
 SIGNALS = {  # key of [SPINDLE_C]: its pin, and the signal's name if the pin has none
@@ -78,18 +79,6 @@ velocity = "…"     input of the drive for M3 and M4, revolutions per second ti
 position = "…"     input of the drive for C, revolutions times position_scale (360: degrees)
 holds = "…"        input of the drive that makes it obey its position
 clamp_open, brake  outputs, if there are any"""
-AXIS_C = """\
-MIN_LIMIT = -99999
-MAX_LIMIT = 99999
-MAX_VELOCITY = 360
-MAX_ACCELERATION = 3600"""
-JOINT_C = f"""\
-TYPE = ANGULAR
-{AXIS_C}
-FERROR = 10
-MIN_FERROR = 1
-HOME = 0
-HOME_SEQUENCE = 0"""
 
 
 class Pins(NamedTuple):
@@ -202,10 +191,11 @@ def lines_of_c(config: Config) -> str:
         f"[KINS] JOINTS = {len(letters) + 1}",
         f"[TRAJ] COORDINATES = {' '.join(f'{letters}C')}",
     ]
-    new = {"AXIS_C": AXIS_C, f"JOINT_{len(letters)}": JOINT_C}
-    missing = (name for name in new if not config.text.headers(name))
-    blocks = (f"\n[{name}]\n{new[name]}" for name in missing)
-    return "\n".join((f"change these lines ({SPINDLE_C_PAGE}):", *changed, *blocks))
+    text = JOINT_INC.read_text(encoding="utf-8").replace("JOINT_2", f"JOINT_{len(letters)}")
+    blocks = text.strip().split("\n\n")  # the first with a remark
+    new = [block[block.index("[") :] for block in blocks]
+    new = [f"\n{block}" for block in new if not config.text.headers(block[1 : block.index("]")])]
+    return "\n".join((f"change these lines ({SPINDLE_C_PAGE}):", *changed, *new))
 
 
 def signals_wanted(config: Config, kinematics: bool) -> dict[str, str]:
@@ -280,20 +270,17 @@ def keys_wrong(config: Config) -> Iterator[ConfigFinding]:
 def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find lines that are missing in [HAL], and a C that shares the index."""
     others = other_lines(config)
-    text = "\n".join(line.text for line in others)
-    missing = {}
-    if not is_connected(config):
-        missing[SPINDLE_C_HAL] = f"HALFILE = …/{SPINDLE_C_HAL} after the files of the spindle"
-    missing |= {DRIVE[name]: f"HALCMD = net {DRIVE[name]} => the drive's input"
-                for name in REQUIRED_PINS if DRIVE[name] not in text}  # fmt: skip
-    if Path(LIMITS_SCRIPT).name not in text:
-        missing[LIMITS_SCRIPT] = f"HALCMD = loadusr sh …/{LIMITS_SCRIPT}"
-    for name, line in missing.items():
-        yield problem(
-            "spindle-c-hal",
-            f"nothing in [HAL] uses {name}: the spindle does not become C",
-            f"add {line} ({SPINDLE_C_PAGE})",
-        )
+    wanted = {CONNECTS: f"HALFILE = …/{SPINDLE_C_HAL} after the files that wire the spindle"}
+    wanted |= {DRIVE[name]: f"HALCMD = net {DRIVE[name]} => the drive's input"
+               for name in REQUIRED_PINS}  # fmt: skip
+    wanted[Path(LIMITS_SCRIPT).name] = f"HALCMD = loadusr sh …/{LIMITS_SCRIPT}"
+    for name, line in wanted.items():
+        if not names(all_hal(config) if name == CONNECTS else others, name):
+            yield problem(
+                "spindle-c-hal",
+                f"nothing in [HAL] uses {name}: the spindle does not become C",
+                f"add {line} ({SPINDLE_C_PAGE})",
+            )
     pin = f"joint.{joint_of_c(config)}.index-enable"
     for text, location in others:
         if pin in text.split():
