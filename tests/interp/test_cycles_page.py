@@ -115,6 +115,13 @@ def test_a_lathe_s_form_is_seen_from_its_own_side(page, name, view):
     assert (sketch.state, sketch.text.partition(":")[0]) == (READY, view)
 
 
+def test_holes_round_a_bar_are_points_of_the_unrolled_surface(page):
+    sketch = page("lathe_mm").show("side_holes", surface_diameter="40", height="2", count="4")
+    cut = np.concatenate(sketch.cut)
+    assert sorted({*cut[:, 0].round(2)}) == pytest.approx([0, 34.56, 69.12, 103.67], abs=0.01)
+    assert {*cut[:, 1].round(6)} == {-10.0}
+
+
 def test_the_flats_of_a_polygon_are_where_they_are_typed(page):
     sketch = page("lathe_mm").show("polygon", across_flats="27")
     cut = np.concatenate(sketch.cut)
@@ -207,10 +214,12 @@ def test_what_a_stranger_left_in_the_kept_values_is_no_value(page, tmp_path, lef
 
 def test_the_drawing_fills_its_place(page):
     sketch = page("mill_mm").show("haas", tool="5", i="8", q="8")
+    up = np.concatenate(sketch.cut)[:, 1]
     (_, pen, lines), *_ = sketch.strokes(400, 300)
     drawn = np.concatenate(lines)
     low, high = drawn.min(axis=0) - pen / 2, drawn.max(axis=0) + pen / 2
     assert high - low == pytest.approx([0.92 * 300] * 2, abs=0.1)
+    assert drawn[up.argmax(), 1] == drawn[:, 1].min()
     assert (low + high) / 2 == pytest.approx([200, 150], abs=0.1)
 
 
