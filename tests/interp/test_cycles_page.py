@@ -7,12 +7,18 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from g12.tools.cycles_page import page as page_module
-from g12.tools.cycles_page.machine import MachineState, machine_state, tools_of
+from g12.tools.cycles_page.machine import (
+    MachineState,
+    machine_state,
+    open_in_linuxcnc,
+    tools_of,
+)
 from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED
 from g12.tools.errors import UsageError
@@ -109,6 +115,13 @@ def test_a_lathe_s_form_is_seen_from_its_own_side(page, name, view):
     assert (sketch.state, sketch.text.partition(":")[0]) == (READY, view)
 
 
+def test_holes_round_a_bar_are_points_of_the_unrolled_surface(page):
+    sketch = page("lathe_mm").show("side_holes", surface_diameter="40", height="2", count="4")
+    cut = np.concatenate(sketch.cut)
+    assert sorted({*cut[:, 0].round(2)}) == pytest.approx([0, 34.56, 69.12, 103.67], abs=0.01)
+    assert {*cut[:, 1].round(6)} == {-10.0}
+
+
 def test_the_flats_of_a_polygon_are_where_they_are_typed(page):
     sketch = page("lathe_mm").show("polygon", across_flats="27")
     cut = np.concatenate(sketch.cut)
@@ -136,6 +149,13 @@ def test_travel_is_judged_with_the_work_offset_and_depth_is_below_it(page):
     sketch = shown.show("haas", tool="5", i="8", k="30", q="8")
     assert sketch.text.startswith("the X axis would go to ")
     assert shown.fill(x="-100").text.endswith("at the programmed feeds, down to Z-4.000")
+
+
+def test_travel_is_judged_with_the_tool_s_length(page):
+    shown = page("mill_mm", state=NOWHERE._replace(parameters={5220: 1.0, 5223: 260.0}))
+    text = "the Z axis would go to 305.000, beyond its limit 300"  # 10 + 260 + 35 of T5
+    assert shown.show("haas", tool="5", i="8", k="30", q="8").text == text
+    assert shown.fill(retract="5").state == READY
 
 
 def test_the_default_tool_is_the_loaded_one_else_the_first_with_a_diameter(page):
@@ -194,10 +214,12 @@ def test_what_a_stranger_left_in_the_kept_values_is_no_value(page, tmp_path, lef
 
 def test_the_drawing_fills_its_place(page):
     sketch = page("mill_mm").show("haas", tool="5", i="8", q="8")
+    up = np.concatenate(sketch.cut)[:, 1]
     (_, pen, lines), *_ = sketch.strokes(400, 300)
     drawn = np.concatenate(lines)
     low, high = drawn.min(axis=0) - pen / 2, drawn.max(axis=0) + pen / 2
     assert high - low == pytest.approx([0.92 * 300] * 2, abs=0.1)
+    assert drawn[up.argmax(), 1] == drawn[:, 1].min()
     assert (low + high) / 2 == pytest.approx([200, 150], abs=0.1)
 
 
@@ -355,3 +377,30 @@ def test_a_machine_that_cannot_be_read_is_a_sentence(page, tmp_path, text):
 def test_a_library_that_is_missing_is_a_sentence(page, monkeypatch):
     monkeypatch.setitem(sys.modules, "g12.tools.cycles_page.interpreter", None)
     assert "interpreter" in page("mill_mm").wait().text
+
+
+class Status:
+    """LinuxCNC's status while a program runs."""
+
+    interp_state = 2
+
+    def poll(self):
+        pass
+
+
+def broken():
+    raise RuntimeError
+
+
+@pytest.mark.parametrize(
+    ("status", "said"),
+    [
+        (Status, "a program runs: stop it"),
+        (broken, "LinuxCNC does not answer: the program is saved"),
+    ],
+)
+def test_a_program_is_not_opened_over_one_that_runs(monkeypatch, status, said):
+    linuxcnc = SimpleNamespace(stat=status, INTERP_IDLE=1)
+    monkeypatch.setitem(sys.modules, "linuxcnc", linuxcnc)
+    with pytest.raises(UsageError, match=said):
+        open_in_linuxcnc("cycles.ngc")

@@ -11,6 +11,7 @@ import sys
 import threading
 import time
 import traceback
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -67,23 +68,26 @@ class Operator(threading.Thread):
     def run_program(self):
         screen = RecordingScreen(str(self.folder / "samples"), PINS)
         end = time.monotonic() + PATIENCE
-        while True:
-            try:
-                self.start_program(screen.panel, screen.sampler)
-                break
-            except MachineError:  # the screen still sets the machine up: e-stop, manual mode
-                if time.monotonic() > end:
-                    raise
-        screen.panel.finish(PATIENCE)
+        while not self.has_run(screen.panel, screen.sampler):
+            # The screen still set the machine up: e-stop, manual mode.
+            assert time.monotonic() < end, screen.panel.errors()
         screen.sampler.stop()
         self.result["errors"] = screen.panel.errors()
 
+    def has_run(self, panel, sampler):
+        """Run the program; return whether it came to the place of its last step."""
+        with suppress(MachineError):
+            self.start_program(panel, sampler)
+            panel.finish(PATIENCE)
+        return abs(panel.poll().position[0] - float(BORE["centre X, mm"])) < 0.01
+
     def start_program(self, panel, sampler):
+        opened = str(self.folder / "cycles.ngc")
+        if panel.poll().file != opened:
+            self.press("Open")
+            panel.wait(lambda stat: stat.file == opened, PATIENCE, "program")
         panel.enable()
         panel.home()
-        self.press("Open")
-        opened = str(self.folder / "cycles.ngc")
-        panel.wait(lambda stat: stat.file == opened, START, "program")
         panel.errors(), panel.messages()
         sampler.start()
         panel.start()

@@ -15,7 +15,8 @@ from g12.tools.cycles_page.machine import MachineState
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch
 from g12.tools.forms.table import MILL, ROUND, Form
 from g12.tools.machine.ini import Ini, IniError, read_ini
-from g12.tools.path.part import C, Part, X, Z, last_zero
+from g12.tools.path.part import Part, X, Z, last_zero
+from g12.tools.path.surface import Surface
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 from g12.tools.preview.tracer import Tracer
@@ -46,15 +47,23 @@ class Sketcher:
         """Return what the lines ``text`` of a form do; the machine is in ``state``."""
         options = {"setup": self._setup(state), "parameters": state.parameters}
         trace = self._interpreter().trace_text(text, timeout=TIMEOUT, **options)
-        part = Part(form.place != MILL, self.ini.tool_beside, last_zero(trace))
+        part = self._part(form, trace)
         drawn = () if trace.error else trace.moves
         moves = [(move, positions_of(move, part)) for move in drawn]
         cut, rapid = (
-            [seen(part, form, each) for move, each in moves if (move.kind == "rapid") is rapid]
+            [part.points(at)[:, :2] for move, at in moves if (move.kind == "rapid") is rapid]
             for rapid in (False, True)
         )
         radius = trace.radius(len(moves) - 1) if moves else 0.0
         return Sketch(*self._outcome(trace, moves, form), cut, rapid, radius)
+
+    def _part(self, form: Form, trace: Trace) -> Part:
+        """Return what the form cuts; a surface is unrolled where the tool begins to cut."""
+        zero = last_zero(trace)
+        cuts = [abs(move.start[X] - zero) for move in trace.moves if move.kind != "rapid"]
+        if form.place == ROUND:
+            return Surface(True, self.ini.tool_beside, zero, radius=max(cuts, default=0.0))
+        return Part(form.place != MILL, self.ini.tool_beside, zero)
 
     def _interpreter(self) -> Tracer:
         """Return the interpreter, a new one where the tool table is another."""
@@ -107,14 +116,6 @@ class Sketcher:
                 limit = limits.low if past[0] < limits.low else limits.high
                 return f"the {letter} axis would go to {past[0]:.3f}, beyond its limit {limit:g}"
         return ""
-
-
-def seen(part: Part, form: Form, positions: np.ndarray) -> np.ndarray:
-    """Return positions in the plane of a form's view."""
-    if form.place != ROUND:
-        return part.points(positions)[:, :2]
-    around = np.radians(positions[:, C]) * np.abs(positions[:, X] - part.centre)
-    return np.column_stack([around, positions[:, Z]])
 
 
 def positions_of(move: Move, part: Part) -> np.ndarray:
