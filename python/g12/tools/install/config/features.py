@@ -29,8 +29,7 @@ POLAR_FEATURES = ("polar", "polar-g12.3")
 SECTION_SUBS = ("g12_skipped_over",)
 HOLES = ("face_holes", "side_holes", "face_hole_at", "g12_holes")
 FEATURES = {
-    "haas": Feature("G12/G13 circular pocket, Haas words", "g12_haas.inc",
-                    subs=("g12_helix",)),
+    "haas": Feature("G12/G13 circular pocket, Haas words", "g12_haas.inc"),
     "yasnac": Feature("G12/G13 circle cutting, Yasnac words", "g12_yasnac.inc"),
     "mitsubishi": Feature("G12/G13 circular cutting, Mitsubishi words", "g12_mitsubishi.inc"),
     "circle-mill": Feature("G12.2/G13.2 circle mill event, perimeter and pocket",
