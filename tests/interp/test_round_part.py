@@ -6,15 +6,18 @@ The words, refusals and settings that a lathe's cylinder shares are in test_cyli
 
 import math
 import random
+import re
 from functools import partial
 from itertools import groupby
 
 import pytest
 
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from support import polar_programs
 from support.flat_contours import (
     FIRST,
+    SENSE,
     WITH_B,
     FlatContour,
     apart,
@@ -221,3 +224,44 @@ def test_the_sample_of_the_simulated_mill_runs(name):
     assert trace.error is None and trace.messages == []
     assert {move.end[1] for move in trace.moves} == {0.0}
     assert min(move.end[3] for move in trace.moves) == -360
+
+
+# ---------------------------------------------------------------- as AXIS draws it
+
+
+def drawn_by_axis(geometry, position):
+    """Return the point of the part that AXIS draws for a position (vertex9 of its emcmodule.cc).
+
+    It reads GEOMETRY from its end; B turns there from Z to X-, not to X+.
+    """
+    x = y = z = 0.0
+    for sign, letter in reversed(re.findall("(-?)([XYZAB])", geometry)):
+        value = -position[letter] if sign else position[letter]
+        cos, sin = math.cos(math.radians(value)), math.sin(math.radians(value))
+        if letter == "A":
+            y, z = y * cos - z * sin, y * sin + z * cos
+        elif letter == "B":
+            x, z = x * cos - z * sin, x * sin + z * cos
+        else:
+            x, y, z = (at + value * (letter == own) for at, own in zip((x, y, z), "XYZ"))
+    return x, y
+
+
+@pytest.mark.parametrize(
+    ("turn", "geometry", "sense"),
+    [
+        ("A", read_ini(SIM / "mill_a_mm.ini").get("DISPLAY", "GEOMETRY"), 1.0),
+        ("A", "-AXYZ!", -1.0),
+        ("B", "-BXYZ!", 1.0),
+    ],
+)
+def test_a_drawing_reads_right_on_the_part_that_axis_shows(turn, geometry, sense):
+    """Seen from the tool, X is to the right and Y upwards, as on the flat drawing."""
+    radius = 25.0
+    for x, y in ((3.0, 4.0), (-3.0, 4.0), (3.0, -4.0)):
+        words = {"X": x, "Y": y, "Z": radius}
+        letter = {"A": "Y", "B": "X"}[turn]
+        words[turn] = math.degrees(SENSE[turn] * sense * words.pop(letter) / radius)
+        shown = drawn_by_axis(geometry, dict.fromkeys("XYZAB", 0.0) | words)
+        flat = {"A": (x, radius * math.sin(y / radius)), "B": (radius * math.sin(x / radius), y)}
+        assert shown == pytest.approx(flat[turn])

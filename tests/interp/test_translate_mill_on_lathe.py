@@ -87,7 +87,7 @@ MILLS = {
 def mill(request, tmp_path_factory):
     """Return a function: the points of a flat program's way round a part, and its moves."""
     folder = tmp_path_factory.mktemp("round")
-    machine = {"overrides": MILLS[request.param], "tools": {1: 12.0, 3: 6.0}}
+    machine = {"overrides": MILLS[request.param], "tools": {1: 12.0, 2: 10.0, 3: 6.0}}
     with Tracer(SIM / "mill_a_mm.ini", **machine) as tracer:
         ini = folder / "machine.ini"
         own = read_ini(SIM / "mill_a_mm.ini").replaced(MILLS[request.param])
@@ -106,7 +106,14 @@ def mill(request, tmp_path_factory):
         yield cut
 
 
-@pytest.mark.parametrize("part", PARTS)
+ROUND_MILL = [
+    *((round_a, part) for part in PARTS),
+    (round_b, "strokes"),
+    (round_a_reversed, "inside"),
+]
+
+
+@pytest.mark.parametrize(("mill", "part"), ROUND_MILL, indirect=["mill"])
 def test_round_the_part_on_a_mill(mill, part):
     made, moves = mill(mill_program(PARTS[part]), "--safe", "1")
     assert_cut(made, PARTS[part])
