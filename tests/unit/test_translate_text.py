@@ -301,6 +301,8 @@ LAST = [  # control, text, how the sentence about its last line begins
 ELSEWHERE = [  # control, text, the line and the beginning of its sentence
     (HAAS, "G81 Z-1. R.1 L0\nM98 P5\nG83 Z-1. R.1 Q.1 L0\nM98 P5\nM30\nO5\nX1.\nM99", 7,
      "a drilling cycle is on, but not the same one on every way"),
+    (HAAS, "G81 Z-1. R.1\nM98 P5\nG83 Z-1. R.1 Q.1\nM98 P5\nM30\nO5\nX1. Z-2.\nM99", 7,
+     "a drilling cycle is on, but not the same one on every way"),
     (HAAS, "/WHILE[#1LT2]DO1\nEND1", 1, "the head or the end of a loop cannot be skipped"),
     (HAAS, "M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 5, "Z-#3: n"),
     (HAAS, "/#1=5.\nG0 X#1", 2, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
@@ -479,6 +481,7 @@ def machine_of(tmp_path):
         ("haas-mill", "mill_mm", "XYZ"), ("fanuc-lathe", "lathe_mm", "XZC"),
         ("fanuc-lathe", "lathe_mm_kinematics", "XZC"),  # whose Y is the face's
         ("mazak-integrex", "mill_mm", "XYZ"), ("mill-on-face", "lathe_mm", "XYZC"),
+        ("mill-round-part", "lathe_mm", "XYZC"), ("mill-round-part", "mill_a_mm", "XYZA"),
     ],
 )  # fmt: skip
 def test_the_axes_are_those_of_the_machine(name, ini, axes):
