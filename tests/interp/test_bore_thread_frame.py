@@ -43,6 +43,7 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",
         "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter", "D0": "no diameter",
+        "L99990": "P, Q and L make",
     },
     "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross", "Q.00001": "P, Q and L make"},
     "G12.6 Z-9 R0 I6 K2 P1 H1 D3": {"K.05": "too thin", "E.45": "no diameter", "E.434": "too thin"},
@@ -55,6 +56,8 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "J1.5": "whole", "Q0": "greater", "Q-1": "greater", "D99": "table", "I3.2": "tool diameter",
         "E3": "more than the length", "E-2": "more than the length", "D5": "no diameter",
     },
+    "G12.6 Z-9 R0 I3.5 P1 E-.1 D1": {"H0": "tool diameter"},
+    "G13.7 Z-4 I40 J30 R3 E.2 D1": {"J6.3": "2 x E0.2"},
     "G13.7 Z-4 I40 J30 R5 D1": {
         "I0": "greater", "I-4": "greater", "I6": "half", "I": "missing", "J": "missing",
         "R": "missing", "R-1": "least", "R2": "tool radius", "R16": "half", "Z": "missing",

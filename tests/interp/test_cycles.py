@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The cycles of all dialects on the stock interpreter: modes, units, refusals, messages.
 
-Their geometry is proved in test_valid_programs.py.
+Their geometry is proved in test_valid_cuts.py.
 """
 
 import functools

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G7.1 on the stock interpreter: its words, its state after, every refusal.
 
-Its geometry is proved in test_valid_programs.py.
+Its geometry is proved in test_valid_cuts.py.
 """
 
 import math

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12/G13 of the Haas dialect on the stock interpreter: D, codes in the block, helix and plunge.
 
-Modes, units and refusals are in test_cycles.py, the geometry in test_valid_programs.py.
+Modes, units and refusals are in test_cycles.py, the geometry in test_valid_cuts.py.
 """
 
 import pytest

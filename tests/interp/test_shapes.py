@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The shapes on a lathe's face: the travel that is checked, modes, refusals.
 
-Their geometry is proved in test_valid_programs.py.
+Their geometry is proved in test_valid_cuts.py.
 """
 
 import itertools

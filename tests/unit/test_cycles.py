@@ -215,6 +215,12 @@ def test_how_far_a_hole_goes(planner, words, radius, heights, corners):
     assert (*extent.heights, *extent.corners) == pytest.approx((*heights, *corners))
 
 
+def test_a_frame_goes_down_at_the_machine_s_share_of_the_feed():
+    words = Words("G13.7", words_of("Z-9 I40 J30 R12 D2"), MM)
+    numbers = plan_frame(words, COUNTERCLOCKWISE, PocketEntry(feed=40.0)).locals
+    assert numbers["plunge_feed"] == pytest.approx(0.4 * MM.feed)
+
+
 # ---------------------------------------------------------------- Haas
 
 
