@@ -16,14 +16,19 @@ The words are taken for what they are: whether the tool gouges on this path is a
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import NamedTuple
+
+import numpy as np
 
 from g12.cut_report import CutReport, SectionCut
 from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, crossings
-from support.oracle.toolpath import NO_LENGTH, Expected
+from support.contour_geometry import shape_of, spaced
 
+NO_LENGTH = 1e-6  # mm
+SPACING = 0.05  # mm of points
 BACK = math.pi - 1e-6  # radians: the contour goes back on itself
 COINCIDENT = 0.005  # mm: ends of parallels so near to each other meet in the middle
 ON_CURVE = 1e-5  # mm, of a crossing
@@ -61,19 +66,15 @@ def elements_of(report: CutReport, cut: SectionCut) -> Iterator[Element]:
     """Yield the elements of a reported section; a plunge is where the one before it ends."""
     unit, at, side = report.frame.mm, start_of(report, cut), 0
     for each in cut.elements:
-        place = each.line, each.z1 * unit, each.feed * unit
-        if each.start is None:
-            yield Element(
-                place[0], at * unit, at * unit, each.side, False, *place[1:2], feed=place[2]
-            )
-            continue
+        is_plunge = each.start is None
+        start, end = (at, at) if is_plunge else (each.start, each.end)
         centre = None if each.centre is None else each.centre * unit
-        ramp = each.side != side
+        ramp = not is_plunge and each.side != side
         yield Element(
-            place[0], each.start * unit, each.end * unit, each.side, ramp, place[1],
-            centre, each.sweep, place[2],
+            each.line, start * unit, end * unit, each.side, ramp, each.z1 * unit,
+            centre, each.sweep, each.feed * unit,
         )  # fmt: skip
-        at, side = each.end, each.side
+        at, side = end, side if is_plunge else each.side
 
 
 def start_of(report: CutReport, cut: SectionCut) -> complex:
@@ -91,37 +92,43 @@ class Corner(NamedTuple):
     corner: complex | None = None
 
 
-class ContourStep(NamedTuple):
-    """A move of the tool's centre, and the element that it cuts."""
+class Step(NamedTuple):
+    """A move of the tool's centre: its curve, its levels, and its element's line and feed."""
 
-    move: Expected
-    element: Element
+    curve: Curve
+    start_level: float
+    end_level: float
+    line: int
+    feed: float | None
+
+    @property
+    def length(self) -> float:
+        return abs(complex(self.curve.length, self.end_level - self.start_level))
+
+    def points(self) -> np.ndarray:
+        """Return points with their levels, rows of three."""
+        has_length = self.curve.length > NO_LENGTH
+        flat = spaced(shape_of(self.curve), SPACING) if has_length else np.full(2, self.curve.end)
+        levels = np.linspace(self.start_level, self.end_level, len(flat))
+        return np.column_stack([flat.real, flat.imag, levels])
 
 
-def contour_path(elements: Sequence[Element], height: float, radius: float) -> list[ContourStep]:
+def contour_path(elements: Iterable[Element], height: float, radius: float) -> list[Step]:
     """Return the path of the tool's centre along elements; it begins at a height.
 
     ``radius`` is the tool's.
     """
-    if not radius or not any(each.side for each in elements):
-        return list(as_programmed(elements, height))
-    path = parallel_path(elements, height, radius)
-    return path or list(as_programmed(elements, height))
+    elements = list(elements)
+    is_compensated = radius and any(each.side for each in elements)
+    path = parallel_path(elements, height, radius) if is_compensated else None
+    if path is None:
+        levels = [height, *(each.depth for each in elements)]
+        path = [step_of(each, each.curve, *ends) for each, ends in zip(elements, pairwise(levels))]
+    return [step for step in path if step.length > NO_LENGTH]
 
 
-def as_programmed(elements: Sequence[Element], height: float) -> Iterator[ContourStep]:
-    """Yield the moves of elements that are not compensated."""
-    for element in elements:
-        yield step_of(element, element.curve, height, element.depth)
-        height = element.depth
-
-
-def step_of(
-    element: Element, curve: Curve, start: float, end: float, name: str = "contour"
-) -> ContourStep:
-    """Return the step along an element, or an arc about the corner before it."""
-    name = "ramp" if element.ramp else name if element.length > NO_LENGTH else "plunge"
-    return ContourStep(Expected(name, curve, start, end, element.feed, line=element.line), element)
+def step_of(element: Element, curve: Curve, start: float, end: float) -> Step:
+    return Step(curve, start, end, element.line, element.feed)
 
 
 def is_cut(element: Element) -> bool:
@@ -129,9 +136,7 @@ def is_cut(element: Element) -> bool:
     return bool(element.side) and not element.ramp
 
 
-def parallel_path(
-    elements: Sequence[Element], height: float, radius: float
-) -> list[ContourStep] | None:
+def parallel_path(elements: Sequence[Element], height: float, radius: float) -> list[Step] | None:
     """Return the path of the tool's centre; None if a line is too short for its inside corners."""
     moves = [each for each in elements if each.length > NO_LENGTH]
     curves = [
@@ -140,7 +145,7 @@ def parallel_path(
     joints = [None, *map(joint_of, zip(moves, moves[1:]), zip(curves, curves[1:])), None]
     if any(joint is TIGHT for joint in joints):
         return None
-    path: list[ContourStep] = []
+    path: list[Step] = []
     at, index = elements[0].start, 0
     for element in elements:
         if element.length > NO_LENGTH:
@@ -225,8 +230,8 @@ def followed_part(
     return followed
 
 
-def placed(element: Element, curves: Sequence[Curve], height: float) -> Iterator[ContourStep]:
+def placed(element: Element, curves: Sequence[Curve], height: float) -> Iterator[Step]:
     """Yield the moves along an element: an arc about its corner is level."""
     for curve in curves[:-1]:
-        yield step_of(element, curve, height, height, "corner")
+        yield step_of(element, curve, height, height)
     yield step_of(element, curves[-1], height, element.depth)
