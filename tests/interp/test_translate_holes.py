@@ -165,3 +165,11 @@ def test_the_spindle_becomes_c_by_the_machines_codes():
         control = on_machine(control_of("haas-lathe"), read_ini(ini))
         lines = translate_program(text, control).text.splitlines()
         assert (lines[1].split()[-1], lines[3]) == codes
+
+
+def test_pecks_in_the_side_are_radius_values_and_g99_stays_at_r(tracer):
+    text = "G99 G87 C35. X30. R-4. Q4000 Z-4. F50.\nC125.\nG80"
+    moves = traced(tracer, text, control_of("fanuc-lathe-b")).moves
+    assert [m.end[X] for m in moves if m.kind == "feed"] == near((22, 18, 15) * 2)
+    (turn,) = [m for m in moves if m.end[C] != m.start[C] == 35]
+    assert turn.end[X] == near(26)

@@ -254,6 +254,12 @@ def test_the_passes_of_a_thread_add_up_by_the_controls_rule(
     assert {round(m.feed / lead, 6) for m in passes} == {1.0}
 
 
+def test_the_chamfer_of_fanucs_g76_is_in_tenths_of_the_lead(tracer):
+    cycle = "G0 X32. Z5.\nG76 P011060 Q100 R0\nG76 X28.16 Z-20. P920 Q920 F2."
+    moves = moves_of(tracer, f"{HEAD['fanuc-lathe']}{cycle}")
+    assert [m.end[2] for m in moves if m.kind == "feed"] == near((-18, -20))
+
+
 REFUSED = [
     ("G71 U2. R.5\nG71 P10 Q30 U.4 W.1 F.3\nN10 G0 X20.\nN20 G1 X50.",
      "N30 is not in this program"),
