@@ -33,7 +33,7 @@ ENTRIES = dict(x=1, y=2, z=-0.5, w=0.1, o=0.5, r=1.5, d=2, c=2, k=0.2, l=0.02, p
 CODE_WORDS = "X1 Y2 Z-.5 I.1 E.5 R1.5 D2 H2 K.2 Q.02 P5 F30"
 
 
-@pytest.mark.parametrize(("g", "code"), [(0, "G12.2"), (7, "G13.2"), (OUT, "G12.2")])
+@pytest.mark.parametrize(("g", "code"), [(7, "G13.2"), (OUT, "G12.2")])
 def test_the_call_is_the_code(inch, g, code):
     by_code, by_call = cut(inch, f"{code} {CODE_WORDS}"), cut(inch, call(g=g, **ENTRIES))
     assert [move._replace(line=0, remap="") for move in by_call.moves] == [
@@ -121,12 +121,6 @@ def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
 
 
 # ---------------------------------------------------------------- refusals
-
-
-def test_a_second_motion_code_in_the_block_is_refused(inch):
-    traced = inch.trace_text([*BEFORE, "G13.2 G4 P1 X1 Y2 Z-.5 I.1 R1.5 H2"])
-    assert traced.error is not None
-    assert len(traced.moves) == 1
 
 
 @pytest.mark.parametrize("word", ["K1", "X1 Y2 Z-3"])

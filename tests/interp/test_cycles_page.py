@@ -127,6 +127,7 @@ def test_the_flats_of_a_polygon_are_where_they_are_typed(page):
 def test_what_is_wrong_is_said_in_the_cycle_s_words(page, texts, said):
     sketch = page("mill_mm").show("haas", **{"i": "6", "k": "20", "q": "5", **texts})
     assert (sketch.state, sketch.text[: len(said)]) == (REFUSED, said)
+    assert bool(sketch.cut) == ("axis" in said)
 
 
 def test_travel_is_judged_with_the_work_offset_and_depth_is_below_it(page):
@@ -345,7 +346,7 @@ def test_a_machine_that_cannot_be_read_is_a_sentence(page, tmp_path, text):
     if text:
         (tmp_path / "mill_headless.ini").write_text(text)
     shown = page("mill", folder=tmp_path)
-    assert (shown.sketch.state, shown.entries) == (REFUSED, ())
+    assert (shown.sketch.state, shown.entries, shown.tool()) == (REFUSED, (), None)
     assert "mill_headless.ini" in shown.sketch.text
     with pytest.raises(UsageError, match="mill_headless"):
         shown.save(tmp_path / "cycles.ngc")

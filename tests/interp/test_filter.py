@@ -140,10 +140,8 @@ def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):
     ("machine", "program"),
     [
         ("mill_inch", "haas-mill/counterbore"),
-        ("mill_mm", "haas-mill/homes"),
         ("mill_yasnac_mm", "yasnac-mill/with_points"),
         ("mill_mitsubishi_mm", "mitsubishi-mill/circle"),
-        ("lathe_inch", "fanuc-lathe/grooves"),
         ("lathe_mm", "fanuc-lathe/hexagon"),
     ],
 )

@@ -81,17 +81,16 @@ def test_an_offset_of_g92_from_before_is_said(reported, tmp_path, name, in_force
 
 
 @pytest.mark.parametrize(
-    ("ini", "block", "error"),
+    ("name", "ini", "block", "error"),
     [
-        ("mill_mm", "G154 P1", "G-code out of range: G154, a code of haas-mill"),
-        ("mill_mm", "G0 X1 G54.1 P1", "Unknown g code used: G54.1, a code of fanuc-mill, "
+        ("trace", "mill_mm", "G154 P1", "G-code out of range: G154, a code of haas-mill"),
+        ("verify", "mill_mm", "G0 X1 G54.1 P1", "Unknown g code used: G54.1, a code of fanuc-mill, "
          "yasnac-mill, mitsubishi-mill"),
-        ("lathe_mm", "G112", "G-code out of range: G112, a code of haas-lathe, fanuc-lathe, "
-         "fanuc-lathe-b and others"),
-        ("mill_mm", "G0 X1 (G68)\nG68.1", "Unknown g code used: G68.1"),
+        ("plot", "lathe_mm", "G112", "G-code out of range: G112, a code of haas-lathe, "
+         "fanuc-lathe, fanuc-lathe-b and others"),
+        ("trace", "mill_mm", "G0 X1 (G68)\nG68.1", "Unknown g code used: G68.1"),
     ],
 )  # fmt: skip
-@pytest.mark.parametrize("name", ["trace", "verify", "plot"])
 def test_a_code_of_another_control_is_named_with_that(reported, tmp_path, name, ini, block, error):
     picture = ["-o", str(tmp_path / "part.png")] if name == "plot" else []
     text = f"G0 X1\n{block}\nM2\n"
@@ -103,16 +102,15 @@ def test_a_code_of_another_control_is_named_with_that(reported, tmp_path, name, 
 
 
 @pytest.mark.parametrize(
-    ("text", "error"),
+    ("name", "words", "text", "error"),
     [
-        ("G0 X1\nG0 Q1 X\nM2\n", "PROGRAM:2: "),
-        ("G0 X1\nG0 C1\nM2\n", "PROGRAM:2: Bad character 'c' used: this INI's machine has axes"),
-        ("", "PROGRAM: File ended with no percent sign"),
+        ("trace", [], "G0 X1\nG0 Q1 X\nM2\n", "PROGRAM:2: "),
+        ("trace", [], "", "PROGRAM: File ended with no percent sign"),
+        ("verify", [], "G0 X1\nG0 C1\nM2\n", "PROGRAM:2: Bad character 'c' used: this INI's "
+         "machine has axes"),
+        ("plot", ["-o", "no.png"], "G0 X1\nG0 Q1 X\nM2\n", "PROGRAM:2: "),
     ],
-)
-@pytest.mark.parametrize(
-    ("name", "words"), [("trace", []), ("verify", []), ("plot", ["-o", "no.png"])]
-)
+)  # fmt: skip
 def test_a_program_with_an_error_is_named(
     reported, name, words, text, error, tmp_path, monkeypatch
 ):

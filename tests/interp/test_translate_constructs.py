@@ -92,12 +92,16 @@ CONSTRUCTS = [
     ("haas-mill", "G4 P250\nG4 P1.5", "G4 P.25\nG4 P1.5"),
     ("haas-mill", "G10 L2 P0 X.5\nX1.\nG10 L2 P0 X0", "G52 X.5\nX1\nG52 X0"),
     ("haas-mill", "G10 L20 P3 X.5 Y0 Z0\nG112 X1. Y1.\nG54", "X1.5 Y1"),
+    ("haas-mill", "G10 L20 P2 X.5 Y0\nG10 L2 P1 X1. G90\nG154 P2 X1. Y1.\nG54 X1.\nG10 L2 P1 X0",
+     "X1.5 Y1\nX2\nG10 L2 P1 X0"),
     # subprograms, macros
     ("haas-mill", "G65 P5 X2. Z.5\nX2.\nM30\nO5\nG1 X#24 Z#26\nM99", "G1 X2 Z.5\nX2"),
     ("haas-mill", "#1=[-5.5 MOD 3]\n#2=[5.5 MOD 3]\nX#1 Y#2", "X-2.5 Y2.5"),
     # the last D is a pocket's, wherever it stood; a T is no tool before its M6
     ("haas-mill", "T2 M6\nG43 H2 D1 Z.5\nG12 I1. F9.\nD0\nG13 I1.", "T2 M6\nG43 H2 Z.5\n"
      "G12 I1 D1 F9\nG13 I1 D0"),
+    ("fanuc-mill", "M98 P30012\nM98 P12 L2\nM30\nO0012\nG91 G1 X.5\nG90 M99",
+     "G1 X1.5\nX2\nX2.5\nX3\nX3.5"),
     ("fanuc-mill", "M98 Q5 L2\nG90\nM98 Q6\nM30\nN5 G91 G1 X.5\nM99\nN6 G0 Y3.\nM99",
      "G91 G1 X.5\nX.5\nG90\nG0 Y3"),
     ("haas-mill", "T2 M6\nM3 S100\nG1 X2. M9\nX3. M5", "T2 M6\nM3 S100\nG1 X2\nM9\nX3\nM5"),

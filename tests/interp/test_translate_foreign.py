@@ -4,9 +4,6 @@
 import pytest
 
 from g12.tools.errors import ProgramError
-from g12.tools.machine.ini import read_ini
-from g12.tools.preview.tracer import Tracer
-from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import translate_program
 from support.foreign_programs import (
     FOREIGN,
@@ -39,30 +36,13 @@ def test_a_translated_program_is_the_same_part(tracers, name):
     assert_same_part(translated, tracer.trace(FOREIGN / f"{name}.ngc", alone=True))
 
 
-REFUSED = sorted((FOREIGN / "refused").glob("*.nc"))
-
-
-@pytest.mark.parametrize("path", REFUSED, ids=lambda path: path.stem)
-def test_a_wrong_program_is_refused_with_its_sentence(path):
-    control, _, _ = path.stem.partition(".")
-    sentence = path.with_suffix(".txt").read_text(encoding="utf-8").strip()
-    with pytest.raises(ProgramError) as refusal:
-        translation(path, control)
-    assert str(refusal.value) == f"{path}:{sentence}"
-
-
-def test_the_programs_are_found():
-    assert len(PAIRS) >= 30 and len(REFUSED) >= 20
-
-
 MANUALS = FOREIGN / "manuals"
 
 
 @pytest.mark.parametrize("name", ["O60121", "O60131"])
 def test_the_haas_manuals_programs_unedited(tracers, name):
     printed = PROGRAMS / "haas" / f"{name}.ngc"
-    assert (MANUALS / f"{name}.nc").read_bytes() == printed.read_bytes()
-    text = translation(MANUALS / f"{name}.nc", "haas-mill")
+    text = translation(printed, "haas-mill")
     tracer = tracers("haas-mill")
     assert_same_part(tracer.trace_text(text), tracer.trace(printed))
 
@@ -116,43 +96,6 @@ def cut_at_feed(traced):
 def near_each(rows):
     """Return what equals rows of numbers to 1e-6."""
     return [near(row) for row in rows]
-
-
-@pytest.mark.parametrize("unit", ["mill_inch", "mill_mm"])
-@pytest.mark.parametrize(("code", "scale"), [("G20", 25.4), ("G21", 1.0)])
-def test_offsets_by_number_do_not_depend_on_units(unit, code, scale, tmp_path):
-    path = tmp_path / "offsets.nc"
-    path.write_text(f"{code} G90\nG10 L20 P2 X2. Y1. Z0.\nG154 P2 G0 X1. Y0. Z0.\nM30\n")
-    with Tracer(SIM / f"{unit}.ini") as tracer:
-        traced = tracer.trace_text(translation(path, "haas-mill"))
-    assert traced.moves[-1].end[:2] == near((3 * scale, scale))
-
-
-FOUR_AXES = {"TRAJ": {"COORDINATES": "X Y Z A"}}
-ON_FOUR = "G20 G90 G54 G0 X1. A1.\n"
-
-
-@pytest.mark.parametrize(
-    ("foreign", "own"),
-    [
-        ("G10 L2 P1 A5.\nA1.", "A6"),
-        ("G52 A5.\nA1.\nG10 L2 P0 X.5 A7.\nX1. A1.", "A6\nX1.5 A8"),
-        ("G92 A5.\nA6.", "A2"),
-        ("G10 L20 P3 X.5 A90.\nG154 P3 X1. A1.", "X1.5 A91"),
-        ("G10 L20 P3 A1.\nG112\nG10 L20 P3 X.5 A90.\nX1. A1.", "X1.5 A91"),
-    ],
-)
-@pytest.mark.parametrize("unit", ["G20", "G21"])
-@pytest.mark.parametrize("machine", ["mill_inch", "mill_mm"])
-def test_angles_of_offsets_are_degrees_in_every_unit(tmp_path, machine, unit, foreign, own):
-    ini = read_ini(SIM / f"{machine}.ini").replaced(FOUR_AXES)
-    control = on_machine(control_of("haas-mill"), ini)
-    head = ON_FOUR.replace("G20", unit)
-    result = translate_program(f"{head}{foreign}\nM30\n", control)
-    assert result.refused == []
-    with Tracer(ini) as tracer:
-        expected = tracer.trace_text(f"{head}{own}\nM30\n", alone=True)
-        assert_same_part(tracer.trace_text(result.text, alone=True), expected)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from g12.tools.machine.ini import read_ini
@@ -166,19 +165,3 @@ def test_the_spindle_becomes_c_by_the_machines_codes():
         control = on_machine(control_of("haas-lathe"), read_ini(ini))
         lines = translate_program(text, control).text.splitlines()
         assert (lines[1].split()[-1], lines[3]) == codes
-
-
-def test_random_programs_drill_what_they_say(tracer):
-    chance = np.random.default_rng(28)
-    for _ in range(20):
-        x, z, c = chance.uniform(5, 50), chance.uniform(-30, -1), chance.uniform(-90, 90)
-        r, q, step = chance.uniform(-9, -0.1), chance.integers(1, 9000), chance.uniform(-99, 99)
-        count = chance.integers(1, 6)
-        text = f"G83 X{x:.3f} C{c:.3f} Z{z:.3f} R{r:.3f} Q{max(q, 100)} F200."
-        angles = [round(c, 3) + round(step, 3) * n for n in range(count + 1)]
-        text += "".join(f"\nC{at:.3f}" for at in angles[1:]) + "\nG80"
-        found = holes(traced(tracer, text, control_of("fanuc-lathe")))
-        assert found == [
-            pytest.approx((round(x, 3) / 2, round(z, 3), at, 10 + round(r, 3)), abs=1e-5)
-            for at in angles
-        ]

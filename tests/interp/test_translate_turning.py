@@ -277,7 +277,7 @@ REFUSED = [
     ("G76 X20. Z-5. P500 F1.", "the thread's height and the depth of its first pass"),
     ("G71 U2.\nG71 P1 Q2\nN1 G0 X20.\nG1 Z-9. R2.\nN2 X50.", "line 6: R beside G1: write"),
     ("G71 U2.\nG71 P1 Q2\nN1 G0 X20.\nG1 Z-9. ,C2.\nN2 X50.",
-     "line 6: a contour has moves only"),
+     "line 6: ,C2. draws a corner: write its line or arc as a block"),
     ("G1 X20. I1.", "I beside G1: write the corner's line or arc"),
     ("G73 U2. W1. R3", "G73: pattern repeating: write G71 for roughing"),
     ("G76 X20. Z-9. K1. D.2 P3 F1.", "G76 P3: write P1: one flank"),

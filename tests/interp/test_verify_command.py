@@ -139,19 +139,6 @@ def test_json_of_a_polar_section(as_json):
     assert code == 0
     assert 0 < section["deviation"] < 0.005 and section["c_speed"] < section["c_limit"] == 360
     assert section["segments"] > 20 and section["shortest"] <= section["longest"]
-    assert section["seconds_planned"]["segments"] == pytest.approx(10.3, rel=0.03)  # of a run
-
-
-def test_what_a_section_gains_from_kinematics(verify, as_json):
-    hexagon = HEXAGON.read_text().replace("F1000", "F2000")
-    _, out, _ = verify(hexagon, "--full", ini=LATHE)
-    (row,) = [line for line in out.splitlines() if line.startswith("  kinematics ")]
-    segments, face, least = map(float, re.findall(r"([0-9.]+) s ", row))
-    assert (segments, face) == pytest.approx((7.7, 5.8), rel=0.05)  # of runs
-    assert 5.5 < least <= face
-    assert "kinematics" not in verify(hexagon, ini=LATHE)[1]
-    _, reported = as_json(PROGRAMS / "cylinder" / "helix.ngc", ini=LATHE)
-    assert {each["seconds_planned"] for each in reported["sections"]} == {None}
 
 
 def test_json_of_a_rapid_through_material(as_json):
@@ -241,7 +228,9 @@ def test_plot_shows_where_x0_lies(cut, plot, tmp_path):
     assert says in (tmp_path / "x.svg").read_text()
 
 
-@pytest.mark.parametrize(("suffix", "extra"), [("png", []), ("svg", ["--feeds"]), ("pdf", [])])
+@pytest.mark.parametrize(
+    ("suffix", "extra"), [("png", []), ("svg", ["--units", "inch"]), ("pdf", [])]
+)
 def test_plot_writes_the_requested_picture(suffix, extra, plot, tmp_path):
     path = tmp_path / f"picture.{suffix}"
     code, out, err = plot(GOOD, *extra, to=path.name)

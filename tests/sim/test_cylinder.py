@@ -20,7 +20,7 @@ from support.polar_programs import (
 from support.sim_machines import PROGRAMS, SIM
 
 LIMIT = 0.005 + 0.001  # POLAR_TOLERANCE, and what sampling may add
-SPEEDS = {"helix": 2500, "textbook": 1500, "slot": 1000, "cam_groove": 1000}  # not 250 mm/min
+SPEEDS = {"helix": 2500, "textbook": 1500, "cam_groove": 1000}  # not 250 mm/min
 C_SPEED = 360
 
 

@@ -4,7 +4,6 @@
 import pytest
 
 from g12.tools.commands import main
-from support.foreign_programs import FOREIGN
 from support.operated_machine import smoke
 from support.sim_machines import SIM
 
@@ -29,8 +28,9 @@ def test_the_headless_screen_opens_a_haas_program(program):
     assert "slot.nc: done" in log
 
 
-def test_the_headless_screen_tells_what_the_filter_refuses():
-    program = FOREIGN / "refused" / "haas-mill.probing.nc"
+def test_the_headless_screen_tells_what_the_filter_refuses(tmp_path):
+    program = tmp_path / "probing.nc"
+    program.write_text("O6\nG20 G90 G54 G0 X0 Y0\nG65 P9810 Z-.5 F30.\nM30\n")
     code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=120)
     assert code == 1, log
     assert f"error: {program}:3: O9810 is not in this file" in log

@@ -13,26 +13,23 @@ from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 MACHINES = [
-    pytest.param(
-        name, start, marks=[pytest.mark.xdist_group(f"interruptions {name} {start}"), *marks]
-    )
+    pytest.param(name, marks=[pytest.mark.xdist_group(f"interruptions {name}"), *marks])
     for name, marks in (
         ("mill_mm", []),
         ("mill_a_mm", []),
         ("lathe_mm", []),
         ("lathe_mm_kinematics", [needs_kinematics]),
     )
-    for start in (0, 5)
 ]
 
 
-@pytest.mark.parametrize(("name", "start"), MACHINES)
-def test_modes_and_next_motion_after_five_interruptions(name, start):
+@pytest.mark.parametrize("name", MACHINES)
+def test_modes_and_next_motion_after_each_interruption(name):
     ini, overrides = machine_of(name)
     with Machine(ini, overrides=overrides) as machine:
         interrupted = Interrupted(machine, name)
-        for number in range(start, start + 5):
-            interrupted.once(random.Random(f"{name} {number}"), HOWS[number % len(HOWS)])
+        for number, how in enumerate(HOWS):
+            interrupted.once(random.Random(f"{name} {number}"), how)
 
 
 SECTION = ["G12.1", "G1 C20", "X-30", "C-20", "X30", "C0", "G13.1"]

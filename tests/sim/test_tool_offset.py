@@ -16,8 +16,6 @@ ARCS = (
 )  # fmt: skip
 WAYS = [
     ("lathe_mm", 8.0, HEXAGON.read_text()),
-    pytest.param("lathe_mm_kinematics", -3.0, HEXAGON.read_text(), marks=needs_kinematics),
-    ("lathe_inch", -0.3, ARCS),
     pytest.param("lathe_inch_kinematics", -0.3, ARCS, marks=needs_kinematics),
 ]
 

@@ -26,13 +26,13 @@ TRIED = {  # by file
     "soak_text": "hostile files",
 }
 # tests that wait for real motion while the cores are free, those with the longest runs first
-WAITING = ("test_programs_as_they_run", "soak_kinematics", "soak_aborts", "soak_spindle_c")
+WAITING = ("test_programs_as_they_run", "soak_kinematics", "soak_interruptions", "soak_spindle_c")
 COUNTED = "soak: "  # begins the name of a report's property
 
 
 @pytest.hookimpl(trylast=True)  # after the choice of -k
 def pytest_collection_modifyitems(items):
-    Share.of(len(items))
+    Share.tests = len(items)
     for item in (item for item in items if hasattr(item.obj, "hypothesis")):
         item.obj._hypothesis_internal_use_settings = settings(
             max_examples=EXAMPLES,
@@ -47,9 +47,9 @@ def pytest_collection_modifyitems(items):
 
 
 def pytest_runtest_setup(item):
-    Share.begin()
-    if Share.is_used():
+    if time.time() > END:
         pytest.skip(TIME_IS_UP)
+    Share.begin()
 
 
 @pytest.hookimpl(hookwrapper=True)

@@ -2,6 +2,7 @@
 """Every reader gets files with random damage: it reads them or refuses them in its own words."""
 
 import json
+import re
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -11,13 +12,13 @@ from g12.tools.dynapath import program_from_events
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
-from g12.tools.plot.scene import COMMENTS
 from g12.tools.regress.recording_text import TraceTextError, read_recording, text_of
 from g12.tools.translate.blocks.control import ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.program import translate_program
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
+COMMENTS = re.compile(r"\([^)]*\)|;.*")
 INI = (SIM / "lathe_mm.ini").read_bytes()
 TABLE = (SIM / "mill_mm.tbl").read_bytes()
 VAR = b"5220\t1.0\n5221\t10.0\n5222\t-3.5\n5241\t0.0\n"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Random programs in which nothing is wrong, for the oracle of the planners and for verify."""
+"""Random programs in which nothing is wrong, for the pages' judge and for verify."""
 
 import json
 import random

@@ -62,10 +62,8 @@ def written(chance, code, words, start, diameter):
         shown.append(f"{letter}{given:.6f}")
         read[letter] = given * scale + base
     at = " ".join(f"{axis}{value / unit:.9f}" for axis, value in zip("XYZ", start))
-    modes = (
-        f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f} F{300 / unit}"
-    )
-    before = (modes, f"G0 {at}", "G91" if incremental else "G90")
+    modes = f"{'G21' if unit == 1.0 else 'G20'} G17 G40 G90 G94 G64 P{0.01 / unit:.6f}"
+    before = (modes, f"G0 {at} F{300 / unit}", "G91" if incremental else "G90")
     return Block(code, read, before, f"{code} {' '.join(shown)}", start, diameter / 2)
 
 
@@ -107,7 +105,8 @@ def thread(chance):
         words["R"] = chance.uniform(-0.5, 0.4)
     outside, taper = chance.random() < 0.4, chance.random() < 0.3
     if taper:
-        words["E"] = chance.choice((1 / 16, chance.uniform(0.01, 0.2), -chance.uniform(0.01, 0.1)))
+        tapers = ((0.01, 0.2), (0.5, 1.0), (-0.1, -0.01))
+        words["E"] = chance.choice((1 / 16, *(chance.uniform(*each) for each in tapers)))
     narrower = max(0.0, words.get("E", 0.0)) / 2 * 27
     if outside:
         words |= {"I": narrower + 2 * pitch + chance.uniform(1, 20), "H": 1}
@@ -247,6 +246,8 @@ def check_bore(block, moves):
         at, z = sampled(move)
         assert (np.abs(at - centre) < last + RADIUS).all() or z.min() > top - 1e-6
         assert move.kind != "rapid" or (np.abs(at - centre)[z < top - 1e-6] < 1e-6).all()
+        falls = move.kind == "rapid" and move.end[2] < move.start[2]
+        assert not falls or move.end[2] > min(block.start[2], top + 1) - 1e-6
 
 
 def check_thread(block, moves):
@@ -342,6 +343,16 @@ def check_frame(block, moves):
         if low.any() and line.length > 1e-9:
             beyond = finished.buffer(-RADIUS) if outside else finished.buffer(RADIUS)
             assert not line.intersects(beyond) if outside else beyond.covers(line)
+    rises = [move.end[2] - move.start[2] for move in moves if move.end[2] > move.start[2] + 1e-6]
+    assert max(rises[:-1], default=0.0) < 1 + 1e-6  # between the levels
+    assert max(move.end[2] for move in moves) < block.start[2] + 1e-6
+    for move in moves:
+        fall = move.start[2] - move.end[2]
+        if move.kind != "rapid" and move.length > 1e-6:
+            due = block.words.get("P", 300.0) if fall > 1e-6 else 300.0
+            assert abs(move.feed - due) < 1e-3
+        if move.kind == "arc":
+            assert fall <= math.tan(math.radians(3)) * move.length * (1 + 1e-6)
     step = block.words.get("K", 1e9)
     heights = [block.start[2], *sorted(levels, reverse=True)]
     assert (-np.diff(heights) < step + 1e-5).all() and abs(heights[-1] - block.Z) < 1e-5

@@ -9,8 +9,8 @@ import numpy as np
 
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import shape_of
-from support.oracle.contour import contour_path, elements_of
 from support.sim_machines import PROGRAMS, SIM
+from support.toolpath import contour_path, elements_of
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
@@ -54,11 +54,10 @@ def toolpath_of(name, ini):
     with Tracer(ini, reports=True) as lathe:
         traced = lathe.trace(PROGRAMS / "polar" / f"{name}.ngc")
     for at, *_, report in traced.cuts:
-        elements, mm = list(elements_of(report, report.cut)), report.frame.mm
-        radius = traced.radius(at)
-        for step in contour_path(elements, report.at[2] * mm, radius):
-            if step.move.curve.length:
-                path[step.move.line].append(shape_of(step.move.curve))
+        elements, height = elements_of(report, report.cut), report.at[2] * report.frame.mm
+        for step in contour_path(elements, height, traced.radius(at)):
+            if step.curve.length:
+                path[step.line].append(shape_of(step.curve))
     return path
 
 

@@ -1,21 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The planners of the cycles without LinuxCNC: what each refuses, and the locals of its sub.
+"""The planners of the cycles without LinuxCNC: refusals, messages, edges of what can be cut.
 
-test_circle_mill.py has the locals of the event.
+What they cut is judged in interp/test_valid_cuts.py.
 """
 
+import itertools
 from functools import partial
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from g12.cycles import mitsubishi, yasnac
+from g12.cycles.bore import plan_bore
 from g12.cycles.circle_mill import plan_call, plan_code
+from g12.cycles.frame import plan_frame
 from g12.cycles.haas import plan_pocket
-from g12.cycles.plan import EventPlanes, PocketEntry
+from g12.cycles.plan import STRAIGHT_DOWN, EventPlanes, PocketEntry
+from g12.cycles.thread import plan_thread
 from g12.errors import Refusal
-from g12.request.common import CycleExtent
+from g12.request.common import COUNTERCLOCKWISE, CycleExtent
 from g12.request.words import Tool, Words
 from support.planner_context import INCH, MM, reported, words_of
 
@@ -57,29 +59,21 @@ def too_near(apart, to):
 
 REFUSED = {
     "haas": [
-        ("R.5 I1", "R0.5 is not a word of this cycle, which knows X Y Z I K Q L D F"),
-        ("D1", "I is missing: the radius of the first circle"),
         ("I.12505 D1", "I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0002"),
         ("I0 D0", "I0 must be greater than 0"),
-        ("I.5 K.5 Q.1", "I0.5 must be less than K0.5"),
         ("I.5 L0", "L0 must be at least 1"),
         ("I.5 L200000", "L makes 200000 circles, the most is 100000"),
-        ("I.5 D77", "D77 is not in the tool table"),
         ("I.5 K1 Q1e-320", "Q9.99989e-321 makes 1000000001 circles, the most is 100000"),
     ],
     "yasnac": [
         ("I0", "I0 must not be 0"),
         ("I-5 R-6 D2", "I-5 must exceed the tool radius 10 (D2) in size"),
-        ("I50 R50 D2", beyond("R50", 40, WITH_D,
-         "it must be from 0 to less than X40, where I50 puts it")),
         ("I30 R29.99746", beyond("R29.99746", 29.99746, NO_D,
          too_near(0.00254, "X30, where I30 puts it"))),
         ("I50 R20 K20.004 Q1 D2", beyond("K20.004", 10.004, WITH_D,
          too_near(0.004, "X10, where the cut begins"))),
         ("I-50 R-20 K-49.999 Q1", beyond("K-49.999", -49.999, NO_D,
          too_near(0.001, "X-50, where I-50 puts it"))),
-        ("I50 R20 J20", "R and J are the same word: give one of them"),
-        ("I50 K20", "K20 needs Q as well"),
         ("I50 K50 Q1", beyond("K50", 50, NO_D,
          "it must be between X0 and X50, where I50 puts it")),
         ("I50 R30 K30 Q1 D2", beyond("K30", 20, WITH_D,
@@ -87,49 +81,35 @@ REFUSED = {
         ("I50 L0", "L0 must be at least 1"),
         ("I50 D3", "D3 has the negative diameter -4 in the tool table"),
         ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
-        ("I50 Z-1", "Z-1 is not a word of this cycle, which knows I R (or J) K Q L D F"),
     ],
     "mitsubishi": [
-        ("R.5 D2", "R0.5 is not a word of this cycle, which knows I D F"),
-        ("I50", "D is missing: the tool whose radius reduces the circle, D0 for none"),
         ("I0 D0", "I0 must be greater than the tool radius 0 (D0) by at least 0.00508"),
     ],
     "pocket": [
-        ("X", "X is missing: the circle's centre"),
         ("Y", "Y is missing: the circle's centre"),
         ("Z", "Z is missing: the final depth"),
         ("R", "R is missing: the circle's radius"),
-        ("I", f"I {NO_PLANE}"),
         ("H", f"H {SIDE}"),
         ("H3", "H3 must be at most 2"),
-        ("D4", "D4 must be at most 3: D is the direction of the cut,"
-         " the cutter is the tool in the spindle"),
-        ("D.5", "D0.5 must be a whole number"),
         ("J.00005", "J0.00005 must be at least 0.0002"),
         ("Q.00005", "Q0.00005 must be at least 0.0002"),
         ("L1", "L1 needs Q as well: the finish dimension"),
         ("Q.02 L2", "L2 must be at most 1"),
-        ("E.05", "E0.05 must not be below the first reference plane I0.1"),
         ("Z.1", "Z0.1 must be below the first reference plane I0.1"),
         ("Z.09 Q.02", "Z0.09 must be below the first reference plane I0.1 by more than Q0.02"),
         ("R.27 Q.02", "R0.27 must be greater than the tool radius 0.25 (T1) + Q0.02"),
-        ("W1", "W1 is not a word of this cycle, which knows X Y Z I E R D H K J Q L P F"),
         ("J.001 K.0001", "J and K make 7500000 circles, the most is 100000"),
     ],
     "perimeter": [
         ("H1 J.3", "J0.3 is the roughing width of a pocket"),
-        ("H0 Q.02", f"Q0.02: {NO_FINISH} (H0)"),
-        ("R.2", "R0.2 must be greater than the tool radius 0.25 (T1)"),
         ("H0 R.00005", "R0.00005 must be at least 0.0002"),
     ],
     "call": [
-        ("W", f"W {NO_PLANE}"),
         ("C", f"C {SIDE}"),
         ("G1", "G1 must be 0 (perimeter) or 7 (pocket)"),
         ("O0", "O0 must not be below the first reference plane W0.1"),
         ("L0", "L0 must not be 0; -9999 leaves it out"),
         ("F0", "F0 must be greater than 0"),
-        ("V-1", "V-1 must be greater than 0 (a call has 15 entries, -9999 leaves one out)"),
         ("C0 L-.02", f"L0.02: {NO_FINISH} (C0)"),
     ],
 }  # fmt: skip
@@ -184,9 +164,7 @@ OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inc
     ("name", "words", "text"),
     [
         ("haas", "I.5 D1", "greater than the tool radius 6{} (D1)"),
-        ("haas", "I6.001 D1", "must exceed the tool radius 6{} (D1) by"),
         ("haas", "I7 K30 Q13 D1", "Q13 is greater than the tool diameter 12{}: material is left"),
-        ("haas", "I19 K30 Q9 D1", "I19 is greater than 1.5 x the tool diameter 12{}: a core is"),
         ("yasnac", "I.5 D1", "must exceed the tool radius 6{} (D1) in size"),
         ("yasnac", "I9 R1 D1", "centre (tool radius 6{}, D1): it must be"),
         ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1) by"),
@@ -218,36 +196,25 @@ def test_how_far_each_goes():
         assert event.extent == CycleExtent("G17", (3, 4, -9), radius, (2, 5, -9))
 
 
-# ---------------------------------------------------------------- Haas
-
-
-def ring_radii(numbers):
-    """Walk the links as the NGC body does."""
-    radii, grow = [numbers["first_radius"]], numbers["step"]
-    for left in range(numbers["links"], 0, -1):
-        radii.append(radii[-1] + grow)
-        grow -= numbers["shorter"] * (left == 2)
-    return radii
-
-
-def test_a_spiral_ends_at_the_finished_radius():
-    found = ring_radii(plan("haas", "I.3 K.7 Q.2 D1 Z-1", None, "spiral").locals)
-    assert found == pytest.approx([0.175, 0.275, 0.375, 0.475, 0.575], abs=1e-12)
-
-
-def test_modes_that_can():
-    assert plan("haas", "I.75 Z-1 D1", per_revolution=True, speed=100.0)
-    assert plan("haas", "X1 I.75 Z-1 D1", offset_pending=True)  # X ends the offset
-
-
 @pytest.mark.parametrize(
-    ("words", "found", "radius", "commanded"),
-    [("I.75", dict(last_cutter=Tool(0, 0.2)), 0.55, None), ("I.1252 D1", {}, 0.0002, 0.125)],
+    ("planner", "words", "radius", "heights", "corners"),
+    [
+        (partial(plan_bore, steepest=3.0), "Z-9 R0 I25 P1 K21", 15, (10, -9), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1", 10, (10, -9, 0.25), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1 E-.1 J3", 10.45, (10, -9, -1.5), (0, 0)),
+        (plan_thread, "Z-9 R0 I20 P1 K19 H1", 30 * (1 + 4 / 58), (10, -9, 1 / 58), (0, 0)),
+        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R12 H1", 2, (10, -9), (8, 3)),
+        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R5 H2", 33, (10, -9), (15, 10)),
+    ],
 )
-def test_the_cutter_is_the_block_s_then_the_last_commanded(words, found, radius, commanded):
-    pocket = plan("haas", f"{words} Z-1", **found)
-    assert pocket.locals["first_radius"] == pytest.approx(radius)
-    assert (pocket.commanded_cutter and pocket.commanded_cutter.radius) == commanded
+def test_how_far_a_hole_goes(planner, words, radius, heights, corners):
+    extent = planner(Words("G13", words_of(f"{words} D2"), MM), arc=COUNTERCLOCKWISE).extent
+    assert (extent.plane, extent.centre) == ("G17", (0, 0, -9))
+    assert extent.radius == pytest.approx(radius)
+    assert (*extent.heights, *extent.corners) == pytest.approx((*heights, *corners))
+
+
+# ---------------------------------------------------------------- Haas
 
 
 @pytest.mark.parametrize(
@@ -273,54 +240,7 @@ def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
     assert "is up from the tool" in plan("haas", "I.3 Z.5 D1", incremental=True).message
 
 
-LOCALS = ["x", "y", "move_to_centre", "z", "z_step", "levels", "first_radius", "links", "step",
-          "shorter", "restart", "rings"]  # fmt: skip
-
-
-@pytest.mark.parametrize(
-    ("words", "incremental", "expected"),
-    [
-        ("X1 Y2 K1.5 Q.5 Z-.5", False, [1, 2, True, -0.5, 0, 1, 0.625, 2, 0.5, 0.25, False, True]),
-        ("Y5 Z-.5", True, [3, 9, True, -0.4, -0.5, 1, 0.625, 0, 0, 0, True, True]),
-    ],
-)
-def test_the_locals_of_a_pocket(words, incremental, expected):
-    found = plan("haas", f"I.75 D1 {words}", x=3.0, y=4.0, incremental=incremental).locals
-    assert [found[name] for name in LOCALS] == pytest.approx(expected)
-
-
-# ---------------------------------------------------------------- Mitsubishi
-
-
-@pytest.mark.parametrize(
-    ("plane", "words", "locals_"),
-    [
-        ("G17", "I50 D2", (17, 1, 40)),
-        ("G18", "I.00508 D0", (18, 3, 0.00508)),
-        ("G19", "I1 D3", (19, 2, 3)),  # a negative diameter enlarges the circle
-    ],
-)
-def test_the_circle_lies_along_the_plane_s_first_axis(plane, words, locals_):
-    assert tuple(plan("mitsubishi", words, plane=plane).locals.values()) == locals_
-
-
-# ---------------------------------------------------------------- Yasnac
-
-
-def spiral_radii(numbers):
-    """Walk the half turns as the NGC body does."""
-    positions, grow = [numbers["first"]], numbers["growth"]
-    for left in range(numbers["half_turns"], 0, -1):
-        positions.append(-positions[-1] - grow)
-        grow = (left == 3) * numbers["shrink"] * grow - grow
-    return positions
-
-
-def test_the_circle_on_the_side_of_i():
-    found = plan("yasnac", "I50 J40 D2", x=3.0, y=-4.0).locals
-    expected = dict(x=3, y=-4, approach=30, first=40, half_turns=0, radius=40, circles=1)
-    assert {name: found[name] for name in expected} == expected
-    assert plan("yasnac", "I.00508").locals["radius"] == 0.00508  # the smallest
+# ---------------------------------------------------------------- other edges
 
 
 def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move():
@@ -328,40 +248,40 @@ def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move():
     assert plan("yasnac", "I50 R10 D2", tool_in_table=table.get).locals["approach"] == 0
 
 
-def test_the_spiral_grows_from_the_smallest_arc_to_the_finished_circle():
-    found = spiral_radii(plan("yasnac", "I50 R20 K20.00508 Q60 D2").locals)
-    assert found == pytest.approx([10.00508, -25.00254, 40], abs=1e-12)
+def test_what_is_as_small_as_a_refusal_says_is_cut():
+    cutter = MM._replace(spindle_tool=Tool(5, 6.0))
+    assert plan("haas", "I.1252 D1").locals["first_radius"] == pytest.approx(0.0002)
+    assert plan("yasnac", "I.00508").locals["radius"] == 0.00508
+    assert plan("mitsubishi", "I.00508 D0").locals["radius"] == 0.00508
+    assert plan("mitsubishi", "I1 D3").locals["radius"] == 3  # its diameter is negative
+    assert plan("perimeter", "X0 Y0 I2 R.00508 H0", cutter).locals["rough_radius"] == 0.00508
+    assert plan("pocket", "Z-5 I2 R40 Q.00508", cutter).locals["side_finish"]
+    assert plan("pocket", "Z-5 I2 R6.1 J.00508", cutter).locals["roughing_width"] <= 0.00508
 
 
-LENGTHS = st.floats(0.01, 60.0)
+def test_a_pocket_has_the_pairs_that_put_the_tool_inside():
+    inside = {(0, 2), (2, 2), (1, 1), (3, 1)}
+    for d, h in itertools.product(range(4), range(3)):
+        for name, side in (("pocket", "H"), ("call", "C")):
+            words = f"{'G7 ' if name == 'call' else ''}D{d} {side}{h}"
+            if (d, h) in inside:
+                assert plan(name, words)
+            else:
+                rule = f"D{d} with {side}{h} does not put the tool inside the pocket: D0 and D2"
+                assert rule in reported(plan, name, words)
 
 
-@given(
-    finished=LENGTHS,
-    traverse=st.none() | LENGTHS,
-    first=st.none() | LENGTHS,
-    pitch=st.floats(0.1, 20.0),
-    tool=st.sampled_from([None, 0, 1, 2]),
-    side=st.sampled_from([1, -1]),
-)
-def test_any_block_is_refused_or_keeps_the_rules(finished, traverse, first, pitch, tool, side):
-    offset = {None: 0.0, 0: 0.0, 1: 6.0, 2: 10.0}[tool]
-    words = {"I": side * finished}
-    words |= {} if traverse is None else {"R": side * traverse}
-    words |= {} if first is None else {"K": side * first, "Q": pitch}
-    words |= {} if tool is None else {"D": tool}
-    inner = 0.0 if traverse is None else traverse - offset
-    sound = 0 <= inner < finished - offset
-    sound = sound and (first is None or inner < first - offset < finished - offset)
-    try:
-        numbers = yasnac.plan_circle(Words("G12", words, MM)).locals
-    except Refusal:
-        near = [inner, finished - offset] + ([] if first is None else [first - offset])
-        close = min(abs(a - b) for a in near for b in [*near, 0.0] if a is not b)
-        assert not sound or close < 0.003
-        return
-    assert sound or abs(inner) < 1e-5
-    positions = spiral_radii(numbers)
-    assert abs(positions[-1]) == pytest.approx(finished - offset)
-    growth = [abs(b) - abs(a) for a, b in zip(positions, positions[1:])]
-    assert all(0 < step <= pitch / 2 + 1e-6 for step in growth)
+def test_an_earlier_second_plane_below_the_first_is_refused_as_such():
+    words = Words("G13.2", words_of("X1 Y2 Z-.5 R1.5 H2 I.8"), INCH)
+    assert reported(plan_code, words, EventPlanes(0.3, 0.7), True) == (
+        "G13.2: E0.7 must not be below the first reference plane I0.8:"
+        " it is that of an earlier event, give a new E"
+    )
+
+
+def test_a_roughing_width_above_the_tool_diameter_is_a_message():
+    assert plan("pocket", "J.7").message == (
+        "G13.2: the roughing width 0.625 is greater than the tool diameter 0.5:"
+        " material is left between the rings"
+    )
+    assert plan("pocket", "J.5").message is None

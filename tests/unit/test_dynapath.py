@@ -92,7 +92,6 @@ LEAVES_OUT = "would be left out: -9999 in the call means no entry"
         *((f"{letter}0", f"{letter}0 must be greater than 0") for letter in "RKJPFV"),
         ("X-9999", f"X-9999 {LEAVES_OUT}"),
         ("Z/-9999.1", f"Z-9999 {LEAVES_OUT}"),
-        ("X1" + "0" * 39, "X1e+39 is beyond 1000000"),
         ("Z/1000000", "Z1000000.1 is beyond 1000000"),
         ("K1" + "0" * 400, "Kinf is beyond 1000000"),
     ],
@@ -100,9 +99,8 @@ LEAVES_OUT = "would be left out: -9999 in the call means no entry"
 def test_an_entry_that_could_only_fail_on_the_machine_is_refused(entries, rule):
     sound = {"X": "X0", "Y": "Y0", "Z": "Z-1", "W": "W.1", "R": "R1", "C": "C2", "F": "F20"}
     event = "".join({**sound, entries[0]: entries}.values())
-    with pytest.raises(Refusal) as refused:
+    with pytest.raises(Refusal, match=f"^line 2: {re.escape(rule)}$"):
         program_from_events(f"{EXAMPLE}\nN2(4){event}$")
-    assert refused.value.message == f"line 2: {rule}"
 
 
 def test_entries_at_the_edge_of_what_can_be_cut_pass():
@@ -121,23 +119,18 @@ def test_any_text_is_a_program_or_a_refusal(text):
         assert program.count("o<circle_mill>") == text.count("$")
 
 
-def test_the_command_prints_the_program():
-    file = PROGRAMS / "dynapath" / "flange.dyn"
-    done = subprocess.run([*COMMAND, str(file), "--units", "inch"], capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == file.with_suffix(".ngc").read_text()
-
-
-@pytest.mark.parametrize("ini", sorted(SIM.glob("mill_*.ini")), ids=lambda ini: ini.stem)
-def test_the_filter_of_every_simulated_mill_reads_events(ini):
-    machine = read_ini(ini)
-    extensions = [line.split()[0] for line in machine.all("FILTER", "PROGRAM_EXTENSION")]
-    assert ".dyn,.DYN" in extensions
+def test_the_filter_of_every_simulated_mill_reads_events():
+    machines = [read_ini(ini) for ini in sorted(SIM.glob("mill_*.ini"))]
+    for machine in machines:
+        extensions = [line.split()[0] for line in machine.all("FILTER", "PROGRAM_EXTENSION")]
+        assert ".dyn,.DYN" in extensions
     events = PROGRAMS / "dynapath" / "flange.dyn"
-    command = f"{machine.get('FILTER', 'dyn')} '{events}'"
-    done = subprocess.run(["sh", "-c", command], cwd=SIM, capture_output=True, text=True)
-    expected = program_from_events(events.read_text(), machine.get("TRAJ", "LINEAR_UNITS"))
-    assert (done.returncode, done.stdout) == (0, expected)
+    filters = {(m.get("FILTER", "dyn"), m.get("TRAJ", "LINEAR_UNITS")) for m in machines}
+    for command, units in filters:
+        done = subprocess.run(
+            ["sh", "-c", f"{command} '{events}'"], cwd=SIM, capture_output=True, text=True
+        )
+        assert (done.returncode, done.stdout) == (0, program_from_events(events.read_text(), units))
 
 
 def test_the_command_prints_nothing_of_a_file_with_an_error(tmp_path):

@@ -94,14 +94,6 @@ def test_what_a_cutter_sweeps(line, radius, area):
     assert part.swept([np.array(line, float)], radius).area == pytest.approx(area, rel=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("hand", "sideways"),
-    [(Hand().line(z=-5), False), (Hand().line(x=1), True), (Hand().line(c=1), True)],
-)
-def test_only_motion_across_the_tool_is_sideways(hand, sideways):
-    assert part.is_sideways(hand.moves[-1]) is sideways
-
-
 def test_c_stands_where_the_face_is_left_beside_the_centre_for_it():
     """From a point on the face to X0 of the slide: what C of the axes is there is no turn of it."""
     c = np.array([0.0, 270.7, 270.7, 280.7])

@@ -18,11 +18,10 @@ from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import clearest_axes, window_lines
 from g12.tools.plot.face import programmed_history
-from g12.tools.plot.labels import spread_out
 from g12.tools.plot.marks import Marks
-from g12.tools.plot.mill import Layout, cut_through, removed_at
+from g12.tools.plot.mill import cut_through, removed_at
 from g12.tools.plot.picture import picture_of
-from g12.tools.plot.scene import heading, scene_of
+from g12.tools.plot.scene import scene_of
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.preview.moves import Event
 from g12.tools.units import MM, UNITS, clock, plain
@@ -90,17 +89,6 @@ def test_numbers_in_words():
     assert (UNITS["inch"].text(25.4), UNITS["inch"].area(25.4**2 / 2)) == ("1", "0.5 in²")
     times = {9.96: "10.0 s", 59.94: "59.9 s", 59.96: "1 min 0 s", 299.7: "5 min 0 s"}
     assert {seconds: clock(seconds) for seconds in times} == times
-
-
-def test_the_heading_is_the_first_comment_that_is_no_licence(tmp_path):
-    program = tmp_path / "a.ngc"
-    for text, found in (
-        ("; SPDX-License-Identifier: X\n%\nO1 (Two flats)\n(other)\n", "Two flats"),
-        ("G21 (metric)\nT1 M6\n( Flange );\nG0 X1\n", "Flange"),
-        ("G21 (metric)\nG0 X1 (there)\n(too late)\n", ""),
-    ):
-        program.write_text(text)
-        assert heading(program) == found
 
 
 # ---------------------------------------------------------------- what is shown
@@ -184,20 +172,10 @@ def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
     assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
 
 
-def test_a_floor_is_removed_up_to_the_top():
-    _, levels = both(Hand().line(x=50, z=0).rapid(z=-2).line(x=60))
-    assert removed_at(levels[-1], 0.0).bounds == pytest.approx((47, -2, 63, 0), abs=0.01)
-
-
 def test_a_tool_without_a_diameter_is_only_its_centre():
     shown, only = scene(Hand(tool=8).line(x=5)), "tool centre only"
     texts = [f"no tool: {only}", "cutter T1, ⌀ 6 mm", f"T8 has no diameter: {only}"]
     assert [plan_view.cutter_text(shown, tool) for tool in (0, 1, 8)] == texts
-
-
-def test_there_and_back_again_is_drawn_once():
-    there = np.array([[0.0, 0.0], [10.0, 5.0]])
-    assert len(plan_view.once([there, there[::-1], there + 3])) == 2
 
 
 def uncut(centre):
@@ -270,22 +248,6 @@ def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view
         assert left == pytest.approx((20, -4, 30, 0)) and right == pytest.approx((70, -4, 80, 0))
 
 
-def test_texts_that_would_cover_each_other_are_spread_out():
-    assert spread_out([4.9, 5.0, 5.1], 1.0) == pytest.approx([4, 5, 6])
-    assert spread_out([0.0, 0.0, 9.0, 9.5], 1.0) == pytest.approx([-0.5, 0.5, 8.75, 9.75])
-
-
-@pytest.mark.parametrize("count", [2, 8])
-def test_every_height_is_written_however_near_they_are(count):
-    hand = Hand().rapid(z=5)
-    for level in range(count):
-        hand.line(z=-0.1 * (level + 1)).line(x=100 * (level % 2))
-    hand.line(z=-90)
-    texts = [text.get_text() for text in picture_of(scene(hand)).axes[1].texts]
-    assert texts[:2] == ["Z−90", f"Z{plain(-0.1 * count, 3)}"]
-    assert len(texts) == count + 1
-
-
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
     shown = scene(pocket())
     assert plan_view.top_of(shown) == 0.0
@@ -305,14 +267,6 @@ def test_segments_of_one_block_are_one_element_of_the_face():
     hand.block = 7
     hand.line(z=-3).polar([complex(-20, y) for y in (8, 4, 0)])
     assert len(plan_view.elements(scene(hand, LATHE))) == 2
-
-
-def test_feeds_are_those_along_the_part():
-    hand = Hand(feed=100).line(x=10)
-    hand.feed = 250
-    hand.line(y=10).line(x=0)
-    bands = plan_view.feed_bands(scene(hand, feed_colours=True))
-    assert [(round(feed), len(moves)) for feed, _, moves in bands] == [(100, 1), (250, 2)]
 
 
 def test_the_history_of_c_obeys_its_limit():
@@ -359,22 +313,6 @@ def test_every_text_is_on_the_page(apart):
     assert inked.y0 >= 0 and inked.y1 <= height
 
 
-@pytest.mark.parametrize("size", [(10, 10, 5), (300, 20, 10), (5, 200, 3), (1, 1, 40)])
-@pytest.mark.parametrize("window", [False, True])
-def test_nothing_leaves_the_page_or_overlaps(size, window):
-    layout = Layout(np.array(size, float), 8, window)
-    figure = Figure(figsize=(layout.width, layout.height))
-    plan, side = (axes.get_position() for axes in layout.axes(figure))
-    assert 0 < side.y0 < side.y1 < plan.y0 < plan.y1 < 1
-    assert 0 < plan.x0 < plan.x1 < 1
-    assert (plan.x0, plan.x1) == (side.x0, side.x1)
-    x, y = layout.window_corner()
-    if window and layout.below:
-        assert y > 0 and y + 1.9 < side.y0 * layout.height
-    elif window:
-        assert x > plan.x1 * layout.width + 0.7  # the heights stand between
-
-
 # ---------------------------------------------------------------- deviations
 
 
@@ -396,14 +334,14 @@ def test_the_window_shows_the_axes_in_which_the_motion_strays():
 
 def test_the_largest_deviation_is_reported_with_its_line():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
-    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
-    assert lines == ["0.012 mm,", "line 1, in X and Y"]
+    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1], 0.05))
+    assert lines == ["0.012 mm,", "line 1, in X and Y", "the window is 0.1 mm wide"]
 
 
 def test_the_window_tells_the_override_and_the_contour():
     shown = with_real_motion(flats(), LATHE, {"X": 0.0123})
     shown = replace(shown, override=1500.0, contour=0.0025)
-    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1]))
+    lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1], 0.05))
     assert lines[0].endswith(" mm at 1500 % feed,")
     assert lines[1].endswith(", in X and C") and lines[2] == "off the contour: 0.0025 mm"
 
@@ -441,7 +379,7 @@ def test_a_run_on_a_cylinder_is_drawn_along_its_path():
 
 SCENES = {
     "mill": lambda: scene(pocket()),
-    "mill by feed": lambda: scene(pocket(), feed_colours=True, units="inch"),
+    "mill in inches": lambda: scene(pocket(), units="inch"),
     "drilling": drilled,
     "mill run": lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}),
     "turning": lambda: scene(turned(), LATHE),
@@ -451,7 +389,6 @@ SCENES = {
     "face": lambda: scene(flats(), LATHE),
     "face run": lambda: with_real_motion(flats(), LATHE, {"X": 0.01}),
     "surface": lambda: on_surface(scene(groove(), LATHE)),
-    "surface by feed": lambda: on_surface(scene(groove(), LATHE, feed_colours=True, units="inch")),
     "surface run": lambda: on_surface(with_real_motion(groove(), LATHE, {"X": 0.01})),
 }
 

@@ -6,13 +6,6 @@ import pytest
 from g12.tools.translate.blocks.control import ControlError, read_control, shipped_controls
 from g12.tools.translate.listing import listing_of
 
-NAMES = [
-    "colchester-lathe", "dmg-mori-lathe", "doosan-lathe", "fanuc-lathe", "fanuc-lathe-b",
-    "fanuc-lathe-c", "fanuc-mill", "haas-lathe", "haas-mill", "mazak-integrex", "mazak-lathe",
-    "mill-on-face", "mitsubishi-lathe", "mitsubishi-mill", "okuma-lathe",
-    "takisawa-lathe", "yasnac-mill",
-]  # fmt: skip
-
 
 @pytest.fixture
 def control(tmp_path):
@@ -26,11 +19,7 @@ def control(tmp_path):
     return read
 
 
-def test_the_shipped_controls():
-    assert shipped_controls() == NAMES
-
-
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", shipped_controls())
 def test_each_states_its_sources_and_what_is_our_reading(name):
     control = read_control(name)
     assert control.sources and control.readings

@@ -99,6 +99,7 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
         "G59.2 G0 X1. (G154 P2)", "G59.3 (G112)", "G10 L2 P9 X1.", "G90 G52 X1.",
     ]),
     (FANUC, "G54.1 P1", ["G59.1 (G54.1 P1)"]),
+    (HAAS_LATHE, "G390 G0 X1.\nG391 X-.1", ["G90 G0 X1.", "G91 X-.1"]),
     # the spindle, tools
     (LATHE, "G96 S90 M3\nG50 S900\nG97 S50\nG96",
      ["G96 S90 M3", "G96 S90 D900 (G50 S900)", "G97 S50", "G96 D900 S90"]),
@@ -137,10 +138,6 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (LATHE, "G21 G10.9 X0\nG0 X50. Z5. C0.|G12.1\nG1 X20. F100.\nG13.1",
      ["G7", "G12.1 (line 4)", "G1 X20. F100.", "G13.1", "G8 (line 6)"]),
     # the program's feed after a rapid of polar mode
-    (HAAS_LATHE, "G0 Z1.|G20 G98 G1 X5. F9.\nG112\nG0 X2. F8.\nG1 X1.\nG0 X2.\nG113\nG99 G1 X3.", [
-        "G20 G94 G1 X5. F9.", "G8", "G12.1 (line 4)", "X2. G1 G94 F100", "G1 X1. F8. G94",
-        "X2. G1 G94 F100", "G13.1", "G7 (line 8)", "G95 G1 X3. F8.",
-    ]),
     *((HAAS_LATHE, f"{POLAR}|G0 X1. Z1.\n{cut}", ["G13.1", "G7 (line 7)", "G0 X1. Z1.", first])
       for cut, first in [
           ("G81 Z-.5 R.2", "F9. G94"), ("G83 Z-.5 R.2 Q9.", "F9. G94"),
@@ -243,7 +240,6 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "END1", "END1 without WHILE"),
     (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
     (HAAS, "#1=#3001", "#3001 means something else"),
-    (HAAS, "#1=#4001", "#4001 means something else"),
     (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
     (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
     (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
@@ -305,6 +301,8 @@ LAST = [  # control, text, how the sentence about its last line begins
 ELSEWHERE = [  # control, text, the line and the beginning of its sentence
     (HAAS, "G81 Z-1. R.1 L0\nM98 P5\nG83 Z-1. R.1 Q.1 L0\nM98 P5\nM30\nO5\nX1.\nM99", 7,
      "a drilling cycle is on, but not the same one on every way"),
+    (HAAS, "G81 Z-1. R.1\nM98 P5\nG83 Z-1. R.1 Q.1\nM98 P5\nM30\nO5\nX1. Z-2.\nM99", 7,
+     "a drilling cycle is on, but not the same one on every way"),
     (HAAS, "/WHILE[#1LT2]DO1\nEND1", 1, "the head or the end of a loop cannot be skipped"),
     (HAAS, "M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 5, "Z-#3: n"),
     (HAAS, "/#1=5.\nG0 X#1", 2, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
@@ -340,9 +338,31 @@ def test_what_is_refused_is_reported(control, text, line, start):
     assert (found, sentence[: len(start)]) == (line, start)
 
 
-def test_a_file_without_a_block_is_refused():
-    refused = translate_program("%\n(COMMENT)\n%\n", HAAS).refused
-    assert refused == [(1, "there is no block in the file")]
+WHOLE = [  # control, a whole program, its first refused line, and how the sentence begins
+    (LATHE, "T0101\nG0 X60. Z5. C0\nG12.1\nG0 X40. C10.\nG13.1\nM30", 4,
+     'G0 in polar mode: write G1 with a high feed, or say rapid = "feed" in [polar]'),
+    (OKUMA, "T010101\nG137 C0\nM2", 2, "G137: is X a diameter or a radius in it? say x ="),
+    (FANUC, "G21 G0 X0\nM98 P1\nM30\nO1\nM98 P2\nM99\nO2\nM98 P1\nM99", 5,
+     "O2 cannot be written below this call: it calls itself"),
+    (HAAS, "%\nO1\nM98 P100\nM30\n%\nO100\nM99", 3, "O100 is not in this file"),
+    (HAAS, "G20 G0 X0\nM97 P100\nN100 X1.\nM99", 2, "N100 is called by M97 and also reached"),
+    (HAAS, "G20 G0 X0\nM98 P100\nM30\nO100\nX1.", 5, "O100 ends here without M99"),
+    (HAAS, "G20 G0 X0\nM98 P1\nM30\nO1\nM99\nO1\nM99", 2, "O1 is in this file twice"),
+    (HAAS, "%\nO9000\nG0 X1.\nM99\nO1\nG20 G90 G0 X0\nM30\n%", 2,
+     "which program is to run, O9000 and O1? nobody calls them"),
+    (HAAS, "O1\nM98 P10\nM30\nO2\nM98 P1\nM30\nO3\nM98 P10\nM30\nO10\nM99", 1,
+     "which program is to run, O2 and O3?"),
+    (HAAS, "G20 G90 G0 X0\n/3 X1.\nM30", 2, "/3: LinuxCNC has one switch to skip blocks, / alone"),
+    (HAAS, "G20 G0 X1\nM30", 1, "X1 has no decimal point: is it 0.0001 or 1.? write --decimals "
+     "least, or whole, behind --control haas-mill, in the [FILTER] line too"),
+    (HAAS, "%\n(COMMENT)\n%", 1, "there is no block in the file"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("control", "text", "line", "start"), WHOLE)
+def test_a_program_that_is_refused(control, text, line, start):
+    refused = translate_program(f"{text}\n", control).refused[0]
+    assert (refused.line, refused.sentence[: len(start)]) == (line, start)
 
 
 def test_every_refused_block_is_named_with_its_reason():

@@ -36,7 +36,7 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     if opened < 2 * cutter.radius:
         check_slope(words, pitch, first, steepest)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
-    check_count(words, circles, f"P{number(pitch)} makes")
+    check_count(words, circles, "P, Q and L make")
     numbers = {
         **hole._asdict(),
         **turns_of(hole.depth, pitch, arc),

@@ -30,7 +30,7 @@ HEIGHT = sqrt(3) / 2  # of the sharp 60 degree triangle, in pitches
 DEPTHS = {INSIDE: 5 / 8, OUTSIDE: 17 / 24}  # of a thread in these heights: ISO 68, ISO 724
 WITHIN_MM = 0.002  # of a taper: its arcs
 MOST_TAPER = 1  # E: a cone of 53 degrees; pipe threads have 0.0625
-QUARTER = 0.0212  # greatest error of a quarter turn's arc, per change of the radius in it
+QUARTER = 0.03  # greatest error of a quarter turn's arc, per change of the radius in it
 
 
 class Thread(NamedTuple):
@@ -61,7 +61,7 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
     ratio = lead_ratio(words, hole, thread, cutter)
     runs = runs_of(words, hole, thread, ratio, arc)
     turns = ceil(runs["runs"] * abs(runs["rise"] / thread.pitch) * (passes + springs))
-    check_count(words, turns, f"P{number(thread.pitch)} makes")
+    check_count(words, turns, "P, Q and L make")
     side = 1 if thread.outside else -1
     radius = (thread.small if thread.outside else thread.large) + side * cutter.radius
     numbers = {
@@ -93,15 +93,15 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
 def thread_of(words: Words) -> Thread:
     large = words.require_positive("I", "the radius of the larger diameter")
     pitch = words.require("P", "the pitch, below 0 for a left-hand thread")
-    if abs(pitch) < words.context.smallest_ring:
-        raise words.refuse_word("P", pitch, "must not be 0: below 0 is a left-hand thread")
+    least = 2 * words.context.smallest_ring
+    if abs(pitch) < least:
+        rule = f"must be at least {number(least)} in size: below 0 is a left-hand thread"
+        raise words.refuse_word("P", pitch, rule)
     side = words.take_whole("H", least=INSIDE, most=OUTSIDE, default=INSIDE)
     teeth = words.take_whole("J", least=1, default=1)
-    small = words.take_positive("K")
-    if small is None:
-        small = large - DEPTHS[side] * HEIGHT * abs(pitch)
-        if small <= 0:
-            raise words.refuse_word("P", pitch, f"is too large for I{number(large)}")
+    small = words.take_positive("K") or large - DEPTHS[side] * HEIGHT * abs(pitch)
+    if small <= 0:
+        raise words.refuse_word("P", pitch, f"is too large for I{number(large)}")
     if small >= large - words.context.smallest_ring:
         raise words.refuse_word("K", small, f"must be less than I{number(large)}")
     taper = words.take("E") or 0.0

@@ -131,17 +131,6 @@ class Arc(NamedTuple):
         turn = 1 if self.sweep > 0.0 else -1
         return sweep_between(self.start, point, self.centre, turn) / self.sweep
 
-    def share_between(self, point: complex, least: float, most: float) -> float:
-        """Return the share nearest to a point among those between two shares."""
-        start, there = self.start - self.centre, point - self.centre
-        if not self.sweep or abs(there) <= DEGENERATE or abs(start) <= DEGENERATE:
-            return least
-        turned = angle_of(there * start.conjugate()) * math.copysign(1.0, self.sweep) % FULL_TURN
-        shares = [(turned + turn) / abs(self.sweep) for turn in (-FULL_TURN, 0.0, FULL_TURN)]
-        within = [share for share in shares if least <= share <= most]
-        ends = min((least, most), key=lambda share: abs(self.point(share) - point))
-        return within[0] if within else ends
-
     def distance(self, point: complex) -> float:
         if self._angle_to(point) <= abs(self.sweep):
             return abs(abs(point - self.centre) - self.radius)

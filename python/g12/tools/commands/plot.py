@@ -51,7 +51,6 @@ def command_parser() -> Parser:
     run = "run the program headless and draw its real motion over the programmed path"
     parser = cut_parser("plot", __doc__, EXAMPLES, run)
     parser.add_argument("-o", "--output", type=Path, required=True, help="a .png, .svg or .pdf")
-    parser.add_argument("--feeds", action="store_true", help="colour paths by feed, not by depth")
     return parser
 
 
@@ -70,11 +69,10 @@ def main(arguments: list[str]) -> int:
             program = TracedProgram(opened.path, ini, found, samples, stored)
             if found.error:
                 program = replace(program, trace=in_source)
-                judgement, scene = None, scene_of(program, options.units, options.feeds)
+                judgement, scene = None, scene_of(program, options.units)
             else:
                 judgement = judge_trace(program, stock=stock_of(options), opened=opened)
-                how = options.override, options.units, options.feeds
-                scene = scene_of_judgement(judgement, *how)
+                scene = scene_of_judgement(judgement, options.override, options.units)
             style.save(picture_of(scene), options.output)
     x0 = f"program {scene.x0_text}" if scene.x0_text else ""
     notes = [f"note: {text}" for text in (offset_at_start(options.var, ini), x0) if text]

@@ -22,8 +22,8 @@ from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.view import COLOURS, KEYS, SENTENCES, View, pressed
 from g12.tools.forms.table import CHOICE, TOOL, Entry
 
-THUMBNAIL, LETTERS, KEY = 56, 7, 44  # pixels of a picture, letters of an entry, pixels of a key
-DASH = (4, 3)  # of a rapid
+THUMBNAIL, KEY, DASH = 56, 44, (4, 3)  # pixels: of a picture, of a key, of a rapid's dashes
+CAPTION, LETTERS = 22, 7  # letters of a line beside an entry, of an entry
 STYLE = "entry, combobox button { min-height: 24px; padding: 0 4px; }" + "".join(
     f"#{state} {{ background: {COLOURS[state]}; color: white; padding: 4px; }}"
     for state in SENTENCES
@@ -39,9 +39,9 @@ class CyclesView(View):
         style = Gtk.CssProvider()
         style.load_from_data(STYLE.encode())
         Gtk.StyleContext.add_provider_for_screen(Gdk.Screen.get_default(), style, 600)
-        names = ("entries", "said", "drawing", "steps", "cycles", "forms")
-        widgets = map(builder.get_object, names)
-        self.grid, self.said, self.drawing, self.steps, cycles, forms = widgets
+        cycles, forms = map(builder.get_object, ("cycles", "forms"))
+        self.grid, self.said = map(builder.get_object, ("entries", "said"))
+        self.drawing, self.steps = map(builder.get_object, ("drawing", "steps"))
         for form in self.page.forms:
             file = self._picture(form), THUMBNAIL, THUMBNAIL
             forms.append([GdkPixbuf.Pixbuf.new_from_file_at_size(*file), form.title])
@@ -59,7 +59,8 @@ class CyclesView(View):
         for child in self.grid.get_children():
             self.grid.remove(child)
         for row, entry in enumerate(self.page.entries):
-            label = Gtk.Label(label=entry.caption(self.page.unit), xalign=0)
+            caption = entry.caption(self.page.unit)
+            label = Gtk.Label(label=caption, xalign=0, wrap=True, max_width_chars=CAPTION)
             self.widgets[entry.name] = self._widget(entry, self.page.texts[entry.name])
             self.grid.attach(label, 0, 2 * row, 1, 1)
             self.grid.attach(self.widgets[entry.name], 1, 2 * row, 1, 1)

@@ -47,7 +47,8 @@ class Sketcher:
         options = {"setup": self._setup(state), "parameters": state.parameters}
         trace = self._interpreter().trace_text(text, timeout=TIMEOUT, **options)
         part = Part(form.place != MILL, self.ini.tool_beside, last_zero(trace))
-        moves = [(move, positions_of(move, part)) for move in trace.moves]
+        drawn = () if trace.error else trace.moves
+        moves = [(move, positions_of(move, part)) for move in drawn]
         cut, rapid = (
             [seen(part, form, each) for move, each in moves if (move.kind == "rapid") is rapid]
             for rapid in (False, True)
@@ -81,8 +82,8 @@ class Sketcher:
 
     def _setup(self, state: MachineState) -> list[str]:
         """Return the blocks that bring a fresh interpreter to the machine's state."""
-        axes = [AXIS_LETTERS.index(letter) for letter in self.ini.axes]
-        there = " ".join(f"{AXIS_LETTERS[axis]}{state.position[axis]:.6f}" for axis in axes)
+        at = dict(zip(AXIS_LETTERS, state.position))
+        there = " ".join(f"{letter}{at[letter]:.6f}" for letter in self.ini.axes)
         loaded = [f"M61 Q{state.tool}"] if state.tool else []
         return [*loaded, f"G53 G0 {there}"]
 

@@ -17,7 +17,6 @@ from g12.tools.machine.stored_positions import stored_values
 
 OFFSETS, PER_OFFSET = 5201, 20  # parameters: X of the work offset number 0, and how many each has
 ROTATION, ACTIVE_OFFSET, G92_ON, G92 = 9, 5220, 5210, 5211  # the first counts within an offset
-AXIS, AXIS_REMOTE = "axis", "axis-remote"  # AXIS draws what it is told to open
 WORD = re.compile(r"([TD])([-+]?(?:\d{1,9}(?:\.\d*)?|\.\d+))", re.IGNORECASE | re.ASCII)
 
 
@@ -51,11 +50,8 @@ def tools_of(ini: Ini) -> dict[int, Tool]:
 
 
 def machine_state(ini: Ini) -> MachineState:
-    """Return how the machine of this screen stands; without one, how its var file has it.
-
-    LinuxCNC tells its screens by INI_FILE_NAME which machine is theirs.
-    """
-    screen = os.environ.get("INI_FILE_NAME")
+    """Return how the machine of this screen stands; without one, how its var file has it."""
+    screen = os.environ.get("INI_FILE_NAME")  # LinuxCNC tells its screens which machine is theirs
     status = linuxcnc_status() if screen and Path(screen).resolve() == ini.path.resolve() else None
     if status is None:
         saved = stored_values(ini.file("RS274NGC", "PARAMETER_FILE"))
@@ -91,8 +87,8 @@ def open_in_linuxcnc(path: str) -> None:
     if status.interp_state != linuxcnc.INTERP_IDLE:
         raise UsageError("a program runs: stop it, then open this one")
     screen = read_ini(os.environ["INI_FILE_NAME"]).get("DISPLAY", "DISPLAY", "").split()
-    if screen and os.path.basename(screen[0]) == AXIS:
-        subprocess.Popen([AXIS_REMOTE, path])
+    if screen and os.path.basename(screen[0]) == "axis":  # it draws what it is told to open
+        subprocess.Popen(["axis-remote", path])
         return
     command = linuxcnc.command()
     command.mode(linuxcnc.MODE_AUTO)

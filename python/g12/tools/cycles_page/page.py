@@ -29,16 +29,17 @@ NICE = 5  # of the sketches: LinuxCNC's own threads and the screen come first
 INTERPRETER = "g12.tools.cycles_page.interpreter"
 PATIENCE = 15.0  # s, of a button for a sketch
 LONGEST = 300  # letters of a sentence, of an interpreter that dies
-NO_FORM = Sketch(REFUSED, "no cycle is set up in this machine: see check")
 
 
 class Page:
     """The page of one machine."""
 
     def __init__(self, ini_path: str | os.PathLike, changed: Callable[[], None]) -> None:
-        self.unit, self.sketch = "mm", NO_FORM
+        self.unit = "mm"
+        self.sketch = Sketch(REFUSED, "no cycle is set up in this machine: see check")
         self.forms: Sequence[Form] = ()
         self.entries: Sequence[Entry] = ()
+        self.texts: dict[str, str] = {}  # as typed, by the name of the entry
         try:
             self.ini = read_ini(ini_path)
             self.unit = name_of_unit(self.ini.mm)
@@ -48,7 +49,9 @@ class Page:
             self.ini = Ini(Path(ini_path), ())
             self.sketch = Sketch(REFUSED, str(problem))
         self.steps: list[Step] = []
-        self._kept, self._changed = read_kept(), changed
+        state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
+        self._kept_path = Path(state) / KEPT
+        self._kept, self._changed = read_kept(self._kept_path), changed
         self._sketcher: Any = None
         self._wanted: tuple[Form, str] | None = None  # until it is drawn
         self._wake, self._ended = threading.Condition(), False
@@ -76,12 +79,9 @@ class Page:
         self._ask()
 
     def default(self, entry: Entry) -> str:
-        """Return the text that an entry begins with on this machine.
-
-        The tool is the loaded one, else the first of the table that has a diameter.
-        """
+        """Return the text that an entry begins with on this machine."""
         tools, number = tools_of(self.ini), machine_state(self.ini).tool
-        if number not in tools:
+        if number not in tools:  # it is not the loaded tool, but the first that has a diameter
             number = next((each for each, tool in tools.items() if tool.diameter > 0), 1)
         if entry.kind == TOOL:
             return number_text(number)
@@ -95,7 +95,7 @@ class Page:
     def tool(self) -> Tool | None:
         """Return the line of the tool table of the tool that is typed."""
         with contextlib.suppress(ValueError):
-            return tools_of(self.ini).get(int(self.texts["tool"]))
+            return tools_of(self.ini).get(int(self.texts.get("tool", "")))
         return None
 
     def type(self, name: str, text: str) -> None:
@@ -127,8 +127,8 @@ class Page:
             self.steps[at] = step
         self._kept[step.form.name, step.unit] = step
         with contextlib.suppress(OSError):  # a home that cannot be written: kept until the end
-            kept_path().parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            write(kept_path(), program_text([*self._kept.values()]).encode())
+            self._kept_path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            write(self._kept_path, program_text([*self._kept.values()]).encode())
 
     def move(self, at: int, by: int) -> int:
         """Move a step up or down; return its new place."""
@@ -202,13 +202,9 @@ class Page:
             return Sketch(REFUSED, str(problem)[:LONGEST] or type(problem).__name__)
 
 
-def kept_path() -> Path:
-    return Path(os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state") / KEPT
-
-
-def read_kept() -> dict[tuple[str, str], Step]:
+def read_kept(path: Path) -> dict[tuple[str, str], Step]:
     """Return the last steps, by form and unit, none where a stranger wrote the file."""
     with contextlib.suppress(OSError, UsageError):
-        steps = read_program(kept_path().read_text(encoding="utf-8", errors="replace"))
+        steps = read_program(path.read_text(encoding="utf-8", errors="replace"))
         return {(step.form.name, step.unit): step for step in steps}
     return {}

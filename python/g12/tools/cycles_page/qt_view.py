@@ -21,7 +21,8 @@ from g12.tools.cycles_page.page import Page
 from g12.tools.cycles_page.view import COLOURS, KEYS, View, pressed
 from g12.tools.forms.table import CHOICE, TOOL, Entry
 
-THUMBNAIL, DRAWING = QSize(80, 60), (200, 200)  # pixels; the latter at least
+THUMBNAIL, DRAWING, ENTRY = QSize(80, 60), (200, 200), 110  # pixels; the second at least
+LETTERS, SHORTENED = 3, QtWidgets.QComboBox.AdjustToMinimumContentsLengthWithIcon
 ROWS = ("Add", "Replace"), ("▲", "▼", "✕"), ("Load", "Save", "Open")
 KEYPAD = QtWidgets.QStyle.SP_FileDialogListView  # its icon
 
@@ -62,8 +63,7 @@ class CyclesView(View, QWidget):
 
     def __init__(self, ini: str, opened: Callable[[str], None], parent=None) -> None:
         super().__init__(parent)
-        self.opened = opened
-        self.widgets = {}
+        self.opened, self.widgets = opened, {}
         self.arrived.connect(self._show_sketch)
         self.page = Page(ini, self.arrived.emit)
         self.destroyed.connect(self.page.close)
@@ -75,7 +75,7 @@ class CyclesView(View, QWidget):
         form.setLayout(self.grid)
         scrolled = QtWidgets.QScrollArea(widgetResizable=True)
         scrolled.setWidget(form)
-        self.tool_label, self.said = QLabel(alignment=Qt.AlignRight), QLabel(wordWrap=True)
+        self.tool_label, self.said = QLabel(wordWrap=True), QLabel(wordWrap=True)
         self.drawing, self.steps = Drawing(self.page), QtWidgets.QListWidget()
         self.steps.itemClicked.connect(lambda item: self._edit(self.steps.row(item)))
         adding, moving, files = (self._row(names) for names in ROWS)
@@ -104,12 +104,13 @@ class CyclesView(View, QWidget):
 
     def _widget(self, entry: Entry, text: str) -> QWidget:
         if entry.kind == CHOICE:
-            box = QtWidgets.QComboBox()
+            box = QtWidgets.QComboBox(minimumContentsLength=LETTERS, sizeAdjustPolicy=SHORTENED)
             box.addItems([words for _, words in entry.choices])
             box.setCurrentIndex(self._place(entry))
             box.currentIndexChanged.connect(partial(self._choose, entry))
             return box
-        line = QLineEdit(text, objectName=entry.name, toolTip=entry.zero and f"0: {entry.zero}")
+        line = QLineEdit(text, objectName=entry.name, maximumWidth=ENTRY, alignment=Qt.AlignRight)
+        line.setToolTip(entry.zero and f"0: {entry.zero}")
         opening = line.addAction(self.style().standardIcon(KEYPAD), QLineEdit.LeadingPosition)
         opening.triggered.connect(partial(self._keypad, line))
         line.textChanged.connect(partial(self.page.type, entry.name))

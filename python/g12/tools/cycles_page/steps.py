@@ -62,22 +62,24 @@ def read_program(text: str) -> list[Step]:
     """Return the steps of a program that the page has written; refuse any other line."""
     steps = []
     for row, line in enumerate(text.splitlines(), 1):
-        call = CALL.fullmatch(line.strip())
-        if call:
-            steps.append(_step(row, call))
-        elif line.strip() not in ("", HEAD, END):
-            raise UsageError(f"line {row}: {line.strip():.60}: is no step of the Cycles page")
+        try:
+            steps += _steps_in(line.strip())
+        except UsageError as problem:
+            raise UsageError(f"line {row}: {problem}") from problem
     return steps
 
 
-def _step(row: int, call: re.Match) -> Step:
+def _steps_in(line: str) -> list[Step]:
+    """Return the step of a line, none for one that only begins or ends the program."""
+    call = CALL.fullmatch(line)
+    if call is None:
+        if line in ("", HEAD, END):
+            return []
+        raise UsageError(f"{line:.60}: is no step of the Cycles page")
     name, unit, written, _ = call.groups()
     form, numbers = BY_NAME.get(name), re.findall(r"\[(.*?)\]", written)
     if form is None or len(numbers) != len(form.entries):
         needed = f" has {len(form.entries)} entries, not {len(numbers)}" if form else " is no form"
-        raise UsageError(f"line {row}: form_{name}_{unit}{needed}")
-    try:
-        values = {entry.name: read_entry(entry, text) for entry, text in zip(form.entries, numbers)}
-    except UsageError as problem:
-        raise UsageError(f"line {row}: {problem}") from problem
-    return Step(form, unit, values)
+        raise UsageError(f"form_{name}_{unit}{needed}")
+    values = {entry.name: read_entry(entry, text) for entry, text in zip(form.entries, numbers)}
+    return [Step(form, unit, values)]

@@ -58,9 +58,9 @@ class View:
     def _tool(self) -> str:
         """Return the tool that is typed: its diameter and its name in the table."""
         tool = self.page.tool()
-        if tool is None:
-            return "not in the tool table" if self.page.forms else ""
-        return f"⌀ {tool.diameter:g} {UNITS[self.page.unit][LENGTH]} {tool.remark}"
+        if tool:
+            return f"⌀ {tool.diameter:g} {UNITS[self.page.unit][LENGTH]} {tool.remark}"
+        return "not in the tool table" if self.page.forms else ""
 
     def _buttons(self) -> dict[str, Callable[[], None]]:
         """Return what each button does."""

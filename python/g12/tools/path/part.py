@@ -265,13 +265,6 @@ def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERRO
     return Point(centre[0], centre[1]).buffer(radius, segments)
 
 
-def is_sideways(move: Move) -> bool:
-    """Return whether a move has a component across the tool's axis Z."""
-    if move.kind == "arc":
-        return True
-    return any(abs(move.end[axis] - move.start[axis]) > 1e-6 for axis in (X, Y, C))
-
-
 def plane_axes(move: Move) -> np.ndarray:
     """Return the directions of a move's plane: first, second and third axis, as rows."""
     return axes_of_plane(move.plane, move.rotation)

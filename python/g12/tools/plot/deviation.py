@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The detail view of a run's largest deviation: programmed path, actual motion, the gap."""
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -33,7 +32,7 @@ def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> No
 
 
 def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
-    real, moves, unit = scene.real, scene.moves, scene.unit
+    real, moves = scene.real, scene.moves
     half = max(HALF_VIEW * worst.deviation, LEAST_WINDOW)
     before, after = real.points[max(0, worst.sample - 1) : worst.sample + 2][[0, -1]]
     pair = clearest_axes(worst.point - worst.nearest, after - before)
@@ -48,18 +47,18 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     style.draw(axes, [gap], style.WORST, 1.8, 4.0)
     in_segments = "C" in scene.path.part.letters
     title = "Deviation from segments" if in_segments else "Largest deviation"
-    style.frame_detail(axes, (0, 0), half, title, "\n".join(window_lines(worst, scene, pair)))
-    _scale_bar(axes, half, unit)
+    style.frame_detail(axes, (0, 0), half, title, "\n".join(window_lines(worst, scene, pair, half)))
 
 
-def window_lines(worst: Worst, scene: Scene, pair: list[int]) -> Iterator[str]:
-    """Yield the lines below the view: size, position, feed, and the deviation from the contour."""
+def window_lines(worst: Worst, scene: Scene, pair: list[int], half: float) -> Iterator[str]:
+    """Yield the lines below the view: size, position, feed, deviation from the contour, scale."""
     fast = f" at {scene.override:g} % feed" if scene.override != 100.0 else ""
     letters = " and ".join(scene.path.part.letters[axis] for axis in pair)
     yield f"{size_of(worst, scene.unit)}{fast},"
     yield f"line {scene.user_line(worst.move.block, '')}, in {letters}"
     if scene.contour is not None:
         yield f"off the contour: {scene.unit.fine(scene.contour)} {scene.unit.name}"
+    yield f"the window is {scene.unit.fine(2 * half)} {scene.unit.name} wide"
 
 
 def clearest_axes(deviation: np.ndarray, direction: np.ndarray) -> list[int]:
@@ -76,15 +75,3 @@ def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
     first = before[-1] if len(before) else 0
     last = worst.sample + after[0] if len(after) else len(points) - 1
     return points[first : last + 1]
-
-
-def _scale_bar(axes: Axes, half: float, unit: Unit) -> None:
-    """Draw a bar of a round length in the window's corner."""
-    shown = half / unit.mm
-    length = 10.0 ** math.floor(math.log10(shown))
-    length = max(step * length for step in (0.2, 0.5, 1.0) if step * length <= shown)
-    share = length / shown / 2
-    bar = {"transform": axes.transAxes, "color": style.INK, "linewidth": 1.4, "zorder": 5}
-    axes.plot([0.06, 0.06 + share], [0.06, 0.06], solid_capstyle="butt", **bar)
-    text = f"{length:g} {unit.name}"
-    axes.text(0.06, 0.09, text, transform=axes.transAxes, size=7.5, color=style.INK)

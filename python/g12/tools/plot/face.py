@@ -17,13 +17,10 @@ from g12.tools.path.part import C, Y, slide_positions, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
-from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
-    Level,
     SceneView,
     bounds_of,
     draw_plan,
-    few,
     first_shown,
     legend_entries,
     mark_worst,
@@ -33,7 +30,6 @@ from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 
 WIDTH, HEIGHT = 11.9, 8.0
-LETTERS_APART = 0.11  # of the panel of Z
 DETAIL_HEIGHT = 1.25  # with the detail view of the largest deviation
 LEFT, TOP = style.MARGIN, 1.05
 FACE_SIZE = 5.0  # side of the face's view
@@ -68,7 +64,7 @@ def draw_face(scene: Scene) -> Figure:
     entries = [*legend_entries(scene, levels, ROOM), TIME_IN_RAPIDS]
     columns = 2 if scene.real is None else 1
     style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
-    draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, levels, "part")
+    draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, "part")
     if scene.real is not None:
         mark_worst(SceneView(face, scene))
         draw_window(figure, (LEFT + FACE_SIZE - DETAIL_SIZE, 0.55), scene)
@@ -86,20 +82,18 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
     style.caption(axes, "; ".join(filter(None, ["The part's face", scene.x0_text])))
 
 
-def draw_history(panels: Sequence[Axes], scene: Scene, levels: Sequence[Level], along: str) -> None:
-    """Draw the axes over time, and the feed ``along`` the part or its surface.
-
-    The depths of ``levels`` are labels beside Z.
-    """
+def draw_history(panels: Sequence[Axes], scene: Scene, along: str) -> None:
+    """Draw the axes over time, and the feed ``along`` the part or its surface."""
     history = real_history(scene) if scene.real is not None else programmed_history(scene)
     x, z, c, c_speed, feed = panels
     colour = style.REAL if scene.real is not None else style.DEPTHS(0.5)
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
     name = scene.unit.name
     x.plot(history.time, history.x / scene.unit.mm, **drawn)
-    turn, _, height = (AXIS_LETTERS[axis] for axis in scene.path.part.roles[:3])
+    turn, along_axis, height = (AXIS_LETTERS[axis] for axis in scene.path.part.roles[:3])
     style.caption(x, f"{height} (radius), {name}")
-    draw_depths(z, history, scene, levels, drawn)
+    z.plot(history.time, history.z / scene.unit.mm, **drawn)
+    style.caption(z, f"{along_axis}, {name}")
     c.plot(history.time, history.c, **drawn)
     style.caption(c, f"{turn}, degrees")
     c_speed.plot(history.time, history.c_speed, drawstyle="steps-pre", **drawn)
@@ -154,23 +148,6 @@ def real_history(scene: Scene) -> History:
     x, z, c = (real.positions[:, axis] for axis in (height, along, turn))
     rapid = rapids_at(scene, real.move)
     return History(time, x, z, c, c_speed, real.part_speed() * 60, rapid)
-
-
-def draw_depths(
-    axes: Axes, history: History, scene: Scene, levels: Sequence[Level], drawn: dict
-) -> None:
-    """Draw Z, with the depths of the cuts."""
-    unit = scene.unit
-    axes.plot(history.time, history.z / unit.mm, **drawn)
-    style.caption(axes, f"{AXIS_LETTERS[scene.path.part.roles.along]}, {unit.name}")
-    low, high = axes.get_ylim()
-    apart = LETTERS_APART * (high - low)
-    depths = sorted(level.z / unit.mm for level in few(levels))
-    for depth, beside in zip(depths, spread_out(depths, apart)):
-        axes.axhline(depth, color=style.RAPID, linewidth=0.6, linestyle=(0, (1, 2)))
-        text = {"size": 6.5, "color": style.INK, "va": "center"}
-        transform = axes.get_yaxis_transform()
-        axes.text(1.01, beside, plain(depth, unit.decimals), transform=transform, **text)
 
 
 def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:

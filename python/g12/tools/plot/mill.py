@@ -15,7 +15,6 @@ from shapely.ops import unary_union
 
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
-from g12.tools.plot.labels import spread_out
 from g12.tools.plot.plan_view import (
     SAME_DEPTH,
     Level,
@@ -24,7 +23,6 @@ from g12.tools.plot.plan_view import (
     draw_paths,
     draw_plan,
     draw_stock,
-    few,
     floor,
     legend_entries,
     mark_worst,
@@ -38,15 +36,12 @@ from g12.tools.verify.model.finding import Finding
 PAGE_WIDTH = 11.0  # wide
 WIDE = 2.0  # a plan wider than this times its height has the legend below
 LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
-LEGEND = 2.75  # width, with the Z levels beside the side view
+LEGEND = 2.75  # width
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
 XZ = [0, 2]  # the axes of the side view
-HEIGHTS = 0.8  # width: the labels of the floors' levels, with their lines
-LETTER_HEIGHT = 0.11
-LEADER = 0.2  # the lines to the texts
 DETAIL_ROOM = DETAIL_SIZE + 0.75  # the detail view of the largest deviation, with its texts
 
 
@@ -56,7 +51,7 @@ class Layout:
     def __init__(self, size: np.ndarray, rows: int, with_window: bool) -> None:
         width, height, depth = size
         self.below = width > WIDE * height
-        beside = HEIGHTS if self.below else LEGEND + RIGHT
+        beside = RIGHT if self.below else LEGEND + RIGHT
         room = PAGE_WIDTH - LEFT - beside
         scale = min(room / width, MOST_PLAN / height)
         self.plan = (width * scale, max(LEAST_PLAN, height * scale))
@@ -83,7 +78,7 @@ class Layout:
 
     def window_corner(self) -> tuple[float, float]:
         """Return the lower left corner of the detail view of the largest deviation."""
-        beside = (LEFT + self.plan[0] + HEIGHTS, BOTTOM)
+        beside = (LEFT + self.plan[0] + RIGHT, BOTTOM)
         return (self.width - RIGHT - DETAIL_SIZE, 0.4) if self.below else beside
 
 
@@ -117,10 +112,9 @@ def draw_side(view: SceneView, levels: Sequence[Level], stretch: float) -> None:
     draw_stock(view, block_from_the_side(scene))
     for order, level in enumerate(reversed(levels)):
         removed = view.area(removed_at(level, max(top, level.z)))
-        style.fill(axes, removed, *floor(scene, level), 1 + order / 100)
+        style.fill(axes, removed, *floor(level), 1 + order / 100)
     for each in scene.marks.uncut:
         style.hatch(axes, view.area(cut_through(each, top)))
-    draw_heights(axes, scene, levels)
     draw_paths(view, levels)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
@@ -167,19 +161,3 @@ def spans_at(area: BaseGeometry, y: float) -> list[tuple[float, float]]:
     across = area.intersection(LineString([(low, y), (high, y)]))
     lines = [line.bounds for line in getattr(across, "geoms", [across]) if line.length]
     return [(line[0], line[2]) for line in lines]
-
-
-def draw_heights(axes: Axes, scene: Scene, levels: Sequence[Level]) -> None:
-    """Label each floor with its level, without overlap, with lines to the floors."""
-    page, panel = axes.get_figure().get_size_inches(), axes.get_position()
-    apart = LETTER_HEIGHT / page[1] / panel.height
-    inch = 1 / page[0] / panel.width
-    low, high = axes.get_ylim()
-    shown = sorted(few(levels), key=lambda level: level.z)
-    at = [(level.z / scene.unit.mm - low) / (high - low) for level in shown]
-    for level, share, beside in zip(shown, at, spread_out(at, apart)):
-        line = {"color": style.MUTED, "linewidth": 0.5, "clip_on": False}
-        ends = [1.0, 1.0 + LEADER * inch]
-        axes.plot(ends, [share, beside], transform=axes.transAxes, **line)
-        text = {"transform": axes.transAxes, "va": "center", "size": 6.5, "color": style.INK}
-        axes.text(ends[1] + 0.03 * inch, beside, f"Z{scene.unit.text(level.z)}", **text)

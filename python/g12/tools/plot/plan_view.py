@@ -20,13 +20,11 @@ from g12.tools.path.part import FLAT, C, paths, swept
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
-from g12.tools.preview.moves import Move
-from g12.tools.units import plain
 
 PICTURE_CHORD = 0.01
 SAME_DEPTH = 1e-3
 LEAST_LEVELS = 2  # entries in a short legend
-MOST_SHOWN_LEVELS = 10  # more depths or feeds than this are shown in bands
+MOST_SHOWN_LEVELS = 10  # more depths than this are shown in bands
 BANDS = 24
 MOST_ARROWS = 80
 NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
@@ -197,7 +195,7 @@ def draw_plan(view: SceneView, levels: Sequence[Level]) -> None:
     marks = view.scene.marks
     draw_stock(view, marks.stock.shape if marks.stock else None)
     for order, level in enumerate(levels):
-        style.fill(view.axes, view.area(level.area), *floor(view.scene, level), 1 + order / 100)
+        style.fill(view.axes, view.area(level.area), *floor(level), 1 + order / 100)
     draw_paths(view, levels)
     draw_plunges(view)
     draw_arrows(view)
@@ -218,10 +216,8 @@ def draw_stock(view: SceneView, shape: BaseGeometry | None) -> None:
         style.fill(view.axes, view.area(shape), "none", style.STOCK_EDGE, 2.2)
 
 
-def floor(scene: Scene, level: Level) -> tuple[object, object]:
-    """Return the fill and the outline of a level's area; grey where colours show feeds."""
-    if scene.feed_colours:
-        return style.grey(level.shade.floor), style.RAPID
+def floor(level: Level) -> tuple[object, object]:
+    """Return the fill and the outline of a level's area."""
     return level.shade.floor, style.tint(level.shade.line, 0.35)
 
 
@@ -271,27 +267,12 @@ def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 
 def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
-    """Return the moves at feed as polylines with their colour: by depth, or by feed."""
+    """Return the moves at feed as polylines with the colour of their depth."""
     part = scene.path.part
-    if scene.feed_colours:
-        bands = feed_bands(scene)
-        return [(paths(part, moves, PICTURE_CHORD), colour) for _, colour, moves in bands]
     below = [index for index in scene.sweeping if not scene.across[index]]
     below += [*scene.radial, *scene.turned]
     muted = paths(part, [scene.moves[index] for index in below], PICTURE_CHORD)
     return [(muted, style.MUTED), *((level.lines, level.shade.line) for level in levels)]
-
-
-def feed_bands(scene: Scene) -> list[tuple[float, tuple, list[Move]]]:
-    """Return feeds along the part (mm/min), each with its colour and moves; many in bands."""
-    feeds = {index: scene.path.part_feed(index) for index in scene.fed}
-    found = sorted({float(f"{feed:.3g}") for feed in feeds.values()})
-    if len(found) > MOST_SHOWN_LEVELS:
-        found = list(np.linspace(found[0], found[-1], MOST_SHOWN_LEVELS))
-    groups: list[list[Move]] = [[] for _ in found]
-    for index, feed in feeds.items():
-        groups[int(np.argmin(np.abs(np.subtract(found, feed))))].append(scene.moves[index])
-    return list(zip(found, style.feed_colours(len(found)), groups))
 
 
 def draw_plunges(view: SceneView) -> None:
@@ -339,20 +320,19 @@ def mark_worst(view: SceneView) -> None:
 
 def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = None) -> list:
     """Return the legend, with fewer depths where ``room`` limits its entries."""
-    feeds = feed_entries(scene) if scene.feed_colours else []
     listed = []
     for tool in sorted({scene.moves[index].tool for index in {*scene.fed} - {*scene.turned}}):
         listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
     listed += motion_entries(scene)
-    room = MOST_SHOWN_LEVELS if room is None else max(room - len(feeds) - len(listed), LEAST_LEVELS)
+    room = MOST_SHOWN_LEVELS if room is None else max(room - len(listed), LEAST_LEVELS)
     letter = scene.path.part.letters[2]
     depths = [
-        style.swatch(*floor(scene, level), f"swept at {letter}{scene.unit.text(level.z)}")
+        style.swatch(*floor(level), f"swept at {letter}{scene.unit.text(level.z)}")
         for level in few(levels, min(room, MOST_SHOWN_LEVELS))
     ]
-    return [*feeds, *depths, *listed]
+    return [*depths, *listed]
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
@@ -396,14 +376,6 @@ def warning_entries(scene: Scene) -> list:
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed
-
-
-def feed_entries(scene: Scene) -> list:
-    unit = scene.unit
-    return [
-        style.stroke(colour, f"{plain(feed / unit.mm, 1)} {unit.name}/min")
-        for feed, colour, _ in feed_bands(scene)
-    ]
 
 
 def few(items: Sequence, most: int = MOST_SHOWN_LEVELS) -> list:

@@ -1,15 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The content of a picture: a program, the machine, the moves, and the actual motion if run."""
 
-import re
-import textwrap
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import takewhile
 from operator import itemgetter
-from pathlib import Path
 
 import numpy as np
 
@@ -23,11 +19,6 @@ from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.deviation import deviation_of
 from g12.tools.verify.model.program import TracedProgram
 
-HEAD_COMMENT = re.compile(r"\s*(?:[Oo]\d+\s*)?(?:\(([^()]*)\)|;\s*([^;]+))[\s;]*")
-COMMENTS = re.compile(r"\([^)]*\)|;.*")
-AXIS_LETTER = re.compile(r"[xyzabcuvw]", re.IGNORECASE)
-MOST_HEAD_LINES = 20
-LONGEST_HEADING = 72
 SAME_POINT = 1e-6  # mm
 NO_MARKS = Marks()
 
@@ -44,7 +35,6 @@ class Scene:
 
     program: TracedProgram
     unit: Unit
-    feed_colours: bool = False
     override: float = 100.0
     marks: Marks = NO_MARKS
     contour: float | None = None
@@ -114,12 +104,11 @@ class Scene:
 
     @property
     def subtitle(self) -> str:
-        """LinuxCNC's error if any, the comment that heads the program, the machine, the time."""
+        """LinuxCNC's error if any, the machine, the time."""
         error = self.program.trace.error
         length = sum(map(self.path.part_length, self.fed))
         facts = [
             f"refused in line {error.line}: {error.rule}" if error else "",
-            heading(self.program.file),
             self.program.ini.path.name,
             f"cutting path {plain(length / self.unit.mm, 1)} {self.unit.name}",
             f"{clock(self.path.time[-1])} at the programmed feeds",
@@ -128,32 +117,20 @@ class Scene:
         return " · ".join(filter(None, facts))
 
 
-def scene_of(program: TracedProgram, units: str | None = None, feed_colours: bool = False) -> Scene:
+def scene_of(program: TracedProgram, units: str | None = None) -> Scene:
     """Return the scene of a traced program; without ``units`` in the program's."""
-    return Scene(program, unit_of(program.trace.modes.gcodes, units), feed_colours)
+    return Scene(program, unit_of(program.trace.modes.gcodes, units))
 
 
 def scene_of_judgement(
-    judgement: Judgement,
-    override: float = 100.0,
-    units: str | None = None,
-    feed_colours: bool = False,
+    judgement: Judgement, override: float = 100.0, units: str | None = None
 ) -> Scene:
     program = judgement.program
     off = (deviation_of(cut, program).size for cut in program.cuts if cut.is_section)
     return replace(
-        scene_of(judgement.program, units, feed_colours),
+        scene_of(judgement.program, units),
         override=override,
         marks=marks_of(judgement),
         contour=max(off, default=None),
         user_line=judgement.user_line,
     )
-
-
-def heading(program: Path) -> str:
-    """Return the first comment on a line of its own before any motion, other than a licence."""
-    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()[:MOST_HEAD_LINES]
-    still = takewhile(lambda line: not AXIS_LETTER.search(COMMENTS.sub("", line)), lines)
-    found = (match[1] or match[2] for line in still if (match := HEAD_COMMENT.fullmatch(line)))
-    text = next((text.strip() for text in found if "SPDX" not in text), "")
-    return textwrap.shorten(text, LONGEST_HEADING, placeholder=" …")

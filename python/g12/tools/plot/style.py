@@ -67,9 +67,6 @@ DEPTHS = colors.LinearSegmentedColormap.from_list(
 FLOORS = colors.LinearSegmentedColormap.from_list(
     "floor", ["#e4f4f7", "#c3e1ef", "#a3cbe8", "#86aedd", "#93a9da"]
 )
-FEED_COLOURS = colors.LinearSegmentedColormap.from_list(
-    "feed", ["#2b8a3e", "#94b82c", "#f2b705", "#e8590c", "#a61e4d"]
-)
 SIGN = {"marker": "^", "color": CRASH}
 HIT = {"marker": "X", "color": CRASH, "markeredgecolor": "white"}
 DPI = 150
@@ -197,15 +194,6 @@ def shades(count: int) -> list[Shade]:
     """Return the colours of some depths, from the shallowest to the deepest."""
     shares = np.linspace(0.0, 1.0, count) if count > 1 else [0.35]
     return [Shade(DEPTHS(share), FLOORS(share)) for share in shares]
-
-
-def feed_colours(count: int) -> list[tuple]:
-    return [FEED_COLOURS(share) for share in np.linspace(0, 1, count)]
-
-
-def grey(colour) -> tuple[float, float, float]:
-    """Return the light grey of a floor where colours have another meaning."""
-    return (0.45 + 0.5 * float(np.mean(colors.to_rgb(colour))),) * 3
 
 
 def hatch(axes: Axes, area: BaseGeometry) -> None:

@@ -19,7 +19,6 @@ from g12.tools.plot.plan_view import (
     draw_arrows,
     draw_paths,
     draw_signs,
-    feed_entries,
     mark_worst,
     motion_entries,
 )
@@ -68,5 +67,4 @@ def everything(scene: Scene) -> Level:
 
 
 def turn_entries(scene: Scene) -> list:
-    one = [style.stroke(style.shades(1)[0].line, "cut")]
-    return [*(feed_entries(scene) if scene.feed_colours else one), *motion_entries(scene)]
+    return [style.stroke(style.shades(1)[0].line, "cut"), *motion_entries(scene)]

@@ -54,7 +54,7 @@ def draw_unrolled(scene: Scene) -> Figure:
     frame_surface(view.axes, flat, low, high, scene.x0_text)
     draw_plan(view, levels)
     panels = panels_of(figure, page - TOP - up - UNDER)
-    draw_history(panels, flat, [], "surface")
+    draw_history(panels, flat, "surface")
     panels[ROWS - 1].tick_params(labelbottom=True)
     panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
     column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2

@@ -25,7 +25,6 @@ from g12.tools.translate.blocks.modal import (
 )
 from g12.tools.translate.blocks.positions import axis_of, is_unmoved
 
-SLIDES = frozenset("XYZ")
 INDIFFERENT = frozenset("NMSTFHD$")
 
 
@@ -224,7 +223,7 @@ def refuse_feed_of_c(draft: Draft) -> None:
     axes = {axis_of(word.letter) for word in (*draft.axis_words(), *draft.increments())}
     moved = {axis for axis in axes if not is_unmoved(draft, axis)}
     as_here = draft.control.feed_of_c == "mm" or draft.state.feed_mode == "G93"
-    if "C" in moved and moved.intersection(SLIDES) and _is_feed(draft) and not as_here:
+    if "C" in moved and moved.intersection("XYZ") and _is_feed(draft) and not as_here:
         raise NotTranslated(
             "C beside a slide at a feed: F has another path here: write G93 and F, 1 / minutes, "
             "or say feed_of_c = \"mm\" in a control of your own, where F is X's and Z's alone"

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The words of a turning cycle's block as numbers, and the blocks of the contour that it names."""
 
-from collections.abc import Iterable
-
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
@@ -126,14 +124,15 @@ def read_contour(
     return segments, state
 
 
-def _contour_blocks(draft: Draft, indices: Iterable[int]) -> tuple[list[ContourBlock], ModalState]:
+def _contour_blocks(draft: Draft, indices: range) -> tuple[list[ContourBlock], ModalState]:
     """Return some blocks as those of a contour, and the modes after them."""
     blocks = dict(draft.program)
     motion, state, found = draft.state.motion, draft.state, []
     for index in indices:
         block = blocks[index]
         if block.problem or block.kind != "words":
-            raise NotTranslated(f"line {block.line}: a contour has moves only, as numbers")
+            why = block.problem or "a contour has moves only, as numbers"
+            raise NotTranslated(f"line {block.line}: {why}")
         if block.skipped:
             raise NotTranslated(f"line {block.line}: / in a contour: its cuts depend on the switch")
         own, state, motion = _contour_block(draft, block, state, motion)
