@@ -125,7 +125,7 @@ class _Contour:
 
 
 def _chords(element: CutElement, cut: Cut) -> Iterable[tuple[complex, complex]]:
-    points = [cut.point(at) for at in (element.start, *curve_points(element, CHORD))]
+    points = [cut.point(at) for at in (element.start, *curve_points(element, CHORD / cut.mm))]
     return zip(points, points[1:])
 
 

@@ -323,15 +323,26 @@ class TracedProgram:
             for index, move in enumerate(self.moves)
         ]
 
+    @cached_property
+    def _turned(self) -> list[bool]:
+        """Whether the part turns at each move, before the next cut also by rapid from there."""
+        found, turned = [], False
+        for index, move in enumerate(self.moves):
+            state = self.state(index)
+            turns = self.several_spindles and state.spindle in ("M3", "M4") and state.speed > 0
+            goes_on = turned and move.kind == "rapid"
+            turned = not self.cut_at(index) and (turns or goes_on)
+            found.append(turned)
+        return found
+
     def _side(self, index: int, cuts: Sequence[Cut]) -> set[float] | None:
-        inside, state = self.cut_at(index), self.state(index)
+        inside = self.cut_at(index)
         if inside:
             return {inside.surface}
-        turned = self.several_spindles and state.spindle in ("M3", "M4") and state.speed
         beside = self.is_round and self._is_beside_axis(self.moves[index])
         after = bisect_right(cuts, index, key=lambda cut: cut.at)
         near = {cut.surface for cut in cuts[max(after - 1, 0) : after + 1]}
-        return near if near and not turned and not beside else None
+        return near if near and not self._turned[index] and not beside else None
 
     def _is_beside_axis(self, move: Move) -> bool:
         """Return whether the tool of a mill's move is not above the axis of rotation all along."""
