@@ -117,7 +117,7 @@ def mill(name: str, dialect: str, as_on: str, **more) -> Machine:
 def with_a(unit: str) -> Machine:
     slides = MILL_MM if unit == "mm" else MILL_INCH
     name, as_on = f"mill_a_{unit}", "Haas, with a rotary axis A"
-    more = {"slides": (*slides, ROTARY_TABLE)}
+    more = {"slides": (*slides, ROTARY_TABLE), "settings": ("CYLINDER_X = allow",)}
     made = mill(name, "haas", as_on, **more)
     return made._replace(codes=(*made.codes, "cylinder"))
 

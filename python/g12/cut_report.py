@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 from cmath import rect
 from collections.abc import Sequence
-from itertools import chain
 from math import radians
 from typing import Any, NamedTuple
 
@@ -254,9 +253,6 @@ class CutReport(NamedTuple):
     cut: PlannedCut
 
 
-INNER = {"frame": ProgramFrame, "cutter": UsedCutter, "passes": ShapePasses}  # records in fields
-
-
 def report_text(report: CutReport) -> str:
     """Return a report as the text of its comment."""
     kind = next(name for name, cut in KINDS.items() if isinstance(report.cut, cut))
@@ -268,22 +264,6 @@ def more_text(elements: Sequence[CutElement]) -> str:
     return MORE + _json(elements)
 
 
-def read_report(text: str, *further: str) -> CutReport:
-    """Return the report of a comment and of those with further elements, or raise ValueError."""
-    data = json.loads(text.removeprefix(CUT))
-    schema, kind = data.pop("schema"), KINDS.get(data.pop("kind"))
-    if schema != SCHEMA or not kind:
-        raise ValueError(
-            f"the g12 of this machine reports its cuts by schema {schema}, this one reads {SCHEMA}:"
-            " let the INI load this one, or use that one's tools"
-        )
-    cut = data["cut"]
-    if kind is SectionCut:
-        rows = chain(cut["elements"], *(json.loads(more.removeprefix(MORE)) for more in further))
-        cut["elements"] = tuple(map(_element, rows))
-    return _record(CutReport, {**data, "cut": _record(kind, cut)})
-
-
 def _json(value: object) -> str:
     return json.dumps(value, default=lambda point: (point.real, point.imag))
 
@@ -293,18 +273,3 @@ def _named(record: Any) -> dict[str, Any]:
     values = record._asdict()
     own = {name: _named(value) for name, value in values.items() if hasattr(value, "_asdict")}
     return {**values, **own}
-
-
-def _element(row: Sequence[Any]) -> CutElement:
-    line, side, radius, feed, z0, z1, *points, sweep = row
-    start, end, centre = (complex(*point) if point else None for point in points)
-    return CutElement(line, side, radius, feed, z0, z1, start, end, centre, sweep)
-
-
-def _record(kind: Any, data: dict[str, Any]) -> Any:
-    inner = {name: _record(INNER[name], value) for name, value in data.items() if name in INNER}
-    return kind(**{name: _frozen(value) for name, value in data.items()} | inner)
-
-
-def _frozen(value: Any) -> Any:
-    return tuple(map(_frozen, value)) if isinstance(value, list) else value

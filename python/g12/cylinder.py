@@ -30,7 +30,7 @@ from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.errors import number
 from g12.geometry.curve import Arc
-from g12.lengths import LARGEST, ROUNDING_MM
+from g12.lengths import LARGEST
 from g12.moves.exact_stops import Direction, stops
 from g12.moves.setup import LEAST_MM, RADIUS_TOLERANCE_MM, SectionKind, check_entry
 from g12.moves.steps import (
@@ -141,12 +141,12 @@ class Cylinder(SectionKind):
 
     def word_rules(self) -> WordRules:
         return WordRules(
-            diameter=self.start.diameter,
+            diameter=self.state.diameter,
             x_scale=1.0,
             turn_scale=radians(self.per_radian),
             height_with_others=self.machine.settings.cylinder_x == "allow",
             rapid_feed=self.rapid_feed,
-            radius_tolerance=RADIUS_TOLERANCE_MM * self.start.millimetre,
+            radius_tolerance=RADIUS_TOLERANCE_MM * self.state.millimetre,
         )
 
     @property
@@ -155,7 +155,7 @@ class Cylinder(SectionKind):
         return CylinderSettings(
             per_radian=self.per_radian,
             tolerance=self.tolerance,
-            least_slide=LEAST_MM * self.start.millimetre,
+            least_slide=LEAST_MM * self.state.millimetre,
             slide_acceleration=self.in_program(slide),
             turn_acceleration=turn.acceleration,
             height_acceleration=self.in_program(height),
@@ -181,12 +181,12 @@ class CylinderOnMill(Cylinder):
 
     def check_machine(self, start: SectionStart) -> None:
         across = self.across
-        there = start.position[across]
+        there = start.state.position(across)
         rule = (
             f"needs {across}0: the tool must stand on the axis of rotation, not at"
             f" {across}{number(there)}"
         )
-        on_axis = abs(there) <= ROUNDING_MM * start.millimetre
+        on_axis = abs(there) <= start.state.rounding
         needed = "".join(self.words.axes)
         rules = [(on_axis, rule)]
         centre = "the axis of rotation"

@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from g12.errors import number
-
 MM_PER_INCH = 25.4
 INCH_SLACK = 1e-3  # units per mm that LinuxCNC takes for an inch machine
 DEGREES_PER_TURN = 360.0
@@ -20,18 +18,3 @@ def converts(factor: float) -> bool:
 def is_inch(millimetres: float) -> bool:
     """Return whether LinuxCNC takes a machine for an inch machine, by its unit's length in mm."""
     return abs(1 / millimetres - 1 / MM_PER_INCH) < INCH_SLACK
-
-
-def beyond_limit(
-    axis: str, position: float, limit: float, unit: str, *, converted: bool, radius: bool = False
-) -> str:
-    """Return the rule for a position beyond an axis's limit, both in the machine's ``unit``.
-
-    ``converted``: the program's unit is another.
-    """
-    name = f"{unit} (radius)" if radius else unit
-    active = f" (G{20 if unit == 'mm' else 21} is active)" if converted else ""
-    return (
-        f"the {axis} axis would go to {number(position)} {name}, beyond its limit"
-        f" {number(limit)} {unit}{active}"
-    )

@@ -21,7 +21,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from g12.errors import Refusal, number
-from g12.lengths import MM_PER_INCH
 
 INCLUDE = re.compile(r"\s*#INCLUDE\s+(\S.*)")
 EXPANDED = ".expanded"  # suffix of the expanded file that the linuxcnc script of 2.9 writes
@@ -117,13 +116,6 @@ KINEMATICS_PARAMETER = b"_kins_type"  # a library symbol of interpreters that ha
 TRAVEL_KEYS = ("MIN_LIMIT", -NO_LIMIT), ("MAX_LIMIT", NO_LIMIT)  # with LinuxCNC's defaults
 SPEED_KEYS = ("MAX_VELOCITY", 1.0), ("MAX_ACCELERATION", 1.0)
 SPINDLE_C_SECONDS, LONGEST_SPINDLE_C = 30.0, 3600.0  # [SPINDLE_C] TIMEOUT
-MM_OF_UNIT = {  # with their lengths in mm
-    "mm": 1.0,
-    "metric": 1.0,
-    "in": MM_PER_INCH,
-    "inch": MM_PER_INCH,
-    "imperial": MM_PER_INCH,
-}
 KEYWORDS = ("modalgroup", "argspec", "prolog", "epilog", "ngc", "python")  # in LinuxCNC's order
 HANDLERS = ("prolog", "epilog", "python")
 M_FILES = tuple(f"M{code}" for code in range(100, 200))  # names of the user's own commands
@@ -173,17 +165,6 @@ class Remap:
     def like(self, model: Remap) -> str:
         """Return the line with another one's keywords and this one's code."""
         return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
-
-
-def millimetres_of(find: Find) -> float:
-    """Return the length of a machine unit in mm; LinuxCNC takes a name or units per mm."""
-    text = find("TRAJ", "LINEAR_UNITS") or "mm"
-    per_mm = leading_number(text)
-    length = MM_OF_UNIT.get(text.split()[0].lower(), 0.0) if per_mm is None else per_mm
-    if length <= 0.0:
-        rule = f"must be {', '.join(MM_OF_UNIT)} or units per mm, a number above 0"
-        raise Refusal(f"[TRAJ] LINEAR_UNITS = {text:.40}: {rule}")
-    return length if per_mm is None else 1.0 / per_mm
 
 
 def coordinates_of(find: Find) -> str:

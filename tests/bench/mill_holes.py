@@ -10,8 +10,8 @@ from g12.cycles.bore import plan_bore
 from g12.cycles.frame import plan_frame
 from g12.cycles.plan import STRAIGHT_DOWN
 from g12.cycles.thread import plan_thread
-from g12.request.common import COUNTERCLOCKWISE
-from g12.request.words import Tool, Words
+from g12.request import COUNTERCLOCKWISE, Words
+from g12.state import Tool
 from g12.tools.headless.run import run_program
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM, words_of

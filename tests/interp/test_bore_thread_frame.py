@@ -38,7 +38,7 @@ def test_any_valid_block_cuts_what_its_words_say(metric, helical, kind, seed):
 
 WRONG = {  # words that replace those of a good block, and a word of the rule
     "G13.5 Z-5 R0 I4 P.2 D1": {
-        "I0": "greater", "I-4": "greater", "I2.9": "exceed", "P0": "greater", "P-1": "greater",
+        "I0": "greater", "I-4": "greater", "I2.9": "greater", "P0": "greater", "P-1": "greater",
         "P": "missing", "P3": "ENTRY_ANGLE", "Z": "missing", "Z0": "below", "Z4": "below",
         "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",

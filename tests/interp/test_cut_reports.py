@@ -191,7 +191,7 @@ def test_another_preview_shows_nothing_of_them(tmp_path):
 def test_no_record_is_made_where_nobody_asks(tmp_path):
     made = tmp_path / "made"
     body = f"open({str(made)!r}, 'a').write('made'); return original()"
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.reported.report_of", body, tmp_path)
+    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.messages.report_of", body, tmp_path)
     for reports in (False, True):
         with Tracer(ini, tools=TOOLS, reports=reports) as tracer:
             tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])

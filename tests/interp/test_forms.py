@@ -201,7 +201,11 @@ REFUSED = [
     ("circle_mill", {"event": 1}, "form: G must be 0 or 7, not 1"),
     ("circle_mill", {"o": 1}, "form: the retract height 1.000000 must be above 2.000000"),
     ("bore", {"code": 13}, "form: G must be 12.5 or 13.5, not 13"),
-    ("bore", {"i": 4}, "G13.5 line 29 of form_bore_mm.ngc: I4 must exceed the tool radius 5"),
+    (
+        "bore",
+        {"i": 4},
+        "G13.5 line 29 of form_bore_mm.ngc: I4 must be greater than the tool radius",
+    ),
     ("thread", {"i": 5}, "the tool diameter 10 (D1) must be less than the smaller diameter"),
     ("frame", {"r": 4}, "R4 must not be below the tool radius 5 (D1)"),
     ("polygon", {"tool": 0}, "form: the tool number must be 1 or more, not 0"),

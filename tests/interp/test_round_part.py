@@ -15,6 +15,7 @@ from g12.tools.preview.tracer import Tracer
 from support import polar_programs
 from support.flat_contours import (
     FIRST,
+    WITH_B,
     FlatContour,
     apart,
     flat_path,
@@ -28,15 +29,9 @@ TOOL = 3.0  # mm, the radius of T3
 TOLERANCE = 0.005  # POLAR_TOLERANCE, mm
 RADII = (3.0, 25.0, 80.0)
 CONTOURS = 60
-WITH_B = {
-    "TRAJ": {"COORDINATES": "X Y Z B"},
-    "KINS": {"KINEMATICS": "trivkins coordinates=XYZB"},
-    "AXIS_B": {"MIN_LIMIT": "-99999", "MAX_LIMIT": "99999", "MAX_VELOCITY": "360",
-               "MAX_ACCELERATION": "3600"},
-}  # fmt: skip
 
 mill = kept_tracer("mill_mm")
-mill_a = kept_tracer("mill_a_mm")
+mill_a = kept_tracer("mill_a_mm", overrides={"G12": {"CYLINDER_X": "refuse"}})
 mill_b = kept_tracer("mill_a_mm", overrides=WITH_B)
 reversed_a = kept_tracer("mill_a_mm", overrides={"G12": {"ROTARY_SENSE": "reversed"}})
 

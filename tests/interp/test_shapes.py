@@ -10,9 +10,9 @@ import math
 import numpy as np
 import pytest
 
-from g12.request.words import Tool
 from g12.shapes import pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
+from g12.state import Tool
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM
 from support.polar_programs import FIRST, feed_moves, in_plane, tracer

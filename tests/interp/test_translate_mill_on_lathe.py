@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A mill's program on a bar's face cuts what it cuts on a mill."""
+"""A mill's program on a bar's face and round a part, of lathe and mill, cuts what it does flat."""
 
 import numpy as np
 import pytest
 
+from g12.tools.errors import ProgramError
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from interp.test_translate_cam import (
     DEEPEST_RAPID,
@@ -17,11 +19,14 @@ from interp.test_translate_cam import (
 )
 from support.cam_parts import PARTS, mill_program
 from support.contour_geometry import FROM_COLUMNS, distances
+from support.flat_contours import WITH_B
 from support.foreign_programs import FOREIGN, translation
 from support.shape_geometry import polygon
 from support.sim_machines import SIM
 
-SETTINGS = {"POLAR_Z": "allow", "LIVE_SPINDLE": "0"}
+SETTINGS = {"POLAR_Z": "allow", "CYLINDER_X": "allow", "LIVE_SPINDLE": "0"}
+DIAMETER = 50.0
+ROUND = ("--diameter", "50")
 
 
 @pytest.fixture(scope="module")
@@ -41,11 +46,85 @@ def lathe(tmp_path_factory):
         yield cut
 
 
+def legs_of(moves, axes):
+    """Return positions of some axes along moves, densely."""
+    legs = [np.linspace(*([at[i] for i in axes] for at in (m.start, m.end)), 200) for m in moves]
+    return np.concatenate(legs).T
+
+
+def round_the_part(moves):
+    """Return points of the tool's way over the unrolled surface, as the mill has them."""
+    x, z, c = legs_of(moves, (0, 2, 5))
+    return np.column_stack([z, -np.radians(c) * DIAMETER / 2, x - DIAMETER / 2])
+
+
+def round_a(moves):
+    """Return the same of a mill with A, which stays above the axis of rotation."""
+    x, y, z, a = legs_of(moves, (0, 1, 2, 3))
+    assert not y.any()
+    return np.column_stack([x, -np.radians(a) * DIAMETER / 2, z - DIAMETER / 2])
+
+
+def round_b(moves):
+    """Return the same of a mill with B."""
+    x, y, z, b = legs_of(moves, (0, 1, 2, 4))
+    assert not x.any()
+    return np.column_stack([np.radians(b) * DIAMETER / 2, y, z - DIAMETER / 2])
+
+
+def round_a_reversed(moves):
+    return round_a(moves) * (1, -1, 1)
+
+
+MILLS = {
+    round_a: {},
+    round_b: WITH_B,
+    round_a_reversed: {"G12": {"CYLINDER_X": "allow", "ROTARY_SENSE": "reversed"}},
+}
+
+
+@pytest.fixture(scope="module", params=MILLS, ids=lambda made: made.__name__)
+def mill(request, tmp_path_factory):
+    """Return a function: the points of a flat program's way round a part, and its moves."""
+    folder = tmp_path_factory.mktemp("round")
+    machine = {"overrides": MILLS[request.param], "tools": {1: 12.0, 3: 6.0}}
+    with Tracer(SIM / "mill_a_mm.ini", **machine) as tracer:
+        ini = folder / "machine.ini"
+        own = read_ini(SIM / "mill_a_mm.ini").replaced(MILLS[request.param])
+        ini.write_text("\n".join(own.lines))
+
+        def cut(text, *options):
+            program = folder / "part.nc"
+            program.write_text(text)
+            translated = translation(
+                program, "mill-round-part", *ROUND, *options, "--ini", str(ini)
+            )
+            traced = tracer.trace_text(translated, setup=["G21 G90", "G0 Z80"], alone=True)
+            assert traced.error is None, (traced.error, translated)
+            return request.param(traced.moves), traced.moves
+
+        yield cut
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_round_the_part_on_a_mill(mill, part):
+    made, moves = mill(mill_program(PARTS[part]), "--safe", "1")
+    assert_cut(made, PARTS[part])
+    assert all(m.end[2] > DIAMETER / 2 for m in moves if m.kind == "rapid")
+
+
 @pytest.mark.parametrize("part", PARTS)
 def test_on_the_face(lathe, part):
     moves = lathe(mill_program(PARTS[part]), "mill-on-face", "--safe", "1")
     assert_cut(on_the_part(moves), PARTS[part])
     assert rapids_turn_above_the_part(moves)
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_round_the_part(lathe, part):
+    moves = lathe(mill_program(PARTS[part]), "mill-round-part", "--safe", "1", *ROUND)
+    assert_cut(round_the_part(moves), PARTS[part])
+    assert all(m.start[0] > DIAMETER / 2 < m.end[0] for m in moves if m.kind == "rapid")
 
 
 def assert_cut(made, part):
@@ -73,15 +152,47 @@ M2
 WANTED = [(5, 5, -6), (-5, 5, -6), (0, -7, -4)]
 
 
-def test_holes_are_where_the_mill_has_them(lathe):
-    moves = lathe(HOLES, "mill-on-face")
+@pytest.mark.parametrize(
+    ("control", "options", "made_by"),
+    [("mill-on-face", (), on_the_part), ("mill-round-part", ROUND, round_the_part)],
+)
+def test_holes_are_where_the_mill_has_them(lathe, control, options, made_by):
+    moves = lathe(HOLES, control, *options)
     first = max(n for n, m in enumerate(moves) if m.kind == "feed" and m.start[5] != m.end[5])
-    downs = on_the_part(moves[first + 2 :])
+    downs = made_by(moves[first + 2 :])
     for x, y, depth in WANTED:
         near = downs[np.hypot(downs[:, 0] - x, downs[:, 1] - y) < 1e-3]
         assert near[:, 2].min() == pytest.approx(depth)
     deep = downs[downs[:, 2] < 0]
     assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
+
+
+def test_holes_round_a_part_of_a_mill(mill):
+    made, moves = mill(HOLES)
+    deep = made[made[:, 2] < -1.001]
+    for x, y, depth in WANTED:
+        near = deep[np.hypot(deep[:, 0] - x, deep[:, 1] - y) < 1e-3]
+        assert near[:, 2].min() == pytest.approx(depth)
+    assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
+    assert moves[-1].end[2] == 5 + DIAMETER / 2
+
+
+REFUSED = [
+    ("G18 G2 X5 Z1 R5", "G18: arcs lie in X and Y here (G17): no vertical leads in CAM"),
+    ("G0 X9", "G0 at Z-1, below 2 where rapids are clear of the part"),
+    ("G12 I5 F100", "G12: a round pocket of the mill: let CAM write its arcs"),
+    ("G1 A5", "A5: a program for mill-round-part has X, Y and Z"),
+    ("G84 Z-5 R2 F100", "G84"),
+]
+
+
+@pytest.mark.parametrize(("block", "why"), REFUSED)
+def test_what_cannot_be_wound_is_refused_with_its_line(tmp_path, block, why):
+    program = tmp_path / "part.nc"
+    program.write_text(f"G21 G90 G17\nT3 M6\nG0 X0 Y0 Z5\nG1 Z-1 F100\n{block}\nM30\n")
+    with pytest.raises(ProgramError) as refused:
+        translation(program, "mill-round-part", *ROUND, "--ini", str(SIM / "mill_a_mm.ini"))
+    assert f"part.nc:5: {why}" in str(refused.value)
 
 
 CUTTER, CLOSE = 2.5, 0.01  # mm: the radius; POLAR_TOLERANCE, and arcs with three decimals

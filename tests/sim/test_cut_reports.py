@@ -14,7 +14,7 @@ def test_a_running_machine_makes_no_report(tmp_path):
     called, made = tmp_path / "called", tmp_path / "made"
     body = f"open({str(called)!r}, 'a').write('.'); found = original()"
     body += f"\nif found is not None: open({str(made)!r}, 'a').write('.')\nreturn found"
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.reported.asked", body, tmp_path)
+    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.messages.asked", body, tmp_path)
     overrides = {**BRISK, "PYTHON": {"TOPLEVEL": ini.get("PYTHON", "TOPLEVEL")}}
     with Machine(SIM / "mill_mm.ini", tools={1: 6.0}, overrides=overrides) as machine:
         machine.mdi("G21 G90 G94 F8000 T1 M6")

@@ -16,7 +16,7 @@ import pytest
 
 from g12.cut_report import EventCut, SectionCut
 from g12.machine_ini import face_of
-from g12.request.common import LEFT_OUT
+from g12.request import LEFT_OUT
 from g12.tools.path.part import Part, arc_points, plane_axes
 from g12.tools.path.surface import Surface
 from g12.tools.path.track import feed_length, rate

@@ -14,6 +14,12 @@ from shapely.geometry import LineString
 
 FIRST = "G21 G17 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 SENSE = {"A": -1.0, "B": 1.0}  # LinuxCNC's: the right-hand rule, seen from the workpiece
+WITH_B = {
+    "TRAJ": {"COORDINATES": "X Y Z B"},
+    "KINS": {"KINEMATICS": "trivkins coordinates=XYZB"},
+    "AXIS_B": {"MIN_LIMIT": "-99999", "MAX_LIMIT": "99999", "MAX_VELOCITY": "360",
+               "MAX_ACCELERATION": "3600"},
+}  # fmt: skip
 X, Y, Z, A, B = range(5)
 # Radians: LinuxCNC itself takes a smaller turn for none, and its path is 0.003 mm off there.
 LEAST_TURN, MOST_TURN = 0.15, math.pi / 2

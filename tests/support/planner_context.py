@@ -4,13 +4,17 @@
 import pytest
 
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.request.words import Context, Tool
+from g12.state import State, Tool
 
-MM = Context(
+MM = State(
     inch=False,
+    machine_mm=1.0,
     x=0.0,
     y=0.0,
     z=10.0,
+    offsets=dict.fromkeys("XYZABC", 0.0),
+    shifts=dict.fromkeys("XYZ", 0.0),
+    rotation=0.0,
     incremental=False,
     plane="G17",
     inverse_time=False,
@@ -26,6 +30,7 @@ MM = Context(
 )
 INCH = MM._replace(
     inch=True,
+    machine_mm=25.4,
     z=1.0,
     feed=10.0,
     spindle_tool=Tool(1, 0.25),

@@ -26,18 +26,18 @@ from g12.cut_report import (
     ThreadCut,
     UsedCutter,
     more_text,
-    read_report,
     report_text,
 )
 from g12.cycles import mitsubishi, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
 from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import EventPlanes
-from g12.request.common import LEFT_OUT
-from g12.request.words import Tool, Words
+from g12.request import LEFT_OUT, Words
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
+from g12.state import Tool
+from g12.tools.preview.reports import read_report
 from support.planner_context import MM, words_of
 
 TOOLS = {1: Tool(1, 5.0), 2: Tool(2, 2.0)}

@@ -17,8 +17,8 @@ from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import STRAIGHT_DOWN, EventPlanes, PocketEntry
 from g12.cycles.thread import plan_thread
 from g12.errors import Refusal
-from g12.request.common import COUNTERCLOCKWISE, CycleExtent
-from g12.request.words import Tool, Words
+from g12.request import COUNTERCLOCKWISE, CycleExtent, Words
+from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 
 NONE = EventPlanes()
@@ -59,15 +59,16 @@ def too_near(apart, to):
 
 REFUSED = {
     "haas": [
-        ("I.12505 D1", "I0.12505 must exceed the tool radius 0.125 (D1) by at least 0.0002"),
+        ("I.12505 D1",
+         "I0.12505 must be greater than the tool radius 0.125 (D1) by at least 0.0002"),
         ("I0 D0", "I0 must be greater than 0"),
         ("I.5 L0", "L0 must be at least 1"),
         ("I.5 L200000", "L makes 200000 circles, the most is 100000"),
         ("I.5 K1 Q1e-320", "Q9.99989e-321 makes 1000000001 circles, the most is 100000"),
     ],
     "yasnac": [
-        ("I0", "I0 must not be 0"),
-        ("I-5 R-6 D2", "I-5 must exceed the tool radius 10 (D2) in size"),
+        ("I0", "I0 must be at least 0.00508"),
+        ("I-5 R-6 D2", "I-5 must be greater in size than the tool radius 10 (D2)"),
         ("I30 R29.99746", beyond("R29.99746", 29.99746, NO_D,
          too_near(0.00254, "X30, where I30 puts it"))),
         ("I50 R20 K20.004 Q1 D2", beyond("K20.004", 10.004, WITH_D,
@@ -83,7 +84,7 @@ REFUSED = {
         ("I50 K10 Q.0001", "K, Q and L make 800001 circles, the most is 100000"),
     ],
     "mitsubishi": [
-        ("I0 D0", "I0 must be greater than the tool radius 0 (D0) by at least 0.00508"),
+        ("I0 D0", "I0 must be at least 0.00508"),
     ],
     "pocket": [
         ("Y", "Y is missing: the circle's centre"),
@@ -157,7 +158,7 @@ def test_a_mode_that_cannot_work_is_refused(name, modes, rule):
     assert reported(plan, name, VALID[name], **modes) == f"{PLANNERS[name][0]}: {rule}"
 
 
-OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
+OTHER_UNITS = MM._replace(machine_mm=25.4, spindle_tool=Tool(1, 6.0))  # G21 on an inch machine
 
 
 @pytest.mark.parametrize(
@@ -165,16 +166,16 @@ OTHER_UNITS = MM._replace(unit="mm", spindle_tool=Tool(1, 6.0))  # G21 on an inc
     [
         ("haas", "I.5 D1", "greater than the tool radius 6{} (D1)"),
         ("haas", "I7 K30 Q13 D1", "Q13 is greater than the tool diameter 12{}: material is left"),
-        ("yasnac", "I.5 D1", "must exceed the tool radius 6{} (D1) in size"),
+        ("yasnac", "I.5 D1", "greater than the tool radius 6{} (D1)"),
         ("yasnac", "I9 R1 D1", "centre (tool radius 6{}, D1): it must be"),
-        ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1) by"),
+        ("mitsubishi", "I.5 D1", "greater than the tool radius 6{} (D1)"),
         ("pocket", "Z-1 I1 R.5", "greater than the tool radius 6{} (T1)"),
         ("pocket", "R60 J13.5", "than the tool diameter 12{}: material is left"),
     ],
 )
 def test_a_tools_size_has_its_unit_where_the_machines_is_another(name, words, text):
     """The table's numbers are the machine's: 0.5 may look right to who does not see the G21."""
-    for found, unit in ((OTHER_UNITS, " mm"), (OTHER_UNITS._replace(unit=""), "")):
+    for found, unit in ((OTHER_UNITS, " mm"), (OTHER_UNITS._replace(machine_mm=1.0), "")):
         try:
             message = plan(name, words, found).message
         except Refusal as refusal:

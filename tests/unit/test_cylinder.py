@@ -27,6 +27,7 @@ from g12.section.line import BlockLocation, split_line
 from g12.settings import Settings
 from support import planned_moves
 from support.section_starts import START as POLAR_START
+from support.section_starts import with_found
 
 RADIUS = 20.0
 MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 3600.0, 1000.0)
@@ -35,12 +36,14 @@ AXES = {
     "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
     "C": Axis(-720.0, 720.0, 360.0, 3600.0),
 }
-START = POLAR_START._replace(
+START = with_found(
+    POLAR_START,
     location=BlockLocation("G7.1", 7),
     words={"C": RADIUS},
-    position={"X": 22.0, "C": 30.0, "Z": 5.0},
-    tool_radius=3.0,
-    yz_plane=True,
+    x=22.0,
+    c=30.0,
+    z=5.0,
+    plane="G19",
 )
 
 
@@ -128,11 +131,11 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 
 
 def section(settings=Settings(), letters="XZC", **found):  # noqa: B008 - it is frozen
-    return Cylinder(START._replace(**found), SectionMachine(letters, settings, AXES))
+    return Cylinder(with_found(START, **found), SectionMachine(letters, settings, AXES))
 
 
 def test_the_settings_of_a_section_are_in_program_units():
-    made = section(machine_unit=1 / 25.4, millimetre=1 / 25.4)
+    made = section(inch=True)
     planning, rules = made.planning, made.rules
     lengths = [made.tolerance, *planning[1:4], planning.height_acceleration, rules.radius_tolerance]
     in_mm = [0.005, 0.005, 0.001, 1100, 900, 0.0127]
@@ -158,7 +161,7 @@ def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
 @pytest.mark.parametrize(
     ("found", "rule"),
     [
-        ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),  # as for all sections
+        ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),  # as for all sections
         ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),
         ({"words": {"C": 0.0}}, "C0, the cylinder's radius, must be above 0 and at most 1000000"),
         ({"words": {"C": -2.0}}, "C-2, the cylinder's radius, must be above 0 and at most 1000000"),
@@ -172,7 +175,7 @@ def test_where_no_section_begins(found, rule):
 
 def test_where_one_begins():
     section()  # in G19, too
-    section(letters="XYZC", position=START.position | {"X": -1.0})
+    section(letters="XYZC", x=-1.0)
     for radius in (1e-3, 1e6):
         section(words={"C": radius})
     with pytest.raises(Refusal, match="needs a machine with an X, Z and a C axis"):
@@ -222,12 +225,11 @@ ON_MILL = {
     letter: Axis(-500.0, 500.0, 50.0, acceleration)
     for letter, acceleration in zip("XYZAB", (900.0, 1000.0, 1100.0, 3600.0, 3600.0))
 }
-AT_AXIS = {"A": {"X": 30.0, "Y": 0.0, "Z": 22.0, "A": 0.0}, "B": {"X": 0.0, "Y": 30.0, "Z": 22.0}}
+AT_AXIS = {"A": dict(x=30.0, z=22.0, c=0.0), "B": dict(x=0.0, y=30.0, z=22.0)}
 
 
 def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B008 - it is frozen
-    position = START.position | AT_AXIS[letter] | found.pop("position", {})
-    start = START._replace(words={letter: RADIUS}, position=position)._replace(**found)
+    start = with_found(START, **{"words": {letter: RADIUS}, **AT_AXIS[letter], **found})
     return CYLINDERS[letter](start, SectionMachine(letters, settings, ON_MILL))
 
 
@@ -252,9 +254,9 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
 @pytest.mark.parametrize(
     ("letter", "found", "rule"),
     [
-        ("A", {"position": {"Y": 2.5}},
+        ("A", {"y": 2.5},
          "needs Y0: the tool must stand on the axis of rotation, not at Y2.5"),
-        ("B", {"position": {"X": -0.01}},
+        ("B", {"x": -0.01},
          "needs X0: the tool must stand on the axis of rotation, not at X-0.01"),
         ("A", {"letters": "XYZB"}, "needs a machine with an X, A and a Z axis"),
         ("B", {"letters": "XYZ"}, "needs a machine with an Y, B and a Z axis"),
@@ -267,7 +269,7 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
         ("A", {"words": {}}, "needs A, the cylinder's radius; A0 ends a section"),
         ("B", {"words": {"B": 0.0}},
          "B0, the cylinder's radius, must be above 0 and at most 1000000"),
-        ("A", {"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ("A", {"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
     ],
 )  # fmt: skip
 def test_where_none_begins_on_a_mill(letter, found, rule):
@@ -277,7 +279,7 @@ def test_where_none_begins_on_a_mill(letter, found, rule):
 
 
 def test_where_one_begins_on_a_mill():
-    on_mill("A", position={"Y": 1e-9}, shifts={"X": 9.0, "Y": 0.0, "Z": 0.0})
+    on_mill("A", y=1e-9, shifts={"X": 9.0, "Y": 0.0, "Z": 0.0})
     on_mill("B", letters="YBZ")
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from g12.cycles.plan import PocketEntry, pocket_descent
 from g12.errors import Refusal
-from g12.request.words import Words
+from g12.request import Words
 from support.planner_context import MM
 
 HELIX = PocketEntry(helix=True, angle=3.0)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Lines and arcs against shapely's fine polylines, and each method against the others."""
 
+import cmath
 import math
 
 import numpy as np
@@ -9,7 +10,17 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.geometry.curve import Arc, Line, angle_of, recentred, sweep_between
+from g12.geometry.curve import (
+    Arc,
+    BoxTree,
+    Line,
+    angle_of,
+    apart,
+    common_points,
+    crossings,
+    recentred,
+    sweep_between,
+)
 
 SAGITTA = 2e-4
 NUMBER = st.integers(-800, 800).map(lambda hundredths: hundredths / 100)
@@ -112,3 +123,98 @@ def test_the_sweep_between_two_points_of_an_arc(arc, share):
 
 def test_a_vector_that_underflows_has_an_angle():
     assert angle_of(complex(2.0, 5e-324)) == 0.0
+
+
+# ---------------------------------------------------------------- where two curves meet
+
+CIRCLE = st.builds(
+    lambda centre, radius: Arc(centre + radius, centre, 2 * math.pi), POINT, st.floats(0.5, 15)
+)
+
+
+def extended(curve):
+    """Return what a curve lies on: a long straight line, or a polygon about a circle."""
+    if isinstance(curve, Line):
+        along = 1000 * curve.direction()
+        return LineString([(p.real, p.imag) for p in (curve.start - along, curve.start + along)])
+    return Point(curve.centre.real, curve.centre.imag).buffer(curve.radius, 4096).exterior
+
+
+def off(curve, place):
+    """Return how far a place is from what a curve lies on."""
+    if isinstance(curve, Arc):
+        return abs(abs(place - curve.centre) - curve.radius)
+    return abs(((place - curve.start) * curve.direction().conjugate()).imag)
+
+
+@given(one=st.one_of(LINE, CIRCLE), other=st.one_of(LINE, CIRCLE))
+def test_crossings_are_on_both_and_all_there_are(one, other):
+    found = crossings(one, other)
+    assert all(max(off(one, place), off(other, place)) < 2e-3 for place in found)
+    met = extended(one).intersection(extended(other))
+    places = [complex(p.x, p.y) for p in getattr(met, "geoms", [met]) if p.geom_type == "Point"]
+    assume(not met.is_empty and met.geom_type in ("Point", "MultiPoint"))
+    apart = min((abs(a - b) for a in places for b in places if a != b), default=math.inf)
+    assume(apart > 0.1)
+    assume(not isinstance(one, Arc) or not isinstance(other, Arc) or one.centre != other.centre)
+    for place in (place for place in places if abs(place) < 500):
+        assert min(abs(place - each) for each in found) < 0.05
+
+
+@given(CURVE, LINE)
+def test_common_points_are_the_crossings_on_both_curves(one, other):
+    for pair in ((one, other), (other, one)):
+        found = common_points(*pair)
+        assert all(curve.distance(point) < 2e-6 for curve in pair for point in found)
+        beside = [point for point in crossings(*pair) if point not in found]
+        assert all(max(curve.distance(point) for curve in pair) > 1e-6 for point in beside)
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [
+        (Line(0j, 5 + 0j), Line(1j, 5 + 1j)),
+        (Arc(3 + 0j, 0j, 1.0), Arc(20 + cmath.rect(3, 1), 20 + 0j, 1.0)),
+    ],
+)
+def test_what_does_not_meet_has_no_crossing(pair):
+    assert crossings(*pair) == []
+
+
+# ---------------------------------------------------------------- of many, by their boxes
+
+
+def some(count):
+    """Return lines and arcs anywhere, and what draws more."""
+    rng = np.random.default_rng(count)
+    curves = []
+    for k in range(count):
+        start, to = (complex(*rng.uniform(-20, 20, 2)) for _ in range(2))
+        curves.append(Arc(start, start + 0.2 * to, 2.0) if k % 3 else Line(start, to))
+    return curves, rng
+
+
+@pytest.mark.parametrize("count", [1, 4, 5, 60])
+@pytest.mark.parametrize("reach", [math.inf, 12.0])
+def test_the_nearest_curve_that_counts_is_found_among_many(count, reach):
+    curves, rng = some(count)
+    tree, found = BoxTree(curves), 0
+    for point in (complex(*xy) for xy in rng.uniform(-40, 40, (100, 2))):
+        away = [curve.distance(point) for curve in curves[::2]]
+        nearest = min(*away, reach)
+        far, index = tree.nearest(point, reach, lambda k: k % 2 == 0)
+        assert far == pytest.approx(nearest)
+        assert index == (2 * away.index(nearest) if nearest < reach else None)
+        found += index is not None
+    assert found > 10
+
+
+@pytest.mark.parametrize("count", [1, 60])
+def test_the_curves_near_to_a_box_are_found(count):
+    curves, rng = some(count)
+    tree = BoxTree(curves)
+    assert all(apart(curve.box, tree.box, -1e-9) is False for curve in curves)
+    for x, y in rng.uniform(-30, 30, (50, 2)):
+        box = (x, y, x + 3, y + 1)
+        expected = [k for k, curve in enumerate(curves) if not apart(curve.box, box, 2.0)]
+        assert sorted(tree.near(box, 2.0)) == expected

@@ -73,6 +73,13 @@ CYCLES_UI = "-u g12/python/g12/tools/cycles_page/gtk_view.py g12/configs/include
 QTDRAGON_TAB = "EMBED_TAB_LOCATION = tabWidget_utilities\n"
 ON_LATHE = f"[DISPLAY]\nDISPLAY = axis\nLATHE = 1\n\n{LATHE}"
 MILL_CODES = ("haas", "circle-mill")
+
+
+def with_axes(text, axes):
+    """Return a config with other axes."""
+    return re.sub("COORDINATES = .*", f"COORDINATES = {' '.join(axes)}", text)
+
+
 SCREENS = [  # a config, features, lines that it gets
     (AXIS, (*MILL_CODES, "forms"), f"TKPKG = Ngcgui 1.0\n{PAGES}"),
     (QTVCP, (*MILL_CODES, "forms"), f"NGCGUI_SUBFILE_PATH = g12/ngc\n{PAGES}"),
@@ -93,6 +100,10 @@ SCREENS = [  # a config, features, lines that it gets
     (PROBE_BASIC, ("haas", "cycles-page"), "USER_TABS_PATH = g12/configs/include/probe_basic/\n"),
     (ON_LATHE, ("polar",), "USER_COMMAND_FILE = g12/configs/include/axis_face.py\n"
      "GEOMETRY = CXZ!\n"),
+    (with_axes(AXIS, "XYZA"), ("cylinder",), "GEOMETRY = AXYZ!\n"),
+    (with_axes(AXIS, "XYZB"), ("cylinder",), "GEOMETRY = -BXYZ!\n"),
+    (with_axes(AXIS, "XYZA") + "[G12]\nROTARY_SENSE = reversed\n", ("cylinder",),
+     "GEOMETRY = -AXYZ!\n"),
     (ON_LATHE.replace("axis", "gmoccapy"), ("cylinder",), "EMBED_TAB_NAME = Face\n"
      f"EMBED_TAB_LOCATION = ntb_user_tabs\n{GLADE}g12/configs/include/face_view.ui\n"),
 ]  # fmt: skip
@@ -107,6 +118,11 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, names
         assert text.count(lines) == 1 and text.count("[DISPLAY]") == 1
         assert list(screen_findings(config_of(ini))) == []
         assert put_in(ini, names[-1]) == []
+
+
+def test_of_two_rotary_axes_the_screens_is_asked_for(tmp_path):
+    (finding,) = refused(write_config(tmp_path, with_axes(AXIS, "XYZAB")), "cylinder")
+    assert finding.cure == "write [DISPLAY] GEOMETRY = AXYZ! or -BXYZ! first"
 
 
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
@@ -189,6 +205,7 @@ def test_a_filter_of_the_users_own_for_a_suffix_is_refused(tmp_path):
     ("spindles", "control", "settings"),
     [
         (2, "doosan-lathe", "POLAR_Z = allow\nLIVE_SPINDLE = 1\n"),
+        (1, "mill-round-part", "[G12]\nCYLINDER_X = allow\nLIVE_SPINDLE = 0\n"),
         (1, "mill-on-face", "[G12]\nPOLAR_Z = allow\nLIVE_SPINDLE = 0\n"),
     ],
 )

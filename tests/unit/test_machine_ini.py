@@ -12,14 +12,13 @@ from g12.machine_ini import (
     axes_of,
     code_number,
     coordinates_of,
-    millimetres_of,
     owns_g12_1,
     ranges_of,
     refuse_owned_codes,
     remap_lines,
     spindle_c_timeout,
 )
-from g12.tools.machine.ini import Ini
+from g12.tools.machine.ini import Ini, millimetres_of
 
 INI = """
 [RS274NGC]

@@ -11,7 +11,7 @@ from g12.moves.setup import SectionMachine
 from g12.polar.face import FaceLimits
 from g12.polar.polar_section import Polar
 from g12.settings import Settings
-from support.section_starts import START
+from support.section_starts import START, with_found
 
 INCH = 25.4
 SHIFTED = (
@@ -23,11 +23,7 @@ AXES = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 def section(settings=Settings(), letters="XZC", axes=AXES, face=None, **found):  # noqa: B008
     """Return a section that begins with what is found."""
-    return Polar(START._replace(**found), SectionMachine(letters, settings, axes, face))
-
-
-def at(x):
-    return START.position | {"X": x}
+    return Polar(with_found(START, **found), SectionMachine(letters, settings, axes, face))
 
 
 @pytest.mark.parametrize(
@@ -36,17 +32,17 @@ def at(x):
         ({"alone": False}, "must be alone in its block"),
         ({"compensated": True}, "needs G40: compensation is switched on inside"),
         ({"inverse_time": True}, "needs G94 or G95, not G93"),
-        ({"yz_plane": True}, "needs G18 or G17, not G19"),
+        ({"plane": "G19"}, "needs G18 or G17, not G19"),
         ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
         (
             {"offset_pending": True},
             "needs a move after G40: the tool is still beside the programmed point",
         ),
-        ({"rotated": True}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
         ({"missing_code": "M133"}, "needs the spindle as C: M133 first"),
         ({"shifts": {"X": -2.5}}, SHIFTED.format(-2.5)),
         ({"shifts": {"X": -2.5}, "diameter": True}, SHIFTED.format(-5)),
-        ({"position": at(0.0)}, "needs the tool at X above zero, not at 0 (radius)"),
+        ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
     ],
 )
 def test_where_no_section_begins(found, rule):
@@ -56,15 +52,17 @@ def test_where_no_section_begins(found, rule):
 
 
 @pytest.mark.parametrize(
-    ("machine_unit", "millimetre", "tolerance"),
+    ("machine_mm", "inch", "tolerance"),
     [
-        (1.0, 1.0, 0.005),  # mm machine in G21
-        (1.0, 1 / INCH, 0.0002),  # inch machine in G20
-        (1 / 0.0393700787, 1.0, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
+        (1.0, False, 0.005),
+        (INCH, True, 0.0002),
+        (1 / 0.0393700787, False, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
     ],
 )
-def test_lengths_are_in_program_units(machine_unit, millimetre, tolerance):
-    made = section(machine_unit=machine_unit, millimetre=millimetre)
+def test_lengths_are_in_program_units(machine_mm, inch, tolerance):
+    made = section(machine_mm=machine_mm, inch=inch)
+    millimetre = 1 / INCH if inch else 1.0
+    machine_unit = machine_mm * millimetre
     assert made.rules.radius_tolerance == pytest.approx(0.0005 * INCH * millimetre)
     assert made.tolerance == made.planning.tolerance == pytest.approx(tolerance)
     assert made.planning.least_x == pytest.approx(0.001 * millimetre)
@@ -83,7 +81,7 @@ def test_lengths_are_in_program_units(machine_unit, millimetre, tolerance):
         ({"polar_z": "allow"}, {}, {"height_with_others": True}),
         (
             {"polar_g0": "feed", "polar_g0_feed": 500.0},
-            {"machine_unit": INCH},
+            {"machine_mm": INCH},
             {"rapid_feed": pytest.approx(12700.0)},
         ),
     ],
@@ -104,7 +102,7 @@ def test_what_the_axes_of_the_face_allow(override, kept):
     axes = {**AXES, "C": Axis(-9.0, 9.0, 50.0, 700.0)}
     kinematics = Settings(polar_kinematics=True)
     face = FaceAxes(x, y, slide, override)
-    made = section(kinematics, axes=axes, face=face, machine_unit=INCH)
+    made = section(kinematics, axes=axes, face=face, machine_mm=INCH)
     nearest = 20.0 * INCH / radians(700.0)
     chord = sqrt(8.0 * made.tolerance * nearest)
     assert made.planning.face == FaceLimits(
@@ -123,7 +121,7 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
     slide = Axis(-1.0, 1.0, 9.0, 20.0)
     beside = Settings(polar_kinematics=True, polar_tool_offset=-2.0)
     face = FaceAxes(slide, slide, slide, 1.0)
-    made = section(beside, face=face, machine_unit=INCH)
+    made = section(beside, face=face, machine_mm=INCH)
     assert made.rules.beside == made.planning.beside == made.planning.face.beside == -2.0 * INCH
     assert made.planning.face.slide_speed == pytest.approx(9.0 * INCH)
     assert section().rules.beside == section().planning.beside == 0.0

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.lengths import LARGEST, MM_PER_INCH
-from g12.request.common import CycleExtent, MachineFrame, check_travel, other_cutter, steps_between
-from g12.request.words import Tool, Words
+from g12.request import CycleExtent, Words, check_travel, half_widths, other_cutter, steps_between
+from g12.state import Tool
 from support.planner_context import MM, reported
 
 # ---------------------------------------------------------------- words
@@ -63,7 +63,7 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
     ("found", "d_word", "last", "message"),
     [
         (LOADED, None, 6.4, "the D last commanded, diameter 12.8; the loaded tool T1 has 12"),
-        (LOADED._replace(unit="in"), 2.0, 6.0, "D2, diameter 20 in; the loaded tool T1 has 12 in"),
+        (LOADED._replace(inch=True), 2.0, 6.0, "D2, diameter 20 in; the loaded tool T1 has 12 in"),
         (LOADED, None, 5.8, None),  # wear
         (LOADED, None, None, None),
         (LOADED, 0.0, 9.0, None),
@@ -82,20 +82,23 @@ def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, mes
 # ---------------------------------------------------------------- travel
 
 AXES = {"X": (-100.0, 300.0), "Y": (-200.0, 200.0), "Z": (-50.0, 60.0)}
-PLAIN = MachineFrame((0.0, 0.0, 0.0), 0.0, (0.0, 0.0, 0.0), 1.0, 1.0)
-SHIFTED = MachineFrame((10.0, 0.0, -1.0), 90.0, (100.0, 50.0, 20.0), 1.0, 1.0)
-INCHES = PLAIN._replace(unit=MM_PER_INCH)  # the program's, on a machine in mm
-METRIC = PLAIN._replace(unit=1 / MM_PER_INCH, millimetres=MM_PER_INCH)  # the other way round
+SHIFTED = MM._replace(
+    shifts={"X": 10.0, "Y": 0.0, "Z": -1.0},
+    rotation=90.0,
+    offsets={"X": 110.0, "Y": 50.0, "Z": 19.0},
+)
+INCHES = MM._replace(inch=True)  # on a machine in mm
+METRIC = MM._replace(machine_mm=MM_PER_INCH)  # the other way round
 
 
 @pytest.mark.parametrize(
-    ("centre", "radius", "heights", "frame", "rule"),
+    ("centre", "radius", "heights", "state", "rule"),
     [
-        ((200, 0, 0), 100.01, (), PLAIN, "X axis would go to 300.01 mm, beyond its limit 300 mm"),
-        ((100, 150, 0), 51, (), PLAIN, "Y axis would go to 201 mm, beyond its limit 200 mm"),
-        ((100, -150, 0), 51, (), PLAIN, "Y axis would go to -201 mm, beyond its limit -200 mm"),
-        ((0, 0, 0), 5, (2, -51, -3), PLAIN, "Z axis would go to -51 mm, beyond its limit -50 mm"),
-        ((0, 0, 0), 5, (2, 61, -3), PLAIN, "Z axis would go to 61 mm, beyond its limit 60 mm"),
+        ((200, 0, 0), 100.01, (), MM, "X axis would go to 300.01 mm, beyond its limit 300 mm"),
+        ((100, 150, 0), 51, (), MM, "Y axis would go to 201 mm, beyond its limit 200 mm"),
+        ((100, -150, 0), 51, (), MM, "Y axis would go to -201 mm, beyond its limit -200 mm"),
+        ((0, 0, 0), 5, (2, -51, -3), MM, "Z axis would go to -51 mm, beyond its limit -50 mm"),
+        ((0, 0, 0), 5, (2, 61, -3), MM, "Z axis would go to 61 mm, beyond its limit 60 mm"),
         ((30, 7, 2), 111, (), SHIFTED, "Y axis would go to 201 mm, beyond its limit 200 mm"),
         ((14, 0, 0), 1, (), INCHES,
          "X axis would go to 381 mm, beyond its limit 300 mm (G20 is active)"),
@@ -103,31 +106,31 @@ METRIC = PLAIN._replace(unit=1 / MM_PER_INCH, millimetres=MM_PER_INCH)  # the ot
          "X axis would go to 301.023622 in, beyond its limit 300 in (G21 is active)"),
     ],
 )  # fmt: skip
-def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, frame, rule):
+def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, state, rule):
     extent = CycleExtent("G17", centre, radius, heights)
-    assert reported(check_travel, words(), extent, frame, AXES) == f"G12: the {rule}"
+    assert reported(check_travel, Words("G12", {}, state), extent, AXES) == f"G12: the {rule}"
 
 
 def test_one_that_just_fits_is_not():
-    check_travel(words(), CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)), PLAIN, AXES)
+    check_travel(words(), CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)), AXES)
 
 
 def test_offsets_rotation_and_tool_are_those_of_the_machine():
-    assert SHIFTED.position((30.0, 7.0, 2.0)) == pytest.approx((100 - 7, 50 + 40, 21))
+    assert SHIFTED.point_on_machine((30.0, 7.0, 2.0)) == pytest.approx((100 - 7, 50 + 40, 21))
 
 
 @pytest.mark.parametrize(("plane", "along"), [("G17", (0, 1)), ("G18", (2, 0)), ("G19", (1, 2))])
 @pytest.mark.parametrize("rotation", [0, 30, 200])
 def test_the_widths_are_those_of_every_point_of_the_circle(plane, along, rotation):
-    frame = MachineFrame((1.0, 2.0, 3.0), rotation, (4.0, 5.0, 6.0), 1 / MM_PER_INCH, MM_PER_INCH)
+    state = SHIFTED._replace(rotation=rotation, machine_mm=MM_PER_INCH)
     extent = CycleExtent(plane, (7.0, 8.0, 9.0), 25.0)
     points = []
     for turn in range(3600):
         point = list(extent.centre)
         point[along[0]] += 25.0 * math.cos(math.radians(turn / 10))
         point[along[1]] += 25.0 * math.sin(math.radians(turn / 10))
-        points.append(frame.position(point))
-    centre = frame.position(extent.centre)
-    for axis, width in enumerate(frame.half_widths(extent)):
+        points.append(state.point_on_machine(point))
+    centre = state.point_on_machine(extent.centre)
+    for axis, width in enumerate(half_widths(state, extent)):
         reached = max(abs(point[axis] - centre[axis]) for point in points)
         assert reached == pytest.approx(width, abs=1e-5)

@@ -11,11 +11,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.errors import Refusal, number
-from g12.request.common import LEFT_OUT
-from g12.request.words import Tool
+from g12.request import LEFT_OUT
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
+from g12.state import Tool
 from support.planner_context import MM, reported
 
 FOUND = MM._replace(x=30.0, z=5.0, speed=500.0, spindle_tool=Tool(3, 3.0))
@@ -85,7 +85,7 @@ def test_any_entries_are_planned_or_refused_by_name(name, changed):
 
 STILL = FOUND._replace(feed=0.0)
 TURNING = FOUND._replace(per_revolution=True, speed=0.0)
-IN_MM = dict(found=FOUND._replace(unit="mm"))  # G21 on a machine in inches
+IN_MM = dict(found=FOUND._replace(machine_mm=25.4))  # G21 on a machine in inches
 ABOVE = "a shape begins at the tool's position, which must be above the face at Z0"
 HELIX = "must leave the cutter room for a helix: at least 6.01016 and twice the allowance"
 CALL = "(a call has {} entries, -9999 leaves one out)"

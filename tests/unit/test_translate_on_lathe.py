@@ -104,7 +104,7 @@ REFUSED = [
     (f"{HEAD}G95 G1 X1. F.1\n", 7, "G95, a feed per revolution: write G94 and F per minute"),
     (f"{HEAD}G42 D1\n", 7, "G42 before the first cut: write it with the contour's first G1"),
     (f"{HEAD}G1 G41 D1 X1. F9.\nT2 M6\n", 8, "G41 or G42 is on where the section ends"),
-    (f"{HEAD}G84 Z-3. R3. F1.\n", 7, "G84: on a lathe G73 and G81 to G83 are translated"),
+    (f"{HEAD}G84 Z-3. R3. F1.\n", 7, "G84: G73 and G81 to G83 are translated here"),
     (f"{HEAD}G81 Z3. R5. F1.\n", 7, "G81 Z3.: the hole must end below Z0, the part's surface"),
     (f"{HEAD}G91 G81 Z-3. R-1. F1.\n", 7, "a drilling cycle under G91"),
     (f"{HEAD}G55 G1 Z-1. F9.\n", 7, "a cut begins here beside a tool, an offset or units"),

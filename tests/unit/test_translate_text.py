@@ -481,6 +481,7 @@ def machine_of(tmp_path):
         ("haas-mill", "mill_mm", "XYZ"), ("fanuc-lathe", "lathe_mm", "XZC"),
         ("fanuc-lathe", "lathe_mm_kinematics", "XZC"),  # whose Y is the face's
         ("mazak-integrex", "mill_mm", "XYZ"), ("mill-on-face", "lathe_mm", "XYZC"),
+        ("mill-round-part", "lathe_mm", "XYZC"), ("mill-round-part", "mill_a_mm", "XYZA"),
     ],
 )  # fmt: skip
 def test_the_axes_are_those_of_the_machine(name, ini, axes):

@@ -10,8 +10,8 @@ from math import atan, ceil, degrees, pi, radians, tan
 from g12.cut_report import PocketCut
 from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
 from g12.errors import number
-from g12.request.common import CLEARED, CycleExtent, check_count, steps_between
-from g12.request.words import XY, Words
+from g12.request import CLEARED, CycleExtent, Words, check_count, check_fits, steps_between
+from g12.state import XY
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
 
@@ -26,7 +26,7 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     stepover = words.take_positive("Q")
     springs = words.take_whole("L", least=0)
     cutter = sized_cutter(words)
-    check_wall(words, wall, cutter)
+    check_fits(words, "I", wall, cutter.radius, cutter.source)
     first = last = wall - cutter.radius
     steps = 0
     if stepover:  # the first helix leaves no core
@@ -64,14 +64,6 @@ def open_radius(words: Words, wall: float) -> float:
     if opened >= wall - words.context.rounding:
         raise words.refuse_word("K", opened, f"must be less than I{number(wall)}")
     return opened
-
-
-def check_wall(words: Words, wall: float, cutter: Cutter) -> None:
-    context = words.context
-    if wall - cutter.radius < context.smallest_ring - context.rounding:
-        size, least = context.tool_size(cutter.radius), number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
-        raise words.refuse_word("I", wall, rule)
 
 
 def check_way_back(

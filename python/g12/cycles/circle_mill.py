@@ -36,17 +36,19 @@ from typing import NamedTuple
 from g12.cut_report import LOADED, EventCut, UsedCutter
 from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
     CycleExtent,
+    Words,
     check_count,
+    check_fits,
     check_modes,
     loaded_tool,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.state import XY, Tool
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
@@ -273,7 +275,11 @@ def roughing_of(
 ) -> dict[str, float]:
     """Return the locals of the circles of one level; a perimeter is one ring."""
     radius = circle.radius + circle.side * (tool.radius + entries.finish)
-    check_room(entries, circle, tool, radius)
+    finish, letter = entries.finish, entries.letters.finish
+    cutter = 0.0 if circle.side == ON_CIRCLE else tool.radius
+    if circle.side != OUTER_SIDE:
+        more = f" + {letter}{number(finish)}" if finish else ""
+        check_fits(entries.words, "R", circle.radius, cutter, f"T{tool.number}", (finish, more))
     if entries.pocket:
         rings = rings_of(entries, radius, tool, width)
     elif width is not None:
@@ -288,21 +294,6 @@ def roughing_of(
         "rough_radius": radius,
         "rough_arc": circle.rough_arc,
     }
-
-
-def check_room(entries: EventEntries, circle: EventCircle, tool: Tool, radius: float) -> None:
-    """Refuse a circle too small for its tool and finish: ``radius`` is the tool centre's."""
-    words, context = entries.words, entries.words.context
-    if radius >= context.smallest_ring:
-        return
-    if circle.side == ON_CIRCLE:
-        rule = f"must be at least {number(context.smallest_ring)}"
-    else:
-        size = f"{context.tool_size(tool.radius)} (T{tool.number})"
-        rule = f"must be greater than the tool radius {size}"
-        if entries.finish:
-            rule += f" + {entries.letters.finish}{number(entries.finish)}"
-    raise words.refuse_word("R", circle.radius, rule)
 
 
 def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float | None) -> int:

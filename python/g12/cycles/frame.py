@@ -21,15 +21,16 @@ from g12.cycles.plan import (
     sized_cutter,
 )
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLEARED,
     CLOCKWISE,
     COUNTERCLOCKWISE,
     CycleExtent,
+    Words,
     check_count,
     steps_between,
 )
-from g12.request.words import XY, Words
+from g12.state import XY
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
 POCKET, WALL_INSIDE, WALL_OUTSIDE = 0, 1, 2  # H

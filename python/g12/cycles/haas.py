@@ -7,8 +7,8 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 1. with X or Y in the block: rapid to the centre at the present Z (before the first level)
 2. feed to the level's Z in the centre; without Z in the block it is the present one. Or, with a
-   helix (`ngc/g12_helix.ngc`), in place of 2 to 4: a half circle onto it, down along it (`entry`),
-   one full circle, and a half turn onto the first ring, if that is larger
+   helix, in place of 2 to 4: a half circle onto it, down along it, one full circle, and a half turn
+   onto the first ring, if that is larger
 3. half circle from the centre to (+b, 0), in the direction of the cut, tangent to the ring
 4. full circle of radius b
 5. for each further ring: a tangent link outward, then its full circle; the last is K exactly
@@ -17,8 +17,8 @@ The motions of `ngc/g12_haas.ngc`, per level:
 A tool-centre radius b is the programmed radius less the tool radius.
 
 Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
-required; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`; D whole,
-from 0, in the tool table, or a cutter known without it; I above 0, greater than the tool radius by
+required, above 0; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`;
+D whole, from 0, in the tool table, or a cutter known without it; I greater than the tool radius by
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
@@ -32,15 +32,17 @@ from g12.cycles.plan import (
     pocket_descent,
 )
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLEARED,
     CycleExtent,
+    Words,
     check_count,
+    check_fits,
     check_modes,
     check_start,
     steps_between,
 )
-from g12.request.words import XY, Words
+from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"
 
@@ -52,7 +54,7 @@ def plan_pocket(
     context = words.context
     check_modes(words)
     words.check_known(HAAS_WORDS)
-    first = words.require("I", "the radius of the first circle")
+    first = words.require_positive("I", "the radius of the first circle")
     outward = words.take_pair("K", "Q")
     levels = words.take_whole("L", least=1, default=1)
     names_centre = "X" in words or "Y" in words
@@ -62,7 +64,9 @@ def plan_pocket(
     if not names_centre:
         check_start(words)
     cutter = chosen_cutter(words)
-    check_radii(words, first, outward, cutter)
+    check_fits(words, "I", first, cutter.radius, cutter.source)
+    if outward and outward[0] <= first + context.rounding:
+        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
     finished, stepover = outward or (first, first)
     links = links_outward(words, first, finished, stepover, clearing, levels)
@@ -109,25 +113,6 @@ def links_outward(
     check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
     step, last_step = min(growth, finished - first), finished - first - growth * (links - 1)
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
-
-
-def check_radii(
-    words: Words, first: float, outward: tuple[float, float] | None, cutter: Cutter
-) -> None:
-    """Refuse circles that the cutter cannot mill, or that do not grow."""
-    context, rounding = words.context, words.context.rounding
-    if first <= rounding:
-        raise words.refuse_word("I", first, "must be greater than 0")
-    size = context.tool_size(cutter.radius)
-    if first <= cutter.radius + rounding:
-        rule = f"must be greater than the tool radius {size} ({cutter.source})"
-        raise words.refuse_word("I", first, rule)
-    if first - cutter.radius < context.smallest_ring - rounding:
-        least = number(context.smallest_ring)
-        rule = f"must exceed the tool radius {size} ({cutter.source}) by at least {least}"
-        raise words.refuse_word("I", first, rule)
-    if outward and outward[0] <= first + rounding:
-        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
 
 
 def upward(words: Words, depth: float | None) -> str | None:

@@ -15,9 +15,16 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 
 from g12.cut_report import BY_D, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
-from g12.errors import number
-from g12.request.common import CycleExtent, check_modes, check_start, commanded_tool, other_cutter
-from g12.request.words import XY, XZ, YZ, Tool, Words
+from g12.request import (
+    CycleExtent,
+    Words,
+    check_fits,
+    check_modes,
+    check_start,
+    commanded_tool,
+    other_cutter,
+)
+from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
 FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
@@ -33,19 +40,19 @@ def plan_circle(words: Words) -> CyclePlan:
     tool = commanded_tool(words)
     if tool is None:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    check_radius(words, commanded, tool)
+    check_fits(words, "I", commanded, tool.radius, f"D{tool.number}")
     radius = abs(commanded) - tool.radius
     numbers = {
         "plane": int(context.plane[1:]),
         "centre": getattr(context, FIRST_AXIS[context.plane]),
         "radius": radius,
     }
-    extent = CycleExtent(context.plane, context.position, radius)
+    extent = CycleExtent(context.plane, context.xyz, radius)
 
     def cut() -> PocketCut:
         return PocketCut(
             plane=context.plane,
-            centre=context.position,
+            centre=context.xyz,
             wall=abs(commanded),
             first=abs(commanded),
             step=0.0,
@@ -55,13 +62,3 @@ def plan_circle(words: Words) -> CyclePlan:
         )
 
     return CyclePlan(numbers, extent, cut, other_cutter=other)
-
-
-def check_radius(words: Words, radius: float, tool: Tool) -> None:
-    context = words.context
-    if abs(radius) - tool.radius < context.smallest_ring - context.rounding:
-        rule = (
-            f"must be greater than the tool radius {context.tool_size(tool.radius)}"
-            f" (D{tool.number}) by at least {number(context.smallest_ring)}"
-        )
-        raise words.refuse_word("I", radius, rule)

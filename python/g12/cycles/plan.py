@@ -14,17 +14,18 @@ from typing import NamedTuple
 
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, PlannedCut, UsedCutter
 from g12.errors import number
-from g12.request.common import (
+from g12.request import (
     CLEARED,
     COUNTERCLOCKWISE,
     CycleExtent,
+    Words,
     check_modes,
     check_start,
     commanded_tool,
     other_cutter,
     sound_tool,
 )
-from g12.request.words import Tool, Words
+from g12.state import Tool
 
 
 class EventPlanes(NamedTuple):

@@ -21,8 +21,8 @@ from g12.cycles.plan import (
     turns_of,
 )
 from g12.errors import number
-from g12.request.common import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, check_count, steps_between
-from g12.request.words import XY, Words
+from g12.request import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, Words, check_count, steps_between
+from g12.state import XY
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
 INSIDE, OUTSIDE = 0, 1  # H

@@ -30,9 +30,11 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request.common import (
+from g12.request import (
     CycleExtent,
+    Words,
     check_count,
+    check_fits,
     check_modes,
     check_start,
     commanded_tool,
@@ -40,7 +42,7 @@ from g12.request.common import (
     sound_tool,
     steps_between,
 )
-from g12.request.words import XY, Tool, Words
+from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
 
@@ -95,13 +97,13 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
         "circles": circles,
     }
-    extent = CycleExtent(XY, context.position, abs(radius))
+    extent = CycleExtent(XY, context.xyz, abs(radius))
 
     def cut() -> PocketCut:
         first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
         return PocketCut(
             plane=XY,
-            centre=context.position,
+            centre=context.xyz,
             wall=abs(finished),
             first=first + tool.radius,
             step=spiral[1] if spiral else 0.0,
@@ -130,12 +132,8 @@ def take_spiral(words: Words) -> tuple[float, float] | None:
 
 def offset_radii(words: Words, finished: float, tool: Tool) -> OffsetRadii:
     """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
-    size, smallest = words.context.tool_size(tool.radius), words.context.smallest_ring
-    if abs(finished) < smallest:
-        raise words.refuse_word("I", finished, "must not be 0")
-    if abs(finished) - tool.radius < smallest:
-        rule = f"must exceed the tool radius {size} (D{tool.number}) in size"
-        raise words.refuse_word("I", finished, rule)
+    size = words.context.tool_size(tool.radius)
+    check_fits(words, "I", finished, tool.radius, f"D{tool.number}")
     cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
     return OffsetRadii(words, copysign(tool.radius, finished), cutter)
 

@@ -160,3 +160,17 @@ class CallFrame:
         block = interp.blocks[level]
         block.executing_remap, block.phase = self._remap, self._phase
         block.motion_to_be = block.g_modes[GGroup.MOTION] = NO_CODE
+
+
+def run_code(interp: Interp, block: str) -> None:
+    """Execute a block whose code may be remapped to a sub, with the sub's lines.
+
+    `Interp::_execute` (rs274ngc_pre.cc) does so itself for a block typed in MDI, but then goes on
+    until all calls have returned, the handler's own too.
+    """
+    level = interp.call_level
+    interp.read(block)
+    interp.execute(None)
+    while interp.call_level > level:
+        interp.read(None)
+        interp.execute(None)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import Any, TypeAlias, TypeVar
 
 from g12.lengths import MM_PER_INCH
-from g12.request.words import XY, XZ, YZ
+from g12.state import XY, XZ, YZ
 
 Interp: TypeAlias = Any  # interpreter.Interp, with the package's state on it
 ParsedBlock: TypeAlias = Any  # interpreter.block, as it was parsed

@@ -8,15 +8,21 @@ from __future__ import annotations
 
 import functools
 import sys
+from cmath import rect
+from collections.abc import Callable
+from math import radians
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import emccanon
 import linuxcnc
-from interpreter import INTERP_ERROR, INTERP_OK
+from interpreter import INTERP_ERROR, INTERP_OK, MODE_INCREMENTAL
 
+from g12 import cut_report
+from g12.cut_report import CutReport, PlannedCut, ProgramFrame
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.host import borrowed
-from g12.host.interp import Interp, kept
+from g12.host import borrowed, messages
+from g12.host.interp import PER_REVOLUTION, Interp, kept, millimetres_per_unit
 from g12.host.program_lines import line_at, running_file
 
 NO_FILE = ""  # a constant, as the interpreter makes no copy of the text
@@ -176,3 +182,59 @@ def main_program(interp: Interp) -> tuple[str, int] | None:
         return name, Path(name).stat().st_mtime_ns
     except (OSError, TypeError):
         return None
+
+
+if TYPE_CHECKING:  # sections load without the cycles
+    from g12.request import Words
+
+SECTION_BEGAN = "section"  # key: its first part has been reported
+
+
+def begin_cut(interp: Interp, words: Words, cut: Callable[[], PlannedCut]) -> None:
+    """Report the cut of the block, or of the call of its sub."""
+    if asked(interp) is not None:
+        line = messages.line_of(interp, words.code) or 0
+        report = report_of(interp, words.code, line, words.given, cut())
+        emccanon.COMMENT(cut_report.report_text(report))
+
+
+def end_cut(interp: Interp) -> None:
+    memory = asked(interp)
+    if memory is not None:
+        memory.pop(SECTION_BEGAN, None)
+        emccanon.COMMENT(cut_report.END)
+
+
+def asked(interp: Interp) -> dict[str, Any] | None:
+    """Return the memory of reports, None if nobody asks for them."""
+    return getattr(interp, cut_report.ASKED, None)
+
+
+def report_of(
+    interp: Interp, code: str, line: int, words: dict[str, float], cut: PlannedCut
+) -> CutReport:
+    return CutReport(
+        code,
+        int(line),
+        getattr(line, "file", ""),
+        _frame(interp),
+        (interp.current_x, interp.current_y, interp.current_z, interp.CC_current),
+        interp.feed_rate,
+        interp.feed_mode == PER_REVOLUTION,
+        interp.distance_mode == MODE_INCREMENTAL,
+        words,
+        cut,
+    )
+
+
+def _frame(interp: Interp) -> ProgramFrame:
+    shift = complex(interp.axis_offset_x, interp.axis_offset_y)
+    turned = shift * rect(1.0, radians(interp.rotation_xy))
+    zero = (
+        interp.origin_offset_x + turned.real,
+        interp.origin_offset_y + turned.imag,
+        interp.origin_offset_z + interp.axis_offset_z,
+        interp.CC_origin_offset + interp.CC_axis_offset,
+    )
+    shifted = bool(shift or interp.axis_offset_z or interp.CC_axis_offset)
+    return ProgramFrame(millimetres_per_unit(interp), zero, interp.rotation_xy, shifted)

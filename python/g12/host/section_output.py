@@ -121,13 +121,13 @@ class SectionOutput:
         *,
         canon: CanonModule,
     ) -> None:
-        start = kind.start
-        self.interp, self.code, self.canon = interp, start.location.code, canon
+        state = kind.state
+        self.interp, self.code, self.canon = interp, kind.start.location.code, canon
         self.axes = kind.words.axes
-        self.factors = {"X": 1.0 + start.diameter}  # of words
-        self.machine_unit, self.beside = start.machine_unit, kind.rules.beside
-        self.millimetre = start.millimetre
-        initial = INITIAL_TOLERANCE * start.millimetre
+        self.factors = {"X": 1.0 + state.diameter}  # of words
+        self.machine_unit, self.beside = state.machine_unit, kind.rules.beside
+        self.millimetre = state.millimetre
+        initial = state.length(INITIAL_TOLERANCE)
         saved = borrowed.saved_modes(interp)
         self.path = PathControl(interp, saved, kind.tolerance / 2, initial)
         self._begun = self.on_face = False

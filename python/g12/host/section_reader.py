@@ -59,9 +59,13 @@ class SectionReader:
         self.interp, self.program = interp, program
         self.known, self.rules, self.start = kind.words, kind.rules, kind.start
         self.parsed = interp.blocks[0]
-        self.modes = kind.start.modes
-        self._spindle, self._speeds = kind.start.spindle, list(kind.start.speeds)
-        known, rules, there = self.known, self.rules, dict(kind.start.position)
+        state = kind.state
+        self.modes = SectionModes(
+            state.incremental, state.per_revolution, state.feed, state.speed, state.motion
+        )
+        self._spindle, self._speeds = state.spindle, list(state.speeds)
+        known, rules = self.known, self.rules
+        there = {axis: state.position(axis) for axis in known.axes}
         slide, turn, height = known.axes
         if known.turn_is_length:  # at the present angle, which is 0 in the plane
             there[turn] = 0.0
@@ -318,14 +322,14 @@ class SectionReader:
 
     def _tool_radius(self, side: int) -> float:
         """Return the loaded tool's radius; below 0 it is a correction to the other side."""
-        radius = self.start.tool_radius
-        if radius is None:
+        tool = self.start.state.spindle_tool
+        if tool is None:
             raise self.location.refuse(
                 f"G{side} needs a tool in the spindle: its radius is compensated"
             )
-        if radius < 0.0:
-            self._report_other_side(radius)
-        return radius
+        if tool.radius < 0.0:
+            self._report_other_side(tool.radius)
+        return tool.radius
 
     def _report_other_side(self, radius: float) -> None:
         """Show the operator, once a program, that a size correction is beyond the contour."""

@@ -15,7 +15,7 @@ from enum import Enum
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.host import borrowed, kinematics_switch, messages, reported
+from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
 from g12.host.program_lines import JUMPING
 from g12.host.section_output import SectionOutput
@@ -268,7 +268,7 @@ class Section:
         self.reader.contour.close(at=self.program.line)
         yield from self._emit()
         self.program.catch_up()
-        reported.end_cut(self.reader.interp)
+        messages.end_cut(self.reader.interp)
         self.frame.leave(self.program.line)
         borrowed.forget(self.reader.interp)
         self._phase = Phase.DONE
@@ -276,7 +276,7 @@ class Section:
     def _emit(self) -> Generator[int, None, SectionPlan]:
         reader = self.reader
         plan = self.kind.plan(reader.contour)
-        self._check_limits(plan)
+        self._check_travel(plan)
         for note in plan.notes:
             messages.message(note)
         reader.show_machine()
@@ -288,12 +288,12 @@ class Section:
         reader.remember_machine()
         return plan
 
-    def _check_limits(self, plan: SectionPlan) -> None:
-        beyond = self.kind.limits.beyond(plan.steps)
-        if beyond:
+    def _check_travel(self, plan: SectionPlan) -> None:
+        leaving = self.kind.beyond_travel(plan.steps)
+        if leaving:
+            line, beyond = leaving
             lengths = self.kind.words.turn_is_length
-            by_c = beyond.axis == "X" and lengths and self.program.has_letter(beyond.line, "CHY")
-            raise self.reader.location._replace(line=beyond.line).refuse(
-                f"{beyond.text(self.kind.rules.diameter)}"
-                f"{': C and H are lengths here, not degrees' * by_c}"
+            by_c = beyond.axis == "X" and lengths and self.program.has_letter(line, "CHY")
+            raise self.reader.location._replace(line=line).refuse(
+                f"{beyond.rule}{': C and H are lengths here, not degrees' * by_c}"
             )

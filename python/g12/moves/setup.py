@@ -2,21 +2,20 @@
 """A kind of section: from the interpreter's state and the settings to its plan, and its travel."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import ClassVar, NamedTuple
 
 from g12.compensation.contour import Contour
 from g12.errors import number
-from g12.lengths import ROUNDING_MM, beyond_limit, converts, is_inch
 from g12.machine_ini import Axis, FaceAxes
 from g12.moves.steps import FaceMove, SectionPlan, Segments, Step
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import SectionWords
 from g12.settings import Settings
+from g12.state import Beyond, beyond_travel
 
 LEAST_MM = 0.001  # LinuxCNC 2.9.0~pre1 runs a smaller move of a slide with a rotary axis too fast
 RADIUS_TOLERANCE_MM = 0.0127  # mismatch of an arc's radii that LinuxCNC itself accepts
-ROTARY_AXES = "ABC"
 
 
 class SectionMachine(NamedTuple):
@@ -46,13 +45,11 @@ class SectionKind(ABC):
 
     def __init__(self, start: SectionStart, machine: SectionMachine) -> None:
         """Refuse to begin a section where it cannot."""
-        self.start, self.machine = start, machine
+        self.start, self.state, self.machine = start, start.state, machine
         self.check(start)
-        settings = machine.settings
-        self.tolerance = settings.tolerance(start.machine_unit / start.millimetre)
-        self.tolerance *= start.machine_unit  # the allowed deviation, in program units
+        # the allowed deviation, in program units
+        self.tolerance = machine.settings.tolerance(self.state.machine_mm) * self.state.machine_unit
         self.rules = self.word_rules()
-        self.limits = travel(start, machine.axes, "".join(self.words.axes))
 
     @abstractmethod
     def check(self, start: SectionStart) -> None:
@@ -71,11 +68,28 @@ class SectionKind(ABC):
         """The feed of G0, None where it is refused."""
         settings = self.machine.settings
         feed = settings.polar_g0_feed if settings.polar_g0 == "feed" else None
-        return None if feed is None else feed * self.start.machine_unit
+        return None if feed is None else feed * self.state.machine_unit
+
+    def beyond_travel(self, steps: Iterable[Step]) -> tuple[int, Beyond] | None:
+        """Return the line of the first move that leaves the travel, and how; None if all stay."""
+        runs = [step for step in steps if isinstance(step, Segments | FaceMove)]
+        if self._beyond([end for run in runs for end in run.segments]):
+            for line, end in ((run.line, end) for run in runs for end in run.segments):
+                beyond = self._beyond([end])
+                if beyond:
+                    return line, beyond
+        return None
+
+    def _beyond(self, ends: Iterable[Sequence[float]]) -> Beyond | None:
+        """Return how the ends of moves leave the travel, None if they do not."""
+        axes, at, limits = self.words.axes, self.state.on_machine, self.machine.axes
+        columns = zip(axes, zip(*(end[:3] for end in ends)))
+        ranges = [(axis, at(axis, min(there)), at(axis, max(there))) for axis, there in columns]
+        return beyond_travel(self.state, limits, ranges, diameters=self.rules.diameter)
 
     def in_program(self, axis: Axis) -> float:
         """Return the acceleration of a linear axis in program units."""
-        return axis.acceleration * self.start.machine_unit
+        return axis.acceleration * self.state.machine_unit
 
 
 def check_entry(
@@ -93,6 +107,7 @@ def check_entry(
     """
     beside = "needs a move after G40: the tool is still beside the programmed point"
     *others, last = tuple(needed)
+    state = start.state
     for holds, rule in (
         (
             set(needed) <= set(letters),
@@ -100,11 +115,11 @@ def check_entry(
         ),
         (start.alone, "must be alone in its block"),
         (not start.missing_code, f"needs the spindle as C: {start.missing_code} first"),
-        (not start.compensated, "needs G40: compensation is switched on inside"),
-        (not start.inverse_time, "needs G94 or G95, not G93"),
-        (not start.surface_speed, "needs G97: with G96 the speed would change with X"),
-        (not start.offset_pending, beside),
-        (not start.rotated, "needs an unrotated work offset (G10 L2 R0)"),
+        (not state.compensated, "needs G40: compensation is switched on inside"),
+        (not state.inverse_time, "needs G94 or G95, not G93"),
+        (not state.surface_speed, "needs G97: with G96 the speed would change with X"),
+        (not state.offset_pending, beside),
+        (not state.rotation, "needs an unrotated work offset (G10 L2 R0)"),
         *(_unshifted(start, letter, centre) for letter in centred),
         *rules,
     ):
@@ -114,90 +129,9 @@ def check_entry(
 
 def _unshifted(start: SectionStart, letter: str, centre: str) -> tuple[bool, str]:
     """Return the rule that an axis has its 0 at the ``centre``."""
-    shift = start.shifts[letter]
-    written = shift * (2 if letter == "X" and start.diameter else 1)
-    return abs(shift) <= ROUNDING_MM * start.millimetre, (
+    shift = start.state.shifts[letter]
+    written = shift * (2 if letter == "X" and start.state.diameter else 1)
+    return abs(shift) <= start.state.rounding, (
         f"{letter}0 must be {centre}: G52 or G92 shifts {letter} by {number(written)};"
         f" cancel it with G92.1 (a{'n' * (letter == 'X')} {letter} offset of G54 may stay)"
     )
-
-
-class AxisScale(NamedTuple):
-    """How a program coordinate becomes a machine coordinate: times ``factor``, plus ``offset``."""
-
-    factor: float
-    offset: float
-
-
-class Beyond(NamedTuple):
-    """A move that an axis cannot make: where it would go, and its limit, in machine coordinates.
-
-    ``unit`` is theirs; ``converted``: the program's is another.
-    """
-
-    line: int
-    axis: str
-    position: float
-    limit: float
-    unit: str
-    converted: bool
-
-    def text(self, diameters: bool) -> str:
-        """Return the rule for the message; ``diameters``: the program's X words are diameters."""
-        return beyond_limit(
-            *(self.axis, self.position, self.limit, self.unit),
-            converted=self.converted,
-            radius=self.axis == "X" and diameters,
-        )
-
-
-class SoftLimits:
-    """The travel of axes, for moves in program coordinates.
-
-    ``scales`` are by letter, in the order of a step's positions. ``unit`` is the machine's unit of
-    length, ``mm`` or ``in``.
-    """
-
-    def __init__(
-        self, axes: Mapping[str, Axis], scales: Mapping[str, AxisScale], unit: str
-    ) -> None:
-        self._unit, self._scales = unit, scales
-        self._ranges = [
-            [(limit - scale.offset) / scale.factor for limit in axes[letter][:2]]
-            for letter, scale in scales.items()
-        ]
-
-    def beyond(self, steps: Iterable[Step]) -> Beyond | None:
-        """Return the first move that leaves the travel of an axis, None if all stay within."""
-        runs = [step for step in steps if isinstance(step, Segments | FaceMove)]
-        columns = zip(*(segment[:3] for run in runs for segment in run.segments))
-        for at, (limits, positions) in enumerate(zip(self._ranges, columns)):
-            if min(positions) < limits[0] or limits[1] < max(positions):
-                return self._first(runs, at, limits)
-        return None
-
-    def _first(self, runs: list[Segments | FaceMove], at: int, limits: list[float]) -> Beyond:
-        line, position = next(
-            (run.line, segment[at])
-            for run in runs
-            for segment in run.segments
-            if not limits[0] <= segment[at] <= limits[1]
-        )
-        limit = limits[0] if position < limits[0] else limits[1]
-        letter, (factor, offset) = list(self._scales.items())[at]
-        unit = "degrees" if letter in ROTARY_AXES else self._unit
-        there, end = (value * factor + offset for value in (position, limit))
-        return Beyond(line, letter, there, end, unit, converts(factor))
-
-
-def travel(start: SectionStart, axes: Mapping[str, Axis], letters: str) -> SoftLimits:
-    """Return the limits of a section's axes for moves in program coordinates."""
-    factors = {
-        letter: 1.0 if letter in ROTARY_AXES else 1 / start.machine_unit for letter in letters
-    }
-    scales = {
-        letter: AxisScale(factor, start.offsets[letter] * factor)
-        for letter, factor in factors.items()
-    }
-    unit = "in" if is_inch(start.machine_unit / start.millimetre) else "mm"
-    return SoftLimits(axes, scales, unit)

@@ -39,6 +39,7 @@ from g12.polar.segments import Law, split_move
 from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
+from g12.state import YZ
 
 POLE_SHARE = 0.5  # of the tolerance: a path nearer to the pole than this runs through it
 NO_ROTATION = 1e-9  # radians: C does not turn
@@ -91,13 +92,13 @@ class Polar(SectionKind):
         self, start: SectionStart, machine: SectionMachine, *, in_shape: bool = False
     ) -> None:
         self.in_shape = in_shape
-        self.beside = machine.settings.polar_tool_offset * start.machine_unit
+        self.beside = machine.settings.polar_tool_offset * start.state.machine_unit
         super().__init__(start, machine)
 
     def check(self, start: SectionStart) -> None:
-        x, machine = start.position["X"], self.machine
+        x, machine = start.state.x, self.machine
         above = f"needs the tool at X above zero, not at {number(x)} (radius)"
-        own = ((not start.yz_plane, "needs G18 or G17, not G19"), (x > 0, above))
+        own = ((start.state.plane != YZ, "needs G18 or G17, not G19"), (x > 0, above))
         check_entry(start, machine.letters, "XC", own)
         if machine.settings.polar_kinematics and not machine.face:
             raise start.location.refuse(
@@ -105,7 +106,7 @@ class Polar(SectionKind):
             )
 
     def word_rules(self) -> WordRules:
-        settings, g7 = self.machine.settings, self.start.diameter
+        settings, g7 = self.machine.settings, self.state.diameter
         diameter = g7 if settings.polar_x == "inherit" else settings.polar_x == "diameter"
         return WordRules(
             diameter=diameter,
@@ -113,7 +114,7 @@ class Polar(SectionKind):
             turn_scale=1.0,
             height_with_others=self.in_shape or settings.polar_z == "allow",
             rapid_feed=self.rapid_feed,
-            radius_tolerance=RADIUS_TOLERANCE_MM * self.start.millimetre,
+            radius_tolerance=RADIUS_TOLERANCE_MM * self.state.millimetre,
             beside=self.beside,
         )
 
@@ -123,7 +124,7 @@ class Polar(SectionKind):
         slide, c = self.machine.axes["X"], self.machine.axes["C"]
         return PolarSettings(
             tolerance=self.tolerance,
-            least_x=LEAST_MM * self.start.millimetre,
+            least_x=LEAST_MM * self.state.millimetre,
             x_acceleration=self.in_program(slide),
             c_acceleration=c.acceleration,
             c_speed=c.velocity * 60,
@@ -137,7 +138,7 @@ class Polar(SectionKind):
         x, y = self.in_program(face.x), self.in_program(face.y)
         nearest = slide / radians(c.acceleration)  # least distance from the pole on the face
         chord = sqrt(8.0 * self.tolerance * nearest)
-        speed = face.slide.velocity * self.start.machine_unit
+        speed = face.slide.velocity * self.state.machine_unit
         return FaceLimits(
             acceleration=hypot(x, y),
             round_acceleration=min(x, y),
@@ -151,7 +152,7 @@ class Polar(SectionKind):
         )
 
     def plan(self, contour: Contour) -> SectionPlan:
-        return plan(contour, self.planning, c=self.start.position["C"])
+        return plan(contour, self.planning, c=self.state.c)
 
 
 def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:

@@ -17,6 +17,7 @@ from g12.section.block_rules import (
     feed_modes,
 )
 from g12.section.line import BlockLocation, TextLine
+from g12.state import State
 
 PASSED_ON = (
     GGroup.NON_MODAL,
@@ -128,37 +129,13 @@ def comment_text(comment: str, value_of: Callable[[str], float | None]) -> str:
 
 
 class SectionStart(NamedTuple):
-    """The interpreter's state at the start of a section, read once.
-
-    Lengths are in program units. ``location`` is that of the block that switches on, ``words`` are
-    the section's words in it, ``alone``: it holds nothing else, ``level`` is its call level.
-    ``position`` is by letter: X a radius value, C in degrees. ``machine_unit`` is the length of a
-    machine unit, ``millimetre`` that of 1 mm; ``offsets`` convert from program to machine
-    coordinates, ``shifts`` are what G52 or G92 adds to X, Y and Z, of X a radius value. ``speeds``
-    are the commanded ones of all spindles in rpm, ``spindle`` is the number of the one that feeds
-    per revolution refer to. ``tool_radius`` is None if no tool is loaded.
-    """
+    """The block that begins a section, and the state before it."""
 
     location: BlockLocation
-    words: dict[str, float]
-    alone: bool
-    level: int
-    position: dict[str, float]
-    machine_unit: float
-    millimetre: float
-    offsets: dict[str, float]
-    shifts: dict[str, float]
-    modes: SectionModes
-    spindle: int
-    speeds: tuple[float, ...]
-    tool_radius: float | None
-    diameter: bool  # G7
-    yz_plane: bool  # G19
-    compensated: bool
-    offset_pending: bool  # after G40 the tool is still offset from the programmed point
-    inverse_time: bool  # G93
-    surface_speed: bool  # G96
-    rotated: bool  # the work offset, by G10 L2 R
+    words: dict[str, float]  # the section's
+    alone: bool  # it holds nothing else
+    level: int  # of its call
+    state: State
     missing_code: str = ""  # the code that makes the spindle C, where it is not
 
 

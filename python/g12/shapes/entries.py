@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from g12.cut_report import LOADED, PlannedCut, ShapePasses, UsedCutter
 from g12.errors import number
-from g12.request.common import LEFT_OUT, loaded_tool, steps_between
-from g12.request.words import Context, Words
+from g12.request import LEFT_OUT, Words, loaded_tool, steps_between
+from g12.state import State
 
 PASS_ENTRIES = ("depth_per_pass", "allowance", "feed", "plunge_feed")
 CLEAR_MM = 1.0  # clearance of the tool from the face, or the stock, at the end of its rapid
@@ -27,7 +27,7 @@ class ShapeEntries(Words):
     """The entries of one call, to be taken one by one; ``code`` is the name of the sub."""
 
     def __init__(
-        self, code: str, names: Sequence[str], values: Mapping[str, float], context: Context
+        self, code: str, names: Sequence[str], values: Mapping[str, float], context: State
     ) -> None:
         # LinuxCNC makes an entry 0 if the call is too short
         call = f"a call has {len(names)} entries, {number(LEFT_OUT)} leaves one out"

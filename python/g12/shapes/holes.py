@@ -22,7 +22,7 @@ from typing import NamedTuple
 from g12.cut_report import HolesCut
 from g12.errors import number
 from g12.lengths import DEGREES_PER_TURN
-from g12.request.common import steps_between
+from g12.request import steps_between
 from g12.shapes.entries import (
     Extent,
     ShapeEntries,

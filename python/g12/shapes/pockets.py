@@ -34,7 +34,7 @@ from typing import NamedTuple
 
 from g12.cut_report import RoundPocketCut, SlotCut
 from g12.errors import number
-from g12.request.common import CLEARED, loaded_tool
+from g12.request import CLEARED, loaded_tool
 from g12.shapes.entries import (
     PASS_ENTRIES,
     Extent,

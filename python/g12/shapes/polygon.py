@@ -27,7 +27,7 @@ from typing import NamedTuple
 
 from g12.cut_report import PolygonCut
 from g12.errors import number
-from g12.request.common import loaded_tool
+from g12.request import loaded_tool
 from g12.shapes.entries import (
     CLEAR_MM,
     PASS_ENTRIES,

@@ -27,7 +27,7 @@ from g12.cycles.circle_mill import (
 )
 from g12.errors import LONGEST_BLOCK, Refusal, number
 from g12.lengths import LARGEST
-from g12.request.common import CLOCKWISE, LEFT_OUT
+from g12.request import CLOCKWISE, LEFT_OUT
 
 EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
 ENTRY = re.compile(

@@ -10,7 +10,8 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 
-from g12.host import borrowed, kinematics_switch, messages, units
+from g12.host import borrowed, kinematics_switch, messages
+from g12.host.call_frame import run_code
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.host.program_lines import error_text
@@ -27,7 +28,7 @@ def g12_on_abort(interp: Interp) -> None:
     """
     restore_all(interp, round(interp.params[REASON]))
     if interp.call_level:
-        _attempt(interp, units.run_code, END_OF_SUB)
+        _attempt(interp, run_code, END_OF_SUB)
     after_abort_on_face(interp)
 
 
@@ -38,9 +39,9 @@ def restore_all(interp: Interp, reason: int) -> None:
     """
     _attempt(interp, borrowed.after_abort, time.monotonic())
     for code in MACHINE.settings.opening_codes:
-        _attempt(interp, units.run_code, f"M{code}")
+        _attempt(interp, run_code, f"M{code}")
     if MACHINE.settings.on_abort_command:
-        _attempt(interp, units.run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
+        _attempt(interp, run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
 
 
 def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> None:

@@ -10,44 +10,37 @@ from functools import partial
 from pathlib import Path
 
 import emccanon
-from interpreter import MODE_INCREMENTAL
 
 from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
 from g12.cut_report import CutElement, SectionCut, more_text, report_text
 from g12.cylinder import CYLINDERS
 from g12.errors import Refusal
 from g12.geometry.curve import Arc
-from g12.host import borrowed, kinematics_switch, messages, units
-from g12.host.call_frame import CallFrame
+from g12.host import borrowed, kinematics_switch, messages
+from g12.host.call_frame import CallFrame, run_code
 from g12.host.handlers import aborts
 from g12.host.interp import (
-    INVERSE_TIME,
     MOVE_WORDS,
-    PER_REVOLUTION,
-    PLANE_CODES,
     Interp,
     ParsedBlock,
-    millimetres_per_unit,
-    position_of,
     words_in,
 )
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
-from g12.host.program_lines import ProgramLines, running_file, without_line
-from g12.host.reported import SECTION_BEGAN, asked, report_of
+from g12.host.messages import SECTION_BEGAN, asked, report_of
+from g12.host.program_lines import ProgramLines, running_file
 from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader, block_of
 from g12.host.section_run import Section
 from g12.host.spindle_c import missing_code
+from g12.host.state import read_state
 from g12.lengths import DEGREES_PER_TURN
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
-from g12.moves.setup import ROTARY_AXES, SectionKind, SectionMachine
+from g12.moves.setup import SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
-from g12.request.words import YZ
 from g12.section.block_rules import alone
 from g12.section.effects import (
     SectionCodes,
-    SectionModes,
     SectionStart,
     codes_of_section,
     codes_with_word,
@@ -55,10 +48,7 @@ from g12.section.effects import (
 from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
 
-LINEAR_AXES = "XYZ"
-AXES = LINEAR_AXES + ROTARY_AXES
 OTHER_WORDS = "DHKTUVW"
-G96 = 960
 
 
 def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart:
@@ -67,52 +57,18 @@ def start_of_section(interp: Interp, line: int, words: str = "") -> SectionStart
     ``words`` are the letters that the block may have.
     """
     block = interp.blocks[interp.remap_level]
-    tool = units.tool_in_spindle(interp)
     return SectionStart(
         location=BlockLocation(messages.code_of_block(interp), line),
         words=block_of(block).words,
         alone=is_alone(block, words),
         level=interp.call_level,
-        position=position_of(interp, AXES),
-        machine_unit=units.program_units_per_machine_unit(interp),
-        millimetre=1 / millimetres_per_unit(interp),
-        offsets=_offsets(interp),
-        shifts={letter: getattr(interp, f"axis_offset_{letter.lower()}") for letter in LINEAR_AXES},
-        modes=SectionModes(
-            incremental=interp.distance_mode == MODE_INCREMENTAL,
-            per_revolution=interp.feed_mode == PER_REVOLUTION,
-            feed=interp.feed_rate,
-            speed=units.spindle_speed(interp),
-            motion=interp.motion_mode,
-        ),
-        spindle=units.feed_spindle(interp),
-        speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
-        tool_radius=tool.radius if tool else None,
-        diameter=units.diameter_mode(interp),
-        yz_plane=PLANE_CODES.get(interp.plane) == YZ,
-        compensated=interp.cutter_comp_side != 0,
-        offset_pending=bool(interp.arc_not_allowed),
-        inverse_time=interp.feed_mode == INVERSE_TIME,
-        surface_speed=G96 in without_line(interp.active_g_codes),
-        rotated=interp.rotation_xy != 0,
+        state=read_state(interp),
         missing_code=missing_code(interp),
     )
 
 
 def is_alone(block: ParsedBlock, words: str = "") -> bool:
     return alone(block_of(block), words) and not words_in(block, OTHER_WORDS)
-
-
-def _offsets(interp: Interp) -> dict[str, float]:
-    """Return the sum of work offset, G92 and tool offset for each axis."""
-    names = {letter: f"{{}}_offset_{letter.lower()}" for letter in LINEAR_AXES}
-    names |= {letter: f"{2 * letter}_{{}}_offset" for letter in ROTARY_AXES}
-    return {
-        letter: getattr(interp, name.format("origin"))
-        + getattr(interp, name.format("axis"))
-        + getattr(interp.tool_offset, letter.lower())
-        for letter, name in names.items()
-    }
 
 
 def begin_report(interp: Interp, kind: SectionKind, contour: Contour) -> None:
@@ -130,15 +86,15 @@ def begin_report(interp: Interp, kind: SectionKind, contour: Contour) -> None:
     sense = math.copysign(1.0, kind.rules.turn_scale)
     cut = SectionCut(kind.surface, kind.rules.diameter, elements, turn, sense)
     report = report_of(interp, start.location.code, start.location.line, start.words, cut)
-    turn_zero = start.offsets[turn] - getattr(interp.tool_offset, turn.lower())
+    turn_zero = start.state.offsets[turn] - getattr(interp.tool_offset, turn.lower())
     home = interp.filename
     report = report._replace(  # since the lines of the section were read other modes are in force
         file="" if home == running_file(interp) else os.path.basename(home),
         frame=report.frame.turned_by(turn_zero),
-        at=(start.position["X"], interp.current_y, start.position["Z"], start.position[turn]),
-        feed=start.modes.feed,
-        per_revolution=start.modes.per_revolution,
-        incremental=start.modes.incremental,
+        at=(*start.state.xyz, start.state.position(turn)),
+        feed=start.state.feed,
+        per_revolution=start.state.per_revolution,
+        incremental=start.state.incremental,
     )
     emccanon.COMMENT(report_text(report))
 
@@ -216,7 +172,7 @@ def run_section(
         codes = codes_of(start.location.code)
         yield from _running(interp, section, codes, frame, program).run()
         for code in MACHINE.settings.drag(kind.words.axes.turn)[1:]:
-            units.run_code(interp, f"M{code}")
+            run_code(interp, f"M{code}")
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:

@@ -12,9 +12,9 @@ from collections.abc import Container
 from interpreter import INTERP_OK
 
 from g12.errors import Refusal
-from g12.host import borrowed, messages, reported, units
+from g12.host import borrowed, messages
 from g12.host.call_frame import locals_at, set_locals_at
-from g12.host.handlers import cycle_state
+from g12.host.handlers import cycles
 from g12.host.handlers.sections import (
     FACE_ON,
     check_clamp,
@@ -27,13 +27,14 @@ from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
-from g12.moves.steps import Segments
+from g12.host.state import feed_spindle
 from g12.polar.polar_section import POLE_SHARE, Polar
 from g12.section.effects import SectionStart, code_of_handler
 from g12.section.line import BlockLocation
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, check_nearest
 from g12.shapes.holes import HoleMachine
+from g12.state import beyond_travel
 
 check_at_start = check_ini
 SHAPE_CALLS = {  # names of the entries, planner
@@ -60,51 +61,49 @@ def polar_shape(self, **words):
     name, level = shape_at_work(self)
     if face_in_force(self):
         raise Refusal(FACE_ON, name)
-    start = start_of_shape(self, name)
-    section = Polar(start, section_machine())
+    section = Polar(start_of_shape(self, name), section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
-    entries = ShapeEntries(name, names, locals_at(self, level), cycle_state.snapshot(self))
+    entries = ShapeEntries(name, names, locals_at(self, level), cycles.snapshot(self))
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
-    plan = prepare(self, entries, start, section)
+    plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
-    reported.begin_cut(self, entries, plan.cut)
+    messages.begin_cut(self, entries, plan.cut)
     borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
     return INTERP_OK
 
 
-def plan_of_shape(
-    interp: Interp, entries: ShapeEntries, start: SectionStart, section: Polar
-) -> ShapePlan:
+def plan_of_shape(interp: Interp, entries: ShapeEntries, section: Polar) -> ShapePlan:
     machine, (_, planner) = shape_machine(section), SHAPE_CALLS[entries.code]
     plan = planner(entries, machine)
     check_nearest(entries, plan.extent, machine)
     stay_in_travel(entries, plan.extent, section)
-    own: dict[str, float] = {"x_word": 1 + section.rules.diameter, "x_rapid": 1 + start.diameter}
+    own: dict[str, float] = {
+        "x_word": 1 + section.rules.diameter,
+        "x_rapid": 1 + section.state.diameter,
+    }
     # on a wrapped axis a sign is the direction of the turn, and 360 is refused
     if interp.c_axis_wrapped:
         own["start_angle"] = plan.locals["start_angle"] % 360.0 % 360.0  # -1e-20 % 360 is 360
     return plan._replace(locals={**plan.locals, **own, **section_codes(entries)})
 
 
-def plan_of_holes(
-    interp: Interp, entries: ShapeEntries, start: SectionStart, section: Polar
-) -> ShapePlan:
+def plan_of_holes(interp: Interp, entries: ShapeEntries, section: Polar) -> ShapePlan:
     check_clamp(entries.refuse)
     close, opens = MACHINE.settings.c_clamp or (0, 0)
-    machine, (_, planner) = hole_machine(interp, start, section), HOLE_CALLS[entries.code]
+    machine, (_, planner) = hole_machine(interp, section), HOLE_CALLS[entries.code]
     plan = planner(entries, machine)
     stay_in_travel(entries, plan.extent, section)
     own = {"clamp": close, "unclamp": opens, "spindle": machine.spindle}
-    x_words = {name: plan.locals[name] * (1 + start.diameter) for name in ("x", "x_axis")}
+    x_words = {name: plan.locals[name] * (1 + section.state.diameter) for name in ("x", "x_axis")}
     return plan._replace(locals={**plan.locals, **x_words, **own})
 
 
-def hole_machine(interp: Interp, start: SectionStart, section: Polar) -> HoleMachine:
+def hole_machine(interp: Interp, section: Polar) -> HoleMachine:
     spindle = tool_spindle(interp)
     turning = type(interp).spindle_turning.fget(interp, spindle)  # a property with an argument
     return HoleMachine(
-        c=start.position["C"],
+        c=section.state.c,
         spindle=spindle,
         spindle_code=DIRECTION_M_CODES.get(turning, 5),
         speed=interp.speed[spindle],
@@ -118,7 +117,7 @@ def polar_shape_done(self, **words):
     """Restore the modes before the shape, F and the spindle in use among them: G13.4."""
     shape_at_work(self)
     borrowed.give_back(self)
-    reported.end_cut(self)
+    messages.end_cut(self)
     return INTERP_OK
 
 
@@ -130,7 +129,7 @@ def tool_spindle(interp: Interp) -> int:
     """Return the number of the tool's spindle, never that of a spindle that is C."""
     if MACHINE.spindle_c_code and interp.num_spindles > LIVE_SPINDLE:
         return LIVE_SPINDLE
-    return units.feed_spindle(interp)
+    return feed_spindle(interp)
 
 
 def shape_at_work(interp: Interp) -> tuple[str, int]:
@@ -155,8 +154,8 @@ def shape_at_work(interp: Interp) -> tuple[str, int]:
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
     line = messages.line_of(interp, name) or 0
     start = start_of_section(interp, 0)
-    there = start.position | {"X": 1.0}  # the sub itself moves the tool to its start
-    return start._replace(location=BlockLocation(name, line), position=there)
+    state = start.state._replace(x=1.0)  # the sub itself moves the tool to its start
+    return start._replace(location=BlockLocation(name, line), state=state)
 
 
 def shape_machine(section: Polar) -> ShapeMachine:
@@ -184,7 +183,10 @@ def section_codes(entries: ShapeEntries) -> dict[str, float]:
 
 def stay_in_travel(entries: ShapeEntries, extent: Extent, section: Polar) -> None:
     """Refuse a shape that leaves the travel of an axis."""
-    corners = [(x, c, z, 0.0) for x, c, z in zip(extent.x[::-1], extent.c, extent.z)]
-    beyond = section.limits.beyond([Segments(0, "XCZ", corners, False)])
+    at = section.state.on_machine
+    ends = zip("XCZ", (extent.x, extent.c, extent.z))
+    ranges = [(axis, at(axis, low), at(axis, high)) for axis, (low, high) in ends]
+    limits, diameters = section.machine.axes, section.rules.diameter
+    beyond = beyond_travel(section.state, limits, ranges, diameters=diameters)
     if beyond:
-        raise entries.refuse(beyond.text(section.rules.diameter))
+        raise entries.refuse(beyond.rule)

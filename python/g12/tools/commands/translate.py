@@ -73,8 +73,10 @@ def command_parser() -> Parser:
     parser.add_argument(
         "--decimals", choices=("least", "whole"), help="what numbers without a decimal point are"
     )
+    length = number_above(0.0)
+    parser.add_argument("--safe", type=length, help="Z from which on a mill's rapids are clear")
     parser.add_argument(
-        "--safe", type=number_above(0.0), help="Z from which on a mill's rapids are clear"
+        "--diameter", type=length, help="of the part that a mill's program is round"
     )
     parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
     return parser
@@ -104,10 +106,10 @@ def changed(control: Control, options: argparse.Namespace) -> Control:
     tables = dict(control.tables)
     if options.polar_x:
         tables["polar"] = {**tables.get("polar", {}), "x": options.polar_x}
-    if options.safe and not control.onto:
-        raise UsageError("--safe is for mill-on-face")
-    if options.safe:
-        tables["mill"] = {**tables["mill"], "safe": options.safe}
+    mill = {key: value for key in ("safe", "diameter") if (value := getattr(options, key))}
+    if mill and not control.onto:
+        raise UsageError(f"--{min(mill)} is for mill-on-face and mill-round-part")
+    tables["mill"] = {**tables.get("mill", {}), **mill}
     start = (*control.start, *([UNIT_CODES[options.units]] if options.units else []))
     return replace(
         control, start=start, decimals=options.decimals or control.decimals, tables=tables

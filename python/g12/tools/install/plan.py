@@ -85,6 +85,8 @@ def make_plan(
     on_face = features.KINEMATICS in names or kinematics.uses_face_kinematics(config)
     if on_lathe or on_face:
         add_geometry(plan, on_face)
+    if "cylinder" in names:
+        add_geometry_of_mill(plan)
     for section, lines in plan.added.items():
         if lines:
             plan.text.add(section, lines, words)
@@ -183,7 +185,10 @@ def add_settings(plan: InstallPlan, control: Control) -> None:
     """Add the settings that a lathe's programs need."""
     if control.turns_c:
         several = plan.config.ini.number("TRAJ", "SPINDLES", 1) > 1
-        plan.add({SETTINGS: ["POLAR_Z = allow", f"LIVE_SPINDLE = {int(several)}"]})
+        on_mill = control.onto == "round" and features.rotary_of_mill(plan.config.ini.axes)
+        depth = "CYLINDER_X = allow" if control.onto == "round" else "POLAR_Z = allow"
+        live = [] if on_mill else [f"LIVE_SPINDLE = {int(several)}"]
+        plan.add({SETTINGS: [depth, *live]})
 
 
 def add_forms(plan: InstallPlan) -> None:
@@ -210,7 +215,22 @@ def add_geometry(plan: InstallPlan, on_face: bool) -> None:
     """Add the GEOMETRY that rotates the part on a lathe's screen, if the user has none."""
     ini = plan.config.ini
     axes = "XYZC" if on_face else ini.axes
-    if "C" not in axes or ("Y" in axes and not on_face) or ini.get("DISPLAY", "GEOMETRY"):
+    if ini.get("DISPLAY", "GEOMETRY") or not ini.get("DISPLAY", "DISPLAY"):
         return
-    if ini.get("DISPLAY", "DISPLAY"):
+    if on_face or ("C" in axes and "Y" not in axes):
         plan.add({"DISPLAY": [f"GEOMETRY = {screen.geometry_for(axes)}"]})
+
+
+def add_geometry_of_mill(plan: InstallPlan) -> None:
+    """Add the GEOMETRY that rotates the part on a mill's screen, if the user has none."""
+    ini = plan.config.ini
+    shown = screen.geometries_of_mill(plan.config)
+    if ini.get("DISPLAY", "GEOMETRY") or not ini.get("DISPLAY", "DISPLAY") or not shown:
+        return
+    if len(shown) > 1:
+        raise refuse(
+            "cylinder",
+            "the machine has A and B: the screen has to know which of them turns the part",
+            f"write [DISPLAY] GEOMETRY = {' or '.join(shown)} first",
+        )
+    plan.add({"DISPLAY": [f"GEOMETRY = {shown[0]}"]})

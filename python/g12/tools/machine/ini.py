@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Self, TypeVar
 
 from g12.errors import Refusal
+from g12.lengths import MM_PER_INCH
 from g12.machine_ini import (
     INCLUDE,
     Axis,
@@ -23,7 +24,7 @@ from g12.machine_ini import (
     entries_of,
     included_file,
     key_and_value,
-    millimetres_of,
+    leading_number,
     number_in,
     section_extent,
 )
@@ -34,6 +35,13 @@ from g12.tools.machine.files import existing
 NS_PER_S = 1e9
 MACHINE_SECTION = re.compile(r"\s*\[(EMC|KINS|RS274NGC|TRAJ)\]", re.MULTILINE)
 LONGEST_PART = 250
+MM_OF_UNIT = {  # with their lengths in mm
+    "mm": 1.0,
+    "metric": 1.0,
+    "in": MM_PER_INCH,
+    "inch": MM_PER_INCH,
+    "imperial": MM_PER_INCH,
+}
 ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
 
 Value = str | int | float | None | Sequence
@@ -199,3 +207,14 @@ def broken_line(line: str) -> list[str]:
     starts = range(0, len(line), LONGEST_PART)
     *parts, last = (line[start : start + LONGEST_PART] for start in starts)
     return [*(f"{part}\\" for part in parts), last]
+
+
+def millimetres_of(find: Callable[[str, str], str | None]) -> float:
+    """Return the length of a machine unit in mm; LinuxCNC takes a name or units per mm."""
+    text = find("TRAJ", "LINEAR_UNITS") or "mm"
+    per_mm = leading_number(text)
+    length = MM_OF_UNIT.get(text.split()[0].lower(), 0.0) if per_mm is None else per_mm
+    if length <= 0.0:
+        rule = f"must be {', '.join(MM_OF_UNIT)} or units per mm, a number above 0"
+        raise Refusal(f"[TRAJ] LINEAR_UNITS = {text:.40}: {rule}")
+    return length if per_mm is None else 1.0 / per_mm

@@ -22,12 +22,13 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Self
 
-from g12.cut_report import SectionCut, read_report
+from g12.cut_report import SectionCut
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.machine.tables import measured_tools, var_file
 from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
+from g12.tools.preview.reports import read_report
 from g12.tools.preview.told_clamp import with_told_clamp
 from g12.tools.system import PYTHON
 

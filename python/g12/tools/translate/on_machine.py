@@ -15,7 +15,9 @@ from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS
+from g12.tools.translate.rules.milled_surfaces import WOUND
 
+ON_MILL = {"G7": "G8", "G18": "G17"}  # at the start, in place of a lathe's
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
 REFUSE_LIVE_TOOL = (
     "refuse: it is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's spindle that "
@@ -25,11 +27,13 @@ REFUSE_LIVE_TOOL = (
 
 def on_machine(control: Control, ini: Ini) -> Control:
     """Return a control with the machine's own axes, codes, spindle and positions never set."""
+    control = _round_part_of_mill(control, ini)
     settings, remaps = ini.settings, _remaps_in_force(ini)
     clamp = [f"M{code}" for code in settings.c_clamp]
     own = dict(zip(("clamp C", "unclamp C"), clamp))
     own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
-    live = ini.get(INI_SECTION, LIVE_SPINDLE) or ""
+    on_mill = bool(control.value("mill", "turn", ""))
+    live = "0" if on_mill else ini.get(INI_SECTION, LIVE_SPINDLE) or ""
     holes: dict[str, Any] = {"clamp": " ".join(clamp)} if clamp else {}
     of_machine = {"holes": holes, "reference": {"unset": unset_positions(ini)}}
     m_codes = m_codes_of(ini.get, remaps, ini.directory)
@@ -50,6 +54,18 @@ def on_machine(control: Control, ini: Ini) -> Control:
         polar_codes=polar if all(polar) else control.polar_codes,
         cylinder_code=(cylinder, settings.cylinder_word) if cylinder else control.cylinder_code,
     )
+
+
+def _round_part_of_mill(control: Control, ini: Ini) -> Control:
+    """Return a control for programs round a part with a mill's rotary axis, if the INI has one."""
+    turn = next((letter for letter in WOUND if letter in ini.axes), "")
+    if control.onto != "round" or not turn or "Y" not in ini.axes:
+        return control
+    sense = -1.0 if ini.settings.rotary_sense == "reversed" else 1.0
+    mill = {**control.tables["mill"], "turn": turn, "sense": sense}
+    start = [ON_MILL.get(code, code) for code in control.start]
+    tables = {**control.tables, "mill": mill}
+    return replace(control, axes=f"XYZ{turn}", start=tuple(start), tables=tables)
 
 
 def _remaps_in_force(ini: Ini) -> list[Remap]:

@@ -16,9 +16,9 @@ from g12.tools.translate.rules import (
     codes,
     decimals,
     drilling_cycles,
+    milled,
     motion,
     offsets,
-    on_face,
     polar,
     subprograms,
     tools,
@@ -67,7 +67,7 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     ),
     # what a section has is written in its axes and its feed
     "sections": (
-        on_face.mill_block,
+        milled.mill_block,
         of_meaning("polar on", polar.turn_on),
         of_meaning("polar off", polar.turn_off),
         of_meaning("cylinder", polar.switch_cylinder),
@@ -88,9 +88,9 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     # drilling cycles are LinuxCNC's, those on a lathe calls of its holes
     "cycles of mills": (
         drilling_cycles.hole_pattern,
-        on_face.whole_cycle,
+        milled.whole_cycle,
         drilling_cycles.drilling_cycle,
-        on_face.hole_call,
+        milled.hole_call,
     ),
     # motion and distance mode are written where LinuxCNC is in another; stops follow cuts
     "motion": (

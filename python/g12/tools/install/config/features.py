@@ -29,8 +29,7 @@ POLAR_FEATURES = ("polar", "polar-g12.3")
 SECTION_SUBS = ("g12_skipped_over",)
 HOLES = ("face_holes", "side_holes", "face_hole_at", "g12_holes")
 FEATURES = {
-    "haas": Feature("G12/G13 circular pocket, Haas words", "g12_haas.inc",
-                    subs=("g12_helix",)),
+    "haas": Feature("G12/G13 circular pocket, Haas words", "g12_haas.inc"),
     "yasnac": Feature("G12/G13 circle cutting, Yasnac words", "g12_yasnac.inc"),
     "mitsubishi": Feature("G12/G13 circular cutting, Mitsubishi words", "g12_mitsubishi.inc"),
     "circle-mill": Feature("G12.2/G13.2 circle mill event, perimeter and pocket",
@@ -122,12 +121,17 @@ def first_step(feature: str) -> str:
         return FEATURES[feature].first_step
     codes = [remap.code for remap in remaps_of(feature)]
     if feature in (*POLAR_FEATURES, "cylinder"):
-        block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0"
+        block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0 (on a mill A0 or B0)"
         return f"{block:6} does nothing, and is no error"
     return f"{codes[0]:6} is refused, a word is missing: it works"
 
 
 def axes_needed(feature: str, axes: str) -> str:
     """Return the axes that a code needs; a mill whose ``axes`` have A or B can cut a cylinder."""
-    on_mill = feature == "cylinder" and "Y" in axes and not set("AB").isdisjoint(axes)
+    on_mill = feature == "cylinder" and rotary_of_mill(axes)
     return "XYZ" if on_mill else FEATURES[feature].axes
+
+
+def rotary_of_mill(axes: str) -> str:
+    """Return the letters of the axes that turn a part on a mill."""
+    return "".join(axis for axis in "AB" if axis in axes and "Y" in axes)

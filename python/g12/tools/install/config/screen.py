@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from g12.lengths import is_inch
 from g12.tools.forms.table import FORMS
-from g12.tools.install.config.features import INCLUDES, ON_LATHE, ROOT
+from g12.tools.install.config.features import INCLUDES, ON_LATHE, ROOT, rotary_of_mill
 from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
 
@@ -229,6 +229,15 @@ def screen_findings(config: Config) -> Iterator[ConfigFinding]:
 def geometry_for(axes: str) -> str:
     """Return the GEOMETRY of a lathe's axes: C, which rotates the part, before the slides."""
     return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
+
+
+def geometries_of_mill(config: Config) -> list[str]:
+    """Return the GEOMETRY for each axis that turns a mill's part; screens draw B the wrong way."""
+    is_reversed = config.ini.settings.rotary_sense == "reversed"
+    return [
+        f"{'-' * ((turn == 'B') != is_reversed)}{turn}XYZ!"
+        for turn in rotary_of_mill(config.ini.axes)
+    ]
 
 
 def part_not_turned(config: Config) -> Iterator[ConfigFinding]:

@@ -122,7 +122,8 @@ TABLES: dict[str, Any] = {
     "words": _text("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
     "spindles": _text("main|live", "must be a P word, and main or live", "P[0-9]+"),
     "mill": {
-        "onto": _one_of("face"), "safe_mm": NUMBER, "safe_inch": NUMBER, "safe": NUMBER,
+        "onto": _one_of("face", "round"), "diameter": NUMBER,
+        "safe_mm": NUMBER, "safe_inch": NUMBER, "safe": NUMBER,
     },
     "g_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
     "m_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
@@ -179,7 +180,7 @@ class Control:
 
     @property
     def onto(self) -> str:
-        """Where a mill's program goes on a lathe: ``face``, "" for any other control."""
+        """Where a mill's flat program goes: ``face``, ``round``, "" for any other control."""
         return self.value("mill", "onto")
 
     def variables(self) -> dict[int, str]:

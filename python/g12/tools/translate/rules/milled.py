@@ -1,24 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A mill's program on the face of a bar: every cut lies in a section, each hole in none.
+"""A mill's program on a face or round a part: every cut lies in a section, each hole in none.
 
-The mill's X and Y become those of G12.1, its Z is along the spindle. Points are in its own axes.
+Where it goes is a surface of `milled_surfaces`. Points are in the mill's own axes.
 
-1. Rapids in X and Y outside a section wait: the lathe goes there when something is cut.
-2. The first block at a feed begins the section: the slide and C go to its start at the safe
-   height, then the section's code.
+1. Rapids in X and Y outside a section wait: the machine goes there when something is cut.
+2. The first block at a feed begins the section: the axes go to its start at the safe height, then
+   the section's code.
 3. A call and a loop begin one before them, or what they cut would lie in one only sometimes.
 4. A tool, an offset, G28, a drilling cycle, the end, a return: the section ends before it.
-5. A drilling cycle is a call of the lathe's holes, each a hole. The tool goes back to where it
-   stood before each, as after G98: G99 costs a little time.
+5. A drilling cycle is a call of the lathe's holes, each a hole, or a cycle of the mill's for each.
+   The tool goes back to where it stood before each, as after G98: G99 costs a little time.
 """
-
-import re
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE, ModalState
 from g12.tools.translate.blocks.positions import SHIFTING, known_position, value_text
 from g12.tools.translate.rules.codes import MACHINES_OWN
+from g12.tools.translate.rules.milled_surfaces import (
+    DrilledHole,
+    is_plain_number,
+    surface_of,
+    times,
+)
 from g12.tools.translate.rules.polar import feed_of_rapids
 
 SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
@@ -27,9 +31,7 @@ NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed
 OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
 ENDING = MACHINES_OWN | SHIFTING
 ARC = frozenset("IJR")
-LEAST_RADIUS = {"G20": 0.2, "G21": 5.0}  # a section begins off the spindle's axis
 DRILLED = frozenset(("G73", "G81", "G82", "G83"))
-SIGNED_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 
 
 # ---------------------------------------------------------------- sections
@@ -49,11 +51,13 @@ def mill_block(draft: Draft) -> None:
     if _drills(draft):
         return
     has_words = bool(draft.letters() & {"X", "Y", "Z", *ARC})
-    if has_words and not draft.call and REFERENCES.isdisjoint(draft.codes()):
+    if has_words and not draft.call and MACHINES_OWN.isdisjoint(draft.codes()):
         _write_move(draft)
     elif draft.call:
         before_loop(draft)
-    if draft.state.polar == "off" and draft.state.compensation in ("G41", "G42"):
+    if draft.state.polar != "off":
+        surface_of(draft).words(draft)
+    elif draft.state.compensation in ("G41", "G42"):
         code = draft.state.compensation
         raise NotTranslated(f"{code} before the first cut: write it with the contour's first G1")
 
@@ -120,6 +124,8 @@ def _rapid_outside(draft: Draft, across: bool) -> None:
     for letter in "XY":
         draft.comment_out(letter, " with the next cut")
     draft.change(waiting=tuple(sorted(waiting.items())))
+    if draft.control.onto != "face":
+        surface_of(draft).words(draft)
 
 
 def _begin_section(draft: Draft) -> None:
@@ -136,16 +142,11 @@ def _begin_section(draft: Draft) -> None:
         )
     why = "a cut begins here, and the position of {} is not known: G0 X Y before it"
     x, y = (_point_value(draft, axis, draft.start, why.format(axis)) for axis in "XY")
-    least = LEAST_RADIUS[draft.state.units]
-    start = f"[2 * SQRT[[{x}] ** 2 + [{y}] ** 2 + {least:g} ** 2]]"
-    if _is_plain_number(x) and _is_plain_number(y):
-        start = f"{2 * max(abs(complex(float(x), float(y))), least):.4f}"
-    first, on = f"G0 X{start} C0", draft.control.polar_codes[0]
-    lines = ["G8", on, f"G1 X{x} C{y} G94 F{feed_of_rapids(draft):g}"]
+    first, *lines = surface_of(draft).begin(draft, (x, y), feed_of_rapids(draft))
     absolute = draft.start.distance == "G90"
     draft.before += [first, *lines] if absolute else [f"G90 {first}", *lines, "G91"]
     draft.change(
-        polar="on",
+        polar=surface_of(draft).section,
         section=_program_begun_in(draft),
         waiting=(),
         own_motion="G1",
@@ -157,27 +158,27 @@ def _begin_section(draft: Draft) -> None:
 def _end_section(draft: Draft) -> None:
     if draft.start.compensation != "G40" or draft.state.delayed:
         raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
-    draft.before += [draft.control.polar_codes[1], "G7"]
+    draft.before += surface_of(draft).end(draft)
     own = _drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
-    y = known_position(draft.state, "Y" if own else "C")
+    y = known_position(draft.state, "Y" if own else surface_of(draft).y_in)
     draft.change(polar="off", section=UNKNOWN, own_motion=UNSURE, at_y=y, at_c=None)
 
 
 def _go_home(draft: Draft) -> None:
-    """Write G28, G30 and G53 in the lathe's axes: the mill's machine zero has no meaning there."""
-    codes = MACHINES_OWN.intersection(draft.codes())
+    """Write G28, G30 and G53 in a lathe's axes: the mill's machine zero has no meaning there."""
+    codes, surface = MACHINES_OWN.intersection(draft.codes()), surface_of(draft)
     if not codes:
         return
-    if codes == {"G53"}:
-        _machine_zero(draft)
+    if codes == {"G53"} and surface.away:
+        _machine_zero(draft, surface.away)
     else:
-        draft.comment_out("Y", ": no Y here")
-        if not draft.axis_words():
+        surface.home(draft)
+        if surface.away and not draft.axis_words():
             draft.comments += draft.take_codes(codes)  # without an axis G28 moves each of them
     draft.change(waiting=())
 
 
-def _machine_zero(draft: Draft) -> None:
+def _machine_zero(draft: Draft, away: str) -> None:
     """Write G53 as G28 away from the part if it has Z, as a comment if not."""
     motions = draft.take_codes({"G0", "G1"})
     goes_home = "Z" in draft.letters()
@@ -186,7 +187,7 @@ def _machine_zero(draft: Draft) -> None:
         draft.comment_out(word.letter)
     if goes_home:
         absolute = [] if draft.state.distance == "G91" else ["G90"]
-        draft.after += ["G91 G28 Z0", *absolute]
+        draft.after += [f"G91 G28 {away}0", *absolute]
     if motions:
         draft.change(motion=motions[0], own_motion=UNSURE)
 
@@ -264,44 +265,31 @@ def hole_call(draft: Draft) -> None:
     if not draft.control.onto or cycle not in draft.codes():
         return
     if cycle not in DRILLED:
-        raise NotTranslated(f"{cycle}: on a lathe G73 and G81 to G83 are translated")
+        raise NotTranslated(f"{cycle}: G73 and G81 to G83 are translated here")
     words = {letter: draft.take(letter) for letter in "XYZRQPF"}
     given = {letter: word.value for letter, word in words.items() if word}
     if "L" in draft.letters():
         raise NotTranslated(f"{cycle} with L: write each hole with its X and Y")
     draft.take_codes({cycle, "G90", "G94"})
-    entries = " ".join(f"[{entry}]" for entry in _hole_entries(draft, cycle, given))
+    hole = _hole_of_cycle(draft, cycle, given)
     after, draft.after = draft.after, []
-    draft.write([f"o<face_hole_at> call {entries} [0]", *after])
+    draft.write([*surface_of(draft).hole(draft, cycle, hole), *after])
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=_start_height(draft))
 
 
-def _hole_entries(draft: Draft, cycle: str, given: dict[str, str]) -> list[str]:
-    """Return X, a diameter, and Y of a hole, its depth, retract, feed, peck and dwell."""
+def _hole_of_cycle(draft: Draft, cycle: str, given: dict[str, str]) -> DrilledHole:
     feed = draft.sure("feed", f"{cycle} needs F")
     retract, depth = given["R"], given["Z"]
     if not feed:
         raise NotTranslated(f"{cycle} needs F")
-    if _is_plain_number(depth) and float(depth) >= 0:
+    if is_plain_number(depth) and float(depth) >= 0:
         raise NotTranslated(f"{cycle} Z{depth}: the hole must end below Z0, the part's surface")
-    if _is_plain_number(retract) and float(retract) <= 0:
+    if is_plain_number(retract) and float(retract) <= 0:
         retract = f"{_safe_height(draft):g}"
-    peck = {"G83": given.get("Q", "0"), "G73": _times(given.get("Q", "0"), -1)}.get(cycle, "0")
+    peck = {"G83": given.get("Q", "0"), "G73": times(given.get("Q", "0"), -1)}.get(cycle, "0")
     dwell = given.get("P", "0") if cycle == "G82" else "0"
     why = "where the hole is along {} is not known: write X and Y"
     x, y = (
         given.get(axis) or _point_value(draft, axis, draft.state, why.format(axis)) for axis in "XY"
     )
-    return [_times(x, 2), y, _times(depth, -1), retract, feed, peck, dwell]
-
-
-def _is_plain_number(value: str) -> bool:
-    return bool(SIGNED_NUMBER.fullmatch(value))
-
-
-def _times(value: str, factor: float) -> str:
-    """Return a value multiplied, with six decimals or as an expression."""
-    if _is_plain_number(value):
-        text = f"{float(value) * factor:.6f}".rstrip("0")
-        return "0." if text == "-0." else text
-    return f"[{value}] * {factor:.10g}"
+    return DrilledHole(x, y, times(depth, -1), retract, feed, peck, dwell)
