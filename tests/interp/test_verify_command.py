@@ -177,7 +177,7 @@ def test_limits_are_compared_with_the_offsets_of_the_var_file_given(verify, tmp_
     stored = tmp_path / "its.var"
     stored.write_text("5221\t490\n")
     code, out, _ = verify(GOOD, "--var", stored)
-    assert code == 1 and "line 4: the X axis would go to 504, its limit is 500 mm" in out
+    assert code == 1 and "line 4: X would go to 504, its limit is 500 mm" in out
 
 
 def test_lengths_are_shown_in_inches_on_demand(verify):
@@ -213,7 +213,7 @@ def test_plot_reports_what_it_draws_in_red(plot):
     assert code == 0
     for says in (
         "line 5: a rapid goes through",
-        r"line 4: T4 \(⌀ 10\) is loaded, the path is that of a cutter of ⌀ 12 \(D5\)",
+        r"line 4: T4 is ⌀ 10, the path is that of ⌀ 12 \(D5\)",
     ):
         assert re.search(f"^in red, {says}", out, re.MULTILINE), says
 

@@ -45,14 +45,14 @@ def test_every_pocket_is_found_and_comes_out_as_printed(name):
 
 SAID = [  # a machine, its blocks, its stock, a part of the report
     ("mill_mm", [*MILL, "G13 I18 K20.2 Q3 Z-4 D4", "G0 Z9"], "",
-     "line 5: a core of 48.357 mm² remains in its middle [core]"),
+     "line 5: a core of 48.377 mm² remains in its middle [core]"),
     ("mill_mm", [*MILL, "G10 L2 P1 X2 Y3 R90", "G0 X0 Y0", P[0], "G0 X40", "Z9"], "",
-     "line 8: a rapid goes through 238.538 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
+     "line 8: a rapid goes through 238.535 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
     ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),
-    ("mill_mm", [*MILL, *P], "100x80x2 bore 12", "it goes 1 mm below the block [through-stock]"),
+    ("mill_mm", [*MILL, *P], "100x80x0.5 bore 12", "it goes 2.5 mm below the block [below-stock]"),
     ("mill_mm", [*MILL, *P], "100x80x20", "stock: 100x80x20, its top at Z0\n"),
     ("lathe_mm", [*LATHE, *FLAT, *FLAT], "",
-     "line 13: C is where line 5 left it, at −39.806°: its zero line is turned on the part"),
+     "line 13: C is where line 5 left it, −39.806°: the zero line is turned"),
     ("lathe_mm", [*LATHE, *FLAT], "", "assumed: solid below Z0, a bar of ⌀ 56.824; the tool"),
     ("lathe_mm", [*LATHE, *HEXAGON], "", "speed of C      "),
 ]  # fmt: skip

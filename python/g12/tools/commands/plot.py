@@ -23,7 +23,7 @@ from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.errors import UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
-from g12.tools.machine.stored_positions import offset_at_start
+from g12.tools.machine.stored_positions import offset_at_start, stored_values
 from g12.tools.plot import style
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.refused import with_refused_contour
@@ -32,7 +32,7 @@ from g12.tools.preview.ended import ended
 from g12.tools.preview.moves import Trace, message_lines
 from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
-from g12.tools.verify.judge import Judgement, judge_trace, read_parameters, traced
+from g12.tools.verify.judge import Judgement, judge_trace, traced
 from g12.tools.verify.model.finding import SEVERITIES
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.report import sentence_in, where_text
@@ -65,7 +65,7 @@ def main(arguments: list[str]) -> int:
         in_source = trace_in_source(found, opened)
         samples = samples_of_run(opened.path, options, found, ini)
         with working(f"drawing {options.output.name}"):
-            stored = read_parameters(options.var)
+            stored = stored_values(options.var)
             program = TracedProgram(opened.path, ini, found, samples, stored)
             if found.error:
                 program = replace(program, trace=in_source)

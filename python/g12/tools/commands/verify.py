@@ -18,11 +18,12 @@ from g12.tools.commands.arguments import (
 )
 from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.machine.filter import opened_program
+from g12.tools.machine.stored_positions import stored_values
 from g12.tools.preview.ended import ended
 from g12.tools.progress import working
 from g12.tools.units import unit_of
 from g12.tools.verify.accept import acceptable
-from g12.tools.verify.judge import Judgement, judge_trace, read_parameters, traced
+from g12.tools.verify.judge import Judgement, judge_trace, traced
 from g12.tools.verify.model.finding import FINDING as IS_FINDING
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.report import as_json, as_text
@@ -73,7 +74,7 @@ def main(arguments: Sequence[str]) -> int:
         with working(f"interpreting {path.name}"):
             trace = ended(path, traced(path, ini, options.tools, options.var))
         samples = samples_of_run(path, options, trace, ini)
-        program = TracedProgram(path, ini, trace, samples, read_parameters(options.var))
+        program = TracedProgram(path, ini, trace, samples, stored_values(options.var))
         with working(f"judging {path.name}") as tell:
             judgement = judge_trace(
                 program,

@@ -29,6 +29,7 @@ from g12.tools.units import Unit
 CHORD_ERROR = 2e-4  # of the polylines of curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
+LEAST_CHORDS = 12  # of half a circle
 X, Y, Z, C = 0, 1, 2, 5
 FLAT = 17  # the plane whose arcs keep their level
 INCHES = 1  # length_units of the interpreter
@@ -239,11 +240,20 @@ def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:
 
 
 def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
-    """Return the area along one line; a ring in two halves: GEOS 3.11 loses its middle."""
+    """Return the area along one line; a ring in two halves: GEOS 3.11 loses its middle.
+
+    A circle is the disc of its outer edge without that of its inner one, which is much quicker.
+    """
     changed = np.any(np.abs(np.diff(line, axis=0)) > 1e-9, axis=1)
     line = line[np.concatenate([[True], changed])]
     half = len(line) // 2
-    if len(line) > 2 and np.array_equal(line[0], line[-1]):
+    if len(line) > 2 and np.abs(line[0] - line[-1]).max() < 1e-9:
+        middle = line[:-1].mean(axis=0)
+        away = np.linalg.norm(line - middle, axis=1)
+        if half > LEAST_CHORDS and np.ptp(away) < 1e-6:
+            edges = max(away[0] - radius, 0.0), away[0] + radius
+            inner, outer = (Point(middle).buffer(edge, DISC_SEGMENTS) for edge in edges)
+            return outer.difference(inner)
         shape = MultiLineString([line[: half + 1], line[half:]])
     else:
         shape = LineString(line) if len(line) > 1 else Point(line[0])

@@ -63,7 +63,9 @@ def marks_of(judgement: Judgement) -> Marks:
     placed = (each for each in judgement.of(FINDING) if each.place is not None)
     marked = (each for each in placed if bool(_surface_of(each, judgement)) == bool(surface))
     bottom = solids.bottom if math.isfinite(solids.bottom) else None
-    stock = solids.stock and DrawnStock(solids.stock, solids.shape(FACE), solids.top(FACE), bottom)
+    stock = solids.stock and DrawnStock(
+        solids.stock, solids.of(FACE).shape, solids.top(FACE), bottom
+    )
     return Marks(tuple(marked), stock, surface, program.z0)
 
 

@@ -5,7 +5,7 @@ In the line of a cut it is for all of that cut. What would break a part is never
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -41,27 +41,22 @@ def expectations(program: Path) -> list[Accepted]:
 
 
 def accepted(
-    found: Sequence[Finding], cuts: Sequence[Cut], expected: Iterable[Accepted]
+    found: Iterable[Finding], cuts: Sequence[Cut], expected: Sequence[Accepted]
 ) -> tuple[list[Finding], list[Finding]]:
     """Return what remains, with a warning for each unmet acceptance, and what is accepted."""
-    expected, codes = list(expected), acceptable()
-    allowed = [each for each in expected if each.code in codes]
-    met = [each for each in found if any(_meets(each, one, cuts) for one in allowed)]
-    unmet = (one for one in expected if not any(_meets(each, one, cuts) for each in met))
-    taken = {id(each) for each in met}  # equal findings may hold arrays
-    rest = [each for each in found if id(each) not in taken]
-    return [*rest, *_unmet(unmet, codes)], met
-
-
-def _unmet(unmet: Iterable[Accepted], codes: set[str]) -> Iterator[Finding]:
-    for one in unmet:
-        yield Finding(
-            UNMET, one.line, {"code": one.code, "hint": "" if one.code in codes else NEVER}
-        )
+    pairs = [(each, [one for one in expected if _meets(each, one, cuts)]) for each in found]
+    met = {one for _, ones in pairs for one in ones}
+    rest = [each for each, ones in pairs if not ones]
+    for one in expected:
+        if one not in met:
+            hint = "" if one.code in acceptable() else NEVER
+            rest.append(Finding(UNMET, one.line, {"code": one.code, "hint": hint}))
+    return rest, [each for each, ones in pairs if ones]
 
 
 def _meets(found: Finding, one: Accepted, cuts: Sequence[Cut]) -> bool:
-    if found.code != one.code or one.line in (0, found.line):
-        return found.code == one.code and found.severity == WARNING
-    own = (cut for cut in cuts if cut.line == one.line)
-    return not found.file and any(cut.line <= found.line <= cut.last_line for cut in own)
+    if found.code != one.code or found.severity != WARNING:
+        return False
+    own = [cut for cut in cuts if cut.line == one.line and not found.file]
+    inside = any(cut.line <= found.line <= cut.last_line for cut in own)
+    return inside or one.line in (0, found.line)

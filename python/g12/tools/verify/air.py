@@ -5,8 +5,10 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from g12.cut_report import PolygonCut
-from g12.tools.verify.model.cut import Cut
+from shapely.ops import unary_union
+
+from g12.tools.path.part import disc
+from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
@@ -21,55 +23,44 @@ BEFORE = kind("cut-before", WARNING, "all of it was cut before: a spring pass, o
 EMPTY = kind("empty", WARNING, "{code} moves nothing")
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
 OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
-AIR_CONTOUR = kind("air-contour", WARNING, "its contour stays above the part, others are below")
 AIR_LEVELS = kind("air-levels", WARNING, "{n} of its {of} levels cut nothing, above the part")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
-ABOVE_ZERO = kind("above-zero", WARNING, "nothing of it is below Z0: is that the part's face?")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
-THROUGH_STOCK = kind("through-stock", WARNING, "it goes {below:length} below the block")
 MINUS = ": a lost minus sign?"
 
 
 def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     for cut in program.cuts:
         if cut.at >= cut.end:
-            yield Finding(EMPTY, cut.line, {"code": cut.code}, file=cut.file)
+            yield cut.found(EMPTY, code=cut.code)
         elif cut.upright:
-            yield Finding(UPRIGHT, cut.line, file=cut.file)
+            yield cut.found(UPRIGHT)
         elif program.cutter(cut.at) > 0 and program.is_known(cut.at):
             yield from _judge(cut, solids)
 
 
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
-    top = solids.top(cut.surface)
-    lowest = min((each.level for each in solids.made_by(cut)), default=math.inf)
-    place = solids.program.tip(cut.at, cut.surface)[0]
-    if lowest > top - LEVEL:
-        lowest = lowest_of(cut, solids)
-        values = {"above": lowest - top, "hint": MINUS if lowest > top + LEVEL else ""}
-        yield Finding(AIR, cut.line, values, place, cut.file)
-    elif not solids.removes(cut):
+    program, material, top = solids.program, solids.of(cut.surface), solids.top(cut.surface)
+    place = program.tip(cut.at, cut.surface)[0]
+    tips = (program.tip(index, cut.surface) for index in program.fed(cut))
+    lowest = min((tip[:, 2].min() for tip in tips), default=math.inf)
+    if lowest > top - LEVEL or not material.sweeps_of(cut.moves):
+        yield cut.found(AIR, place, above=lowest - top, hint=MINUS if lowest > top + LEVEL else "")
+    elif not material.removes(cut.moves):
         if not solids.is_met(cut):
-            yield Finding(BESIDE, cut.line, {}, place, cut.file)
+            yield cut.found(BESIDE, place)
         elif not cut.is_tap:
-            yield Finding(BEFORE, cut.line, {}, place, cut.file)
+            yield cut.found(BEFORE, place)
     elif _lies_outside(cut, solids):
-        yield Finding(OUTSIDE, cut.line, {}, place, cut.file)
-    is_round = solids.program.is_round
-    if cut.surface and not solids.stock and not is_round and solids.above_face(cut.surface):
-        yield Finding(ABOVE_ZERO, cut.line, {}, place, cut.file)
-    above = [outline for outline in cut.outlines if outline.level > top - LEVEL]
-    if above and lowest < top - LEVEL:
-        yield Finding(AIR_CONTOUR, above[0].lines[0], file=cut.file)
-    high = sum(level > top - LEVEL for level in cut.levels)
-    if 0 < high < len(cut.levels):
-        yield Finding(AIR_LEVELS, cut.line, {"n": high, "of": len(cut.levels)}, place, cut.file)
+        yield cut.found(OUTSIDE, place)
+    levels = [outline.level for outline in cut.outlines] if cut.is_section else cut.levels
+    high = sum(level > top - LEVEL for level in levels)
+    if high and lowest < top - LEVEL:
+        yield cut.found(AIR_LEVELS, place, n=high, of=len(levels))
     if cut.levels:
         yield from _deep(cut, solids)
-    below = solids.bottom - cut.floor
-    if below > LEVEL:
-        kind_of = BELOW if below > THROUGH else THROUGH_STOCK
-        yield Finding(kind_of, cut.line, {"below": below}, place, cut.file)
+    if solids.bottom - cut.floor > THROUGH:
+        yield cut.found(BELOW, place, below=solids.bottom - cut.floor)
 
 
 def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
@@ -81,27 +72,16 @@ def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
         standing = solids.standing(cut.goes, high, cut.surface, before=cut.at)
         steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
     if max(steps, default=0.0) > DEEPEST * radius:
-        values = {"deep": max(steps), "cutter": 2 * radius}
-        yield Finding(DEEP, cut.line, values, file=cut.file)
-
-
-def lowest_of(cut: Cut, solids: Solids) -> float:
-    """Return the lowest level of its moves at feed."""
-    fed = (i for i in cut.moves if solids.program.moves[i].kind != "rapid")
-    levels = (float(solids.program.tip(i, cut.surface)[:, 2].min()) for i in fed)
-    return min(levels, default=math.inf)
+        yield cut.found(DEEP, deep=max(steps), cutter=2 * radius)
 
 
 def _lies_outside(cut: Cut, solids: Solids) -> bool:
     """Return whether a portion of a pocket or a hole is outside of a given stock."""
-    if not solids.stock:
+    stock, radius = solids.stock, solids.program.cutter(cut.at)
+    if not stock or not (stock.is_whole or cut.places):
         return False
-    radius = solids.program.cutter(cut.at)
-    if cut.places:
-        if cut.surface:
-            return any(hole.imag + radius > solids.z0 for hole in cut.places)
-        return any(abs(hole) + radius > solids.bar for hole in cut.places)
-    pocket = cut.is_circle or (cut.is_shape and not isinstance(cut.plan, PolygonCut))
-    if not pocket or not solids.stock.is_whole:
-        return False
-    return bool(cut.goes.difference(solids.unbored).area > LEAST_GONE)
+    if cut.surface:
+        return any(hole.imag + radius > solids.z0 for hole in cut.places)
+    holes = [disc((at.real, at.imag), radius) for at in cut.places]
+    goes = unary_union([cut.goes if cut.is_circle or cut.is_shape else NOTHING, *holes])
+    return bool(goes.difference(solids.unbored).area > LEAST_GONE)

@@ -5,6 +5,8 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
+import numpy as np
+
 from g12.tools.path.part import disc
 from g12.tools.preview.moves import Event
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
@@ -15,57 +17,57 @@ from g12.tools.verify.model.spindles import LIVE
 CENTRE = 0.2  # of a cutter's radius: where an end mill may have no edge
 LEAST = 1e-3  # mm
 PER_TURN = 0.6  # mm: no tool plunges so fast
-CHANGE = kind("change-in-part", FINDING, "the tool is changed in the part: retract before M6")
-CHANGE_LOW = kind(
-    "change-low", WARNING, "the tool is changed below Z0, beside the part: retract before M6"
-)
-STOP = kind("stop-in-part", FINDING, "the spindle stops (M5) in the part: retract before it")
-START = kind("start-in-part", WARNING, "the spindle starts ({code}) in the part: retract before it")
-END = kind("ends-in-part", FINDING, "the program ends with the tool in the part: retract before M2")
-CHANNEL = kind(
-    "channel", WARNING, "it cuts {area:mm2} at feed on the way to the next: retract missing?"
-)
+CHANGE = kind("change-in-part", FINDING, "the tool is changed in the part")
+CHANGE_LOW = kind("change-low", WARNING, "the tool is changed beside the part, below Z0")
+STOP = kind("stop-in-part", FINDING, "the spindle stops (M5) in the part")
+START = kind("start-in-part", WARNING, "the spindle starts ({code}) in the part")
+END = kind("ends-in-part", FINDING, "the program ends with the tool in the part")
+KINDS = {"tool": CHANGE, "M5": STOP, "M3": START, "M4": START}
+CHANNEL = kind("channel", WARNING, "it cuts {area:mm2} at feed on the way to the next: no retract?")
 PLUNGE = kind(
     "plunge", WARNING, "it plunges at {feed:feed} with its centre: can the tool cut there?"
 )
 PLUNGE_FAST = kind(
-    "plunge-fast",
-    FINDING,
-    "it plunges at {feed:feed}, {per_turn:fine} a revolution, with its centre",
+    "plunge-fast", FINDING, "it plunges at {feed:feed}, {per_turn:fine} a revolution"
 )
 
 
 def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    at_rest = len(program.moves) - 1
+    last = len(program.moves) - 1
     for event in [*program.trace.events, *_live_tool(program)]:
-        if 0 < event.at <= at_rest + (event.text != "M5"):
-            yield from _event(event, program, solids)
-    for side in (
-        program.sides[at_rest] or () if at_rest >= 0 and program.known_after[at_rest] else ()
-    ):
-        tip = program.tip(at_rest, side)[-1]
-        if program.is_known(at_rest) and solids.surrounds(tip, at_rest, side):
-            line, file = program.where(at_rest)
-            yield Finding(END, line, {}, tip, file)
+        code = event.text.split()[0]
+        if code in KINDS and 0 < event.at <= last + (code != "M5"):
+            yield from _event(code, event, program, solids)
+    if last >= 0:
+        yield from (program.found(END, last, tip) for tip, _ in in_part(last, program, solids))
     yield from between_cuts(program, solids)
     yield from plunges(program, solids)
 
 
-def _event(event: Event, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield a tool change, a start or a stop of the spindle with the tip in the part."""
-    index, code = event.at - 1, event.text.split()[0]
-    if code not in ("M3", "M4", "M5", "tool") or not program.known_after[index]:
+def in_part(
+    index: int, program: TracedProgram, solids: Solids, *, below: bool = False
+) -> Iterator[tuple[np.ndarray, bool]]:
+    """Yield the tip at the end of a move where it is in the part, and that it is inside.
+
+    With ``below`` also where it is beside the part, below its top.
+    """
+    if not program.known_after[index] or not program.is_known(index):
         return
-    if not program.is_known(index) or (code == "M5" and _is_followed(event, program)):
-        return
-    lifted = code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
-    for side in () if lifted else program.sides[index] or ():
+    for side in program.sides[index] or ():
         tip = program.tip(index, side)[-1]
-        if solids.surrounds(tip, index, side):
-            of = {"tool": CHANGE, "M5": STOP}.get(code, START)
-            yield Finding(of, event.line, {"code": code}, tip)
-        elif code == "tool" and tip[2] < solids.top(side) - LEAST:
-            yield Finding(CHANGE_LOW, event.line, {}, tip)
+        inside = solids.surrounds(tip, index, side)
+        if inside or (below and tip[2] < solids.top(side) - LEAST):
+            yield tip, inside
+
+
+def _event(code: str, event: Event, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
+    """Yield a tool change, a start or a stop of the spindle with the tip in the part."""
+    changes = code == "tool"
+    lifted = changes and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
+    if lifted or (code == "M5" and _is_followed(event, program)):
+        return
+    for tip, inside in in_part(event.at - 1, program, solids, below=changes):
+        yield Finding(KINDS[code] if inside else CHANGE_LOW, event.line, {"code": code}, tip)
 
 
 def _live_tool(program: TracedProgram) -> Iterator[Event]:
@@ -92,10 +94,9 @@ def between_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             is_rapid = program.moves[index].kind == "rapid"
             if is_rapid or straight_down(points) or points[:, 2].min() > solids.top(FACE) - 0.01:
                 continue
-            touch = solids.touched(points, index, FACE)
+            touch = solids.of(FACE).touched(points, program.cutter(index), index)
             if touch:
-                line, file = program.where(index)
-                yield Finding(CHANNEL, line, {"area": touch.area}, points[0], file)
+                yield program.found(CHANNEL, index, points[0], area=touch.area)
 
 
 def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -105,31 +106,26 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """
     made = [cut for cut in program.cuts if cut.at < cut.end]
     tools = {program.moves[cut.at].tool for cut in made}
-    cutters = {program.moves[cut.at].tool for cut in made if not cut.places}
+    cutters = {program.moves[cut.at].tool for cut in made if not cut.places and solids.stock}
     for index, move in enumerate(program.moves):
-        sides, own = program.sides[index] or (), program.cut_at(index)
-        straight = move.kind == "feed" and not (own and own.is_tap)
-        if straight and len(sides) == 1 and move.tool in tools:
-            yield from _plunge(index, program, solids, warned=move.tool in cutters)
+        sides, own = program.sides[index] or set(), program.cut_at(index)
+        if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1 or move.tool not in tools:
+            continue
+        (side,) = sides
+        speed = program.state(index).speed
+        per_minute = move.feed * (speed if move.feed_mode == "G95" else 1)
+        values = {"feed": per_minute, "per_turn": per_minute / speed if speed else 0.0}
+        fast = values["per_turn"] > PER_TURN
+        tip = program.tip(index, side)
+        if (fast or move.tool in cutters) and _plunges(index, tip, side, solids):
+            yield program.found(PLUNGE_FAST if fast else PLUNGE, index, tip[-1], **values)
 
 
-def _plunge(
-    index: int, program: TracedProgram, solids: Solids, *, warned: bool
-) -> Iterator[Finding]:
-    (side,) = program.sides[index]
-    move, points = program.moves[index], program.tip(index, side)
-    speed, radius = program.state(index).speed, program.cutter(index)
-    per_turn = move.feed if move.feed_mode == "G95" else move.feed / speed if speed else 0.0
-    fast = per_turn > PER_TURN
-    down = straight_down(points) and points[-1, 2] < points[0, 2]
-    if radius <= 0 or not down or points[-1, 2] >= solids.top(side) - LEAST:
-        return
-    at = points[points[:, 2].argmin()]
-    if (fast or (warned and solids.stock)) and program.is_known(index):
-        middle = disc(at[:2], CENTRE * radius)
-        standing = solids.standing(middle, at[2], side, before=index)
-        if standing.area > 0.5 * math.pi * (CENTRE * radius) ** 2:
-            line, file = program.where(index)
-            feed = per_turn * speed if move.feed_mode == "G95" else move.feed
-            values = {"feed": feed, "per_turn": per_turn}
-            yield Finding(PLUNGE_FAST if fast else PLUNGE, line, values, at, file)
+def _plunges(index: int, tip: np.ndarray, side: float, solids: Solids) -> bool:
+    """Return whether a tool goes straight down into what stands below its centre."""
+    radius = CENTRE * solids.program.cutter(index)
+    down = straight_down(tip) and tip[-1, 2] < min(tip[0, 2], solids.top(side) - LEAST)
+    if radius <= 0 or not down or not solids.program.is_known(index):
+        return False
+    standing = solids.standing(disc(tip[-1, :2], radius), tip[-1, 2], side, before=index)
+    return standing.area > 0.5 * math.pi * radius**2

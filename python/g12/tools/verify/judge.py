@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Judge one program: the rules, the four questions to its material, its deviations."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
 from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
+from g12.tools.machine.stored_positions import stored_values
 from g12.tools.material.stock import StockText, read_stock
 from g12.tools.path.samples import Samples
 from g12.tools.preview.ended import ended, explained
@@ -31,8 +32,8 @@ CAUSES = {  # a finding of one code is the cause of those of others at the same 
     "length": {"rapid", "uncut", "air", "bar-remains"},
     "length-higher": {"uncut", "air", "cut-before", "bar-remains"},
     "cutter": {"uncut", "wall", "core"},
-    "d-stale": {"wall", "uncut", "cutter", "worn"},
-    "air": {"uncut", "bar-remains", "air-contour"},
+    "d-stale": {"wall", "uncut", "cutter"},
+    "air": {"uncut", "bar-remains"},
     "no-stock-met": {"uncut", "bar-remains"},
     "surface": {"rapid"},
     "side": {"overcut", "bar-remains"},
@@ -70,13 +71,13 @@ def judge(
     ini: Ini,
     *,
     tools: Tools = None,
-    parameters: Parameters = None,
+    parameters: Path | None = None,
     samples: Samples | None = None,
     **options,
 ) -> Judgement:
     """Trace and judge a program; see ``judge_trace``."""
     trace = ended(program, traced(program, ini, tools, parameters))
-    stored = read_parameters(parameters)
+    stored = stored_values(parameters)
     return judge_trace(TracedProgram(program, ini, trace, samples, stored), **options)
 
 
@@ -103,13 +104,9 @@ def judge_trace(
     given = read_stock(stock.text, program.turning or program.is_round, unit) if stock else None
     tell("looking for material")
     solids = Solids(program, given)
-    every = list(
-        once_a_cause(
-            [*judged(program, solids, tell), *judge_deviations(program, tolerance)], program
-        )
-    )
+    every = [*judged(program, solids, tell), *judge_deviations(program, tolerance)]
     expected = [*expectations(program.file), *(Accepted(code, 0) for code in accept)]
-    found, taken = accepted(every, program.cuts, expected)
+    found, taken = accepted(once_a_cause(every, program), program.cuts, expected)
     return Judgement(program, solids, once_a_line(found), once_a_line(taken), tolerance, opened)
 
 
@@ -125,13 +122,10 @@ def judged(program: TracedProgram, solids: Solids, tell: Report) -> Iterator[Fin
 
 def once_a_cause(found: Sequence[Finding], program: TracedProgram) -> Iterator[Finding]:
     """Yield what is found, but for what another finding of the same cut causes."""
-    of_cut: dict[int, set[str]] = {}
+    effects: dict[int, set[str]] = {}
     for each in found:
-        of_cut.setdefault(_cut_of(each, program), set()).add(each.code)
-    for each in found:
-        present = of_cut[_cut_of(each, program)]
-        if not any(each.code in CAUSES.get(cause, ()) for cause in present):
-            yield each
+        effects.setdefault(_cut_of(each, program), set()).update(CAUSES.get(each.code, ()))
+    yield from (each for each in found if each.code not in effects[_cut_of(each, program)])
 
 
 def _cut_of(found: Finding, program: TracedProgram) -> int:
@@ -141,13 +135,3 @@ def _cut_of(found: Finding, program: TracedProgram) -> int:
             return cut.index
     after = (cut.index for cut in program.cuts if cut.line > found.line)
     return next(after, -1) if found.code == "rapid" else -1 - found.line
-
-
-def read_parameters(parameters: Parameters) -> dict[int, float]:
-    """Return the numbered parameters with which a program starts."""
-    if isinstance(parameters, Mapping):
-        return dict(parameters)
-    file = Path(parameters) if parameters else None
-    rows = file.read_text(errors="replace").splitlines() if file else []
-    words = (row.split() for row in rows)
-    return {int(row[0]): float(row[1]) for row in words if len(row) > 1 and row[0].isdigit()}

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from g12.cut_report import CutElement, HolesCut
-from g12.geometry.curve import Arc, Line
+from g12.geometry.curve import Arc, Curve, Line
 from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.lathe_axes import lathe_axes
@@ -21,13 +21,7 @@ from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.cut import Cut
-from g12.tools.verify.model.deviation import (
-    allowed_off,
-    circles_of,
-    deviation_of,
-    off_circles,
-    section_curve,
-)
+from g12.tools.verify.model.deviation import allowed_off, circles_of, deviation_of, off_circles
 from g12.tools.verify.model.program import TracedProgram
 
 SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "on the contour"}
@@ -48,7 +42,7 @@ def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
     own = {"pockets": _circle, "sections": _section, "holes": _holes, "shapes": _shape}
     return {
         "code": cut.code,
-        "cutter": 2 * (cut.cutter or _compensated_with(cut)) or None,
+        "cutter": 2 * (cut.cutter or max(map(cut.offset, cut.elements), default=0.0)) or None,
         "deviation": deviation_of(cut, program).size,
         "allowed": allowed_off(cut, program, judgement.tolerance),
         **_pace(cut, program),
@@ -56,17 +50,12 @@ def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
     }
 
 
-def _compensated_with(cut: Cut) -> float:
-    return max((each.radius for each in cut.elements if each.side), default=0.0) * cut.mm
-
-
 def _pace(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     if cut.at >= cut.end:
         return {}
-    fed = [i for i in cut.moves if program.moves[i].kind != "rapid"]
-    part, speed = program.part_of_cut(cut), program.trace.modes.speed
+    part, speed = program.part_at(cut.surface, cut.at), program.trace.modes.speed
     path = track(part, program.moves, program.limits, speed, own=cut.moves)
-    pace = pace_of(cut.moves, fed, path, program.real)
+    pace = pace_of(cut.moves, program.fed(cut), path, program.real)
     taps = cut.is_tap  # no trace has the time of a synchronized move
     return {
         "seconds": None if taps else pace.seconds,
@@ -87,11 +76,11 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     return {
         "dialect": dialect_of(cut.code, program.ini),
         "centre": [value * cut.mm for value in cut.plan.centre[:2]],
-        "radius": cut.inner if cut.has_boss else cut.wall,
-        "boss": cut.inner if cut.has_boss else None,
+        "radius": cut.circle.inner if cut.circle.is_boss else cut.circle.wall,
+        "boss": cut.circle.inner if cut.circle.is_boss else None,
         "reached": max(rings.values(), default=0.0) + cut.cutter,
         "rings": list(dict.fromkeys(round(radius, ROUNDED) for radius in rings.values())),
-        "core": cut.inner or None,
+        "core": cut.circle.inner or None,
         "square_to": "XYZ"[third],
         "depths": list(dict.fromkeys(level * cut.mm for level in levels)),
         "lowest": min(levels, default=0.0) * cut.mm,
@@ -109,24 +98,24 @@ def dialect_of(code: str, ini: Ini) -> str | None:
 
 
 def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
-    fed = [i for i in cut.moves if program.moves[i].kind != "rapid"]
+    fed, diameters = program.fed(cut), program.diameters(cut.at)
     lengths = [length for i in fed if (length := program.moves[i].length) > 0]
     sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
     turn, _, height, _ = cut.roles
-    diameters = cut.surface and height == X and program.diameters(cut.at)
-    times, factor = times_of(cut, program.ini), 2 if diameters else 1
+    times, limit = times_of(cut, program.ini), program.limits.axes[turn]
+    lowest = cut.floor - (0.0 if cut.surface else cut.zero[2])
     return {
         "sides": " and ".join(SIDES[side] for side in sides),
         "surface": cut.surface or None,
         "zero_line": None if cut.surface else program.moves[cut.at].start[C],
-        "x_words": "diameters" if program.diameters(cut.at) else "radii",
+        "x_words": "diameters" if diameters else "radii",
         "third": AXIS_LETTERS[height] if cut.surface else "Z",
-        "lowest": factor * (cut.floor - (0.0 if cut.surface else cut.zero[2])),
+        "lowest": 2 * lowest if cut.surface and height == X and diameters else lowest,
         "segments": len(fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
         "c_speed": max(_speeds_of_c(cut, program), default=0.0),
-        "c_limit": _finite(program.limits.axes[turn]),
+        "c_limit": limit if math.isfinite(limit) else None,
         "seconds_planned": times and times._asdict(),
     }
 
@@ -139,28 +128,24 @@ def _speeds_of_c(cut: Cut, program: TracedProgram) -> Iterator[float]:
             yield abs(move.end[turn] - move.start[turn]) / seconds
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
 def times_of(cut: Cut, ini: Ini) -> SectionTimes | None:
     """Return about how long a section takes on this machine, None where that is not estimated.
 
     That is on a cylinder, with the tool beside the X line, and without a feed.
     """
-    drawn = [each for each in cut.elements if each.end is not None and each.start != each.end]
+    drawn = [each for each in cut.drawn if each.start != each.end]
     if cut.surface or ini.tool_beside or not drawn or not all(each.feed for each in cut.elements):
         return None
-    legs = list(_legs(drawn, cut))
     plunges = (each for each in cut.elements if each.end is None)
     plunging = sum(60 * abs(each.z1 - each.z0) / each.feed for each in plunges)
-    return SectionTimes(*(plunging + each for each in section_times(legs, lathe_axes(ini))))
+    times = section_times(list(_legs(drawn, cut)), lathe_axes(ini))
+    return SectionTimes(*(plunging + each for each in times))
 
 
 def _legs(drawn: Sequence[CutElement], cut: Cut) -> Iterator[Leg]:
     """Yield the tool's moves beside a contour, with its leads, and arcs round outside corners."""
-    curves = [section_curve(each, cut) for each in drawn]
-    beside = [c.offset(e.side * e.radius * cut.mm) for c, e in zip(curves, drawn)]
+    curves = [_curve(each, cut) for each in drawn]
+    beside = [c.offset(each.side * cut.offset(each)) for c, each in zip(curves, drawn)]
     end, side = curves[0].start, 0
     for n, each in enumerate(drawn):
         feed, curve = each.feed * cut.mm / 60, beside[n]
@@ -176,16 +161,23 @@ def _legs(drawn: Sequence[CutElement], cut: Cut) -> Iterator[Leg]:
         end, side = curve.end, each.side
 
 
+def _curve(element: CutElement, cut: Cut) -> Curve:
+    start, end = cut.point(element.start), cut.point(element.end)
+    if element.centre is None:
+        return Line(start, end)
+    return Arc(start, cut.point(element.centre), element.sweep)
+
+
 def _shape(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     lowest = cut.floor - cut.zero[2]
-    return {"entries": dict(cut.reported.report.words), "third": "Z", "lowest": lowest}
+    return {"entries": dict(cut.report.words), "third": "Z", "lowest": lowest}
 
 
 def _holes(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     plan = cut.plan
     assert isinstance(plan, HolesCut)
     return {
-        "entries": dict(cut.reported.report.words),
+        "entries": dict(cut.report.words),
         "count": len(plan.places),
         "side": "round" if cut.surface else "on",
         "circle": 2 * plan.places[0][0] * cut.mm,

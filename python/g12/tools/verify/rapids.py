@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The first question to the material: does a rapid go through it, anywhere."""
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 import numpy as np
 
 from g12.tools.material.material import ALLOWED, Touch
 from g12.tools.path.part import C, X, Y, Z
+from g12.tools.preview.moves import Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, Finding, kind
 from g12.tools.verify.model.program import TracedProgram, straight_down
 from g12.tools.verify.model.solid import FACE, Solids
@@ -15,43 +16,31 @@ BELOW = 1e-3  # mm
 RAPID = kind(
     "rapid", FINDING, "a rapid goes {how} {area:mm2} of material, at {at:xyz}{to:to}{hint}"
 )
-BY_MACHINE = kind(
-    "rapid-by-machine", NOT_JUDGED, "rapids by G53, G28 or G30 that begin below the part's top"
+BY_MACHINE = kind("rapid-by-machine", NOT_JUDGED, "low rapids by G53, G28 or G30")
+ROTARY = kind("rotary", NOT_JUDGED, "what follows: A or B has turned what was solid")
+OTHER_TOOL = kind(
+    "rapid-other-tool",
+    NOT_JUDGED,
+    "low rapids of turning tools, without a diameter, or between face and side",
 )
-ROTARY = kind(
-    "rotary", NOT_JUDGED, "everything from here on: A or B has turned what was solid to elsewhere"
-)
-NO_DIAMETER = kind(
-    "rapid-no-diameter", NOT_JUDGED, "rapids below the top, of a tool without a diameter"
-)
-IDLE = kind(
-    "rapid-idle-tool", NOT_JUDGED, "rapids below Z0 of turning tools, or of tools that cut nothing"
-)
-OUTSIDE = kind(
-    "c-outside", NOT_JUDGED, "what the tool cuts where C turns at feed outside of a section"
-)
+OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed outside of a section")
 ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
-TURNED = kind(
-    "rapid-turned", NOT_JUDGED, "rapids of a tool between cuts on the face and in the side"
-)
 BORED = "; was it bored before? (--stock 'bore DIAMETER')"
 
 
 def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Yield every rapid through solid material, and those that cannot be judged."""
-    if program.turned_at is not None:
-        line, file = program.where(program.turned_at)
-        yield Finding(ROTARY, line, file=file)
-        before = program.tip(program.turned_at, FACE)[0]
-        known = program.known_before[program.turned_at]
-        if known and solids.surrounds(before, program.turned_at, FACE):
-            yield Finding(ROTARY_IN_PART, line, {}, before, file)
+    turned = program.turned_at
+    if turned is not None:
+        yield program.found(ROTARY, turned)
+        before = program.tip(turned, FACE)[0]
+        if program.known_before[turned] and solids.surrounds(before, turned, FACE):
+            yield program.found(ROTARY_IN_PART, turned, before)
     for index, move in enumerate(program.moves):
         if move.kind == "rapid" and program.is_known(index):
             yield from _judge(index, program, solids)
         elif move.kind == "feed" and _turns_in_bar(index, program, solids):
-            line, file = program.where(index)
-            yield Finding(OUTSIDE, line, file=file)
+            yield program.found(OUTSIDE, index)
 
 
 def _turns_in_bar(index: int, program: TracedProgram, solids: Solids) -> bool:
@@ -65,74 +54,60 @@ def _turns_in_bar(index: int, program: TracedProgram, solids: Solids) -> bool:
 
 
 def _judge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    line, file = program.where(index)
-    why = _unjudged(index, program)
-    if why is BY_MACHINE:
-        if program.known_before[index] and _begins_below(index, program, solids):
-            yield Finding(why, line, file=file)
-        return
-    touches = list(_touches(index, program, solids, judged=not why))
-    if not touches:
-        return
-    if why and all(below for below, *_ in touches):
-        yield Finding(why, line, file=file)
-    elif all(touch for _, touch, *_ in touches):
-        yield _rapid(index, program, *touches[0][1:])
-    elif any(touch for _, touch, *_ in touches):
-        yield Finding(TURNED, line, file=file)
+    """Judge a rapid on each side that its tool may be on: it is a finding if it is one on all."""
+    move, sides = program.moves[index], program.sides[index]
+    radius, below = program.cutter(index), {}
+    for side in sides or {FACE}:
+        points = _known_tip(index, program, side)
+        if points[:, 2].min(initial=np.inf) < solids.top(side) - BELOW:
+            below[side] = points
+    if move.by_machine and not program.is_placed:
+        if below and not _is_upward(move, below):
+            yield program.found(BY_MACHINE, index)
+    elif sides is None or radius <= ALLOWED:
+        if len(below) == len(sides or {FACE}):
+            yield program.found(OTHER_TOOL, index)
+    else:
+        touches = [(side, solids.of(side).touched(at, radius, index)) for side, at in below.items()]
+        touched = [(side, touch) for side, touch in touches if touch]
+        if len(touched) == len(sides):
+            yield _rapid(index, program, below[touched[0][0]], *touched[0])
+        elif touched:
+            yield program.found(OTHER_TOOL, index)
 
 
-def _touches(
-    index: int, program: TracedProgram, solids: Solids, *, judged: bool
-) -> Iterator[tuple[bool, Touch | None, np.ndarray, float]]:
-    """Yield for each side: is a rapid below its top, what it touches, its points, the side."""
+def _known_tip(index: int, program: TracedProgram, side: float) -> np.ndarray:
+    """Return the points (n, 3) of a rapid as far as the program has said where they are.
+
+    One to a machine position is known where it begins.
+    """
+    points = program.tip(index, side)
+    if program.moves[index].by_machine and not program.is_placed:
+        return points[:1] if program.known_before[index] else points[:0]
     if not program.known_after[index]:
-        return
-    for side in program.sides[index] or {FACE}:
-        points = program.tip(index, side)
-        points = points if program.known_before[index] else points[-1:]
-        below = bool(points[:, 2].min() < solids.top(side) - BELOW)
-        touch = solids.touched(points, index, side) if below and judged else None
-        yield below, touch, points, side
+        return points[:0]
+    return points if program.known_before[index] else points[-1:]
 
 
-def _begins_below(index: int, program: TracedProgram, solids: Solids) -> bool:
-    """Return whether a rapid to a machine position goes sideways from below the part's top."""
-    move = program.moves[index]
-    upward = move.start[X] == move.end[X] and move.start[Y] == move.end[Y]
-    side = max(program.sides[index] or {FACE})
-    low = program.tip(index, side)[0, 2] < solids.top(side) - BELOW
-    return bool(low) and not (upward and not side and move.end[Z] >= move.start[Z])
+def _is_upward(move: Move, sides: Container[float]) -> bool:
+    along = move.start[X] == move.end[X] and move.start[Y] == move.end[Y]
+    return along and move.end[Z] >= move.start[Z] and FACE in sides
 
 
 def _rapid(
-    index: int, program: TracedProgram, touch: Touch, points: np.ndarray, side: float
+    index: int, program: TracedProgram, points: np.ndarray, side: float, touch: Touch
 ) -> Finding:
-    line, file = program.where(index)
     path = touch.points if len(touch.points) else points[-1:]
     down = straight_down(points)
-    values = {
-        "how": "straight down into" if down else "through",
-        "area": touch.area,
-        "at": program.words(index, path[0], side),
-        "to": [] if down else program.words(index, path[-1], side),
-        "hint": BORED if down and _is_bored_by_words(index, program) else "",
-        "path": path,
-        "surface": side,
-    }
-    return Finding(RAPID, line, values, path[0], file)
-
-
-def _is_bored_by_words(index: int, program: TracedProgram) -> bool:
-    """Return whether a circle follows that goes no deeper: it may expect a bored hole."""
     after = next((cut for cut in program.cuts if cut.at > index), None)
-    return bool(after and after.is_circle and not program.turning)
-
-
-def _unjudged(index: int, program: TracedProgram):
-    move = program.moves[index]
-    if move.by_machine and not program.is_placed:
-        return BY_MACHINE
-    if program.sides[index] is None:
-        return IDLE
-    return None if program.cutter(index) > ALLOWED else NO_DIAMETER
+    is_bored = down and after and after.is_circle and not program.turning
+    return program.found(
+        *(RAPID, index, path[0]),
+        how="straight down into" if down else "through",
+        area=touch.area,
+        at=program.words(index, path[0], side),
+        to=[] if down else program.words(index, path[-1], side),
+        hint=BORED if is_bored else "",
+        path=path,
+        surface=side,
+    )

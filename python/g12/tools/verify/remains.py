@@ -4,21 +4,24 @@
 from collections.abc import Iterator
 
 import numpy as np
-from shapely.geometry import LineString, Point
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
-from shapely.ops import split, unary_union
+from shapely.ops import unary_union
 
 from g12.cut_report import PolygonCut
-from g12.tools.verify.model.cut import NOTHING, Cut, Outline
+from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import JUST_ABOVE, Solids, reachable
 
 SLACK = 0.02  # mm: boundaries are compared with so much less
 LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should not
-LIFT = 0.01  # mm beside a contour
 UNCUT = kind("uncut", FINDING, "{area:mm2} of material remain uncut at Z{level:mm}")
-BAR = kind("bar-remains", FINDING, "{area:mm2} of the bar remain beyond the contour at Z{level:mm}")
+BAR = kind(
+    "bar-remains",
+    FINDING,
+    "{area:mm2} of the bar remain at Z{level:mm} on the tool's side of the contour",
+)
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
@@ -42,24 +45,20 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
-    radius = solids.program.cutter(cut.at)
-    left = left_of(cut.goes, cut, solids)
+    radius, level = solids.program.cutter(cut.at), cut.floor - cut.zero[2]
+    left, core = left_of(cut.goes, cut, solids), left_of(cut.core, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
-        yield from _core(cut, left.buffer(-radius / 2))
-        left = NOTHING
+        left, core = NOTHING, left.buffer(-radius / 2)
     if left.area > LEAST_GONE:
-        level = cut.floor - cut.zero[2]
+        middle = cut.centre if cut.is_circle else left.representative_point().coords[0]
         values = {"area": left.area, "level": level, "shape": left, "floor": cut.floor}
-        place = (*_middle_of(cut, left), cut.floor)
-        yield Finding(UNCUT, cut.line, values, place, cut.file)
-    yield from _bar(cut, solids, radius)
-    if not cut.is_ring:  # whose core is meant
-        yield from _core(cut, left_of(cut.core, cut, solids))
-
-
-def _middle_of(cut: Cut, left: BaseGeometry) -> tuple[float, float]:
-    at = left.representative_point()
-    return cut.centre if cut.is_circle else (at.x, at.y)
+        yield cut.found(UNCUT, (*middle, cut.floor), **values)
+    if core.area > LEAST_GONE and not cut.is_ring:  # whose core is meant
+        yield cut.found(CORE, area=core.area)
+    beyond = left_of(_beyond(cut, solids, radius), cut, solids)
+    if beyond.area > LEAST_LEFT:
+        place = (*beyond.representative_point().coords[0], cut.floor)
+        yield cut.found(BAR, place, area=beyond.area, level=level)
 
 
 def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
@@ -70,49 +69,29 @@ def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
 
 
-def _core(cut: Cut, core: BaseGeometry) -> Iterator[Finding]:
-    if core.area > LEAST_GONE:
-        yield Finding(CORE, cut.line, {"area": core.area}, file=cut.file)
+def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
+    """Return what of a given bar lies on the tool's side of a contour, as far as a cutter reaches.
 
-
-def _bar(cut: Cut, solids: Solids, radius: float) -> Iterator[Finding]:
-    """Yield what stands of a given bar on the tool's side of a contour."""
+    An open contour goes on straight at its ends.
+    """
     if cut.surface or not (solids.stock and solids.stock.diameter):
-        return
-    bar = solids.shape(cut.surface)
-    beyond = [beyond_contour(outline, bar, radius) for outline in cut.outlines]
+        return NOTHING
+    bar, found = solids.of(cut.surface).shape, []
+    whole = bar.buffer(3 * radius)
     if isinstance(cut.plan, PolygonCut):
-        beyond = [reachable(bar.difference(cut.stays[0][0]), radius)]
-    left = left_of(unary_union([NOTHING, *beyond]), cut, solids)
-    if left.area > LEAST_LEFT:
-        at = left.representative_point()
-        values = {"area": left.area, "level": cut.floor - cut.zero[2]}
-        yield Finding(BAR, cut.line, values, (at.x, at.y, cut.floor), cut.file)
-
-
-def beyond_contour(outline: Outline, bar: BaseGeometry, cutter: float) -> BaseGeometry:
-    """Return what of a bar lies on the tool's side of a contour, as far as a cutter reaches."""
-    whole = bar.buffer(3 * cutter)
-    if outline.is_closed:
-        outside = NOTHING if outline.tool_inside else whole.difference(outline.polygon)
-        return reachable(outside, cutter).intersection(bar)
-    points = outline.points
-    far = 4.0 * max(bar.bounds[2], float(np.abs(points).max()))
-    before = points[0] + far * _unit(points[0] - points[1])
-    after = points[-1] + far * _unit(points[-1] - points[-2])
-    line = LineString([(p.real, p.imag) for p in (before, *points, after)])
-    middle = len(points) // 2
-    lift = LIFT if outline.left else -LIFT
-    beside = (points[middle] + points[middle - 1]) / 2
-    beside += 1j * lift * _unit(points[middle] - points[middle - 1])
-    own = [
-        each for each in split(whole, line).geoms if each.contains(Point(beside.real, beside.imag))
-    ]
-    return reachable(unary_union([NOTHING, *own]), cutter).intersection(bar)
-
-
-def _unit(direction: complex) -> complex:
-    return direction / abs(direction)
+        found.append(bar.difference(cut.stays[0][0]))
+    for outline in cut.outlines:
+        if outline.is_closed:
+            found.append(NOTHING if outline.tool_inside else whole.difference(outline.polygon))
+            continue
+        points = outline.points
+        far = 4.0 * max(bar.bounds[2], float(np.abs(points).max()))
+        first, last = points[0] - points[1], points[-1] - points[-2]
+        ends = points[0] + far * first / abs(first), points[-1] + far * last / abs(last)
+        line = LineString([(p.real, p.imag) for p in (ends[0], *points, ends[1])])
+        beside = line.buffer(far if outline.left else -far, single_sided=True, join_style=2)
+        found.append(whole.intersection(beside))
+    return unary_union([NOTHING, *(reachable(each, radius) for each in found)]).intersection(bar)
 
 
 # ------------------------------------------------------------ what should stand
@@ -120,15 +99,15 @@ def _unit(direction: complex) -> complex:
 
 def too_far(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what a circle's own moves remove beyond its wall: D is not the cutter that cuts."""
-    if not cut.is_circle or cut.has_boss:
+    if not cut.is_circle or cut.circle.is_boss:
         return
-    for sweep in solids.made_by(cut):
+    for sweep in solids.of(cut.surface).sweeps_of(cut.moves):
         away = np.hypot(*(sweep.line - cut.centre).T)
-        over = float(away.max()) + sweep.radius - cut.wall
+        over = float(away.max()) + sweep.radius - cut.circle.wall
         if over > SLACK:
             place = (*sweep.line[away.argmax()], sweep.level)
             at = solids.program.words(cut.at, place, cut.surface)
-            yield Finding(WALL, cut.line, {"over": over, "at": at}, place, cut.file)
+            yield cut.found(WALL, place, over=over, at=at)
             return
 
 
@@ -138,25 +117,24 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     What the planner compensated stays off its own contour. Its leads do not, nor do cuts round
     another island, or moves at feed that belong to no cut.
     """
-    if cut.has_boss and _is_boss_gone(cut, solids):
-        yield Finding(BOSS, cut.line, {}, (*cut.centre, cut.floor), cut.file)
+    if cut.circle.is_boss and _is_boss_gone(cut, solids):
+        yield cut.found(BOSS, (*cut.centre, cut.floor))
         return
     if not cut.stays:
         return
-    others = [each for each in program.cuts if each is not cut and each.surface == cut.surface]
+    others = (each for each in program.cuts if each is not cut and each.surface == cut.surface)
     meant = unary_union([NOTHING, *(each.goes for each in others)])
     for stays, level in cut.stays:
         if level > solids.top(cut.surface) - JUST_ABOVE:
             continue
-        region = stays.intersection(solids.shape(cut.surface)).buffer(-2 * SLACK)
+        region = stays.intersection(solids.of(cut.surface).shape).buffer(-2 * SLACK)
         swept, by = _cut_away(cut, region.difference(meant), program, solids)
         if by is not None:
             at = swept.representative_point()
             line, file = program.where(by)
-            values = {"area": swept.area, "by": f"{line} of {file}" if file else line}
-            yield Finding(OVERCUT, cut.line, values, (at.x, at.y, level), cut.file)
+            where = f"{line} of {file}" if file else line
+            yield cut.found(OVERCUT, (at.x, at.y, level), area=swept.area, by=where)
             return
-    yield from islands_cut(cut, others, solids)
 
 
 def _is_boss_gone(cut: Cut, solids: Solids) -> bool:
@@ -186,29 +164,14 @@ def _cut_away(
     return swept, first if swept.area > LEAST_GONE else None
 
 
-def islands_cut(cut: Cut, others: list[Cut], solids: Solids) -> Iterator[Finding]:
-    """Yield a cut round another island that goes into this one's, at the same depth.
-
-    That of a finer pass lies within it. Two that cross may be meant: a hexagon twice makes twelve.
-    """
-    island = cut.island.buffer(-2 * SLACK)
-    for other in others if not island.is_empty else ():
-        apart = abs(other.floor - cut.floor) > SLACK or other.island.is_empty
-        if apart or cut.island.buffer(SLACK).covers(other.island):
-            continue
-        if solids.swept_in(island, other.moves, cut.surface)[0].area > LEAST_GONE:
-            yield Finding(MEETS, cut.line, {"other": other.line}, file=cut.file)
-            return
-
-
 def meeting(circles: list[Cut]) -> Iterator[Finding]:
     """Yield pockets and bosses that go into each other's walls."""
     heights = np.array([cut.zero[2] for cut in circles])
     centres = np.array([complex(*cut.centre) for cut in circles])
-    walls = np.array([cut.wall for cut in circles])
+    walls = np.array([cut.circle.wall for cut in circles])
     for index, cut in enumerate(circles):
         apart, own = np.abs(centres[:index] - centres[index]), walls[index]
         within = apart <= np.abs(walls[:index] - own) + SLACK
         level = np.abs(heights[:index] - heights[index]) < SLACK
         for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
-            yield Finding(MEETS, cut.line, {"other": circles[other].line}, file=cut.file)
+            yield cut.found(MEETS, other=circles[other].line)

@@ -23,6 +23,7 @@ from g12.tools.verify.model.finding import (
     lines_in_words,
     verdict,
 )
+from g12.tools.verify.model.solid import FACE
 from g12.tools.verify.rules.whole import travel_needed
 
 GAP = "  "
@@ -32,11 +33,11 @@ KINDS = ("pockets", "sections", "holes", "shapes")
 TITLES = {FINDING: "findings", WARNING: "warnings", NOT_JUDGED: "not judged"}
 LINES = {  # what the line of a cut has
     "pockets": "⌀ {radius:twice} to {square_to}{lowest:mm}",
-    "sections": "cutter ⌀ {cutter_or_0:mm}, {sides}, to {third}{lowest:mm}",
+    "sections": "{sides}, to {third}{lowest:mm}",
     "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
-    "shapes": "cutter ⌀ {cutter_or_0:mm}, to Z{lowest:mm}",
+    "shapes": "to Z{lowest:mm}",
 }
-CORE = ", a core of ⌀ {core:twice} stays"
+CUTTER, CORE = "cutter ⌀ {cutter:mm}, ", ", a core of ⌀ {core:twice} stays"
 # Of rows with one name the first one counts whose measures are all known.
 ROWS: tuple[Row, ...] = (
     ("centre", "X{centre[0]:mm} Y{centre[1]:mm}"),
@@ -91,28 +92,34 @@ def as_text(judgement: Judgement, unit: Unit, *, full: bool = False) -> str:
 
 def as_json(judgement: Judgement) -> str:
     """Return the report for a program to read."""
-    program, opened = judgement.program, judgement.opened
+    program, opened, solids = judgement.program, judgement.opened, judgement.solids
     cuts: dict[str, list] = {name: [] for name in KINDS}
     for cut in program.cuts:
         cuts[kind_of(cut)].append(_plain_measures(cut, judgement))
-    listed = {"findings": FINDING, "warnings": WARNING, "not_judged": NOT_JUDGED}
+    listed = {
+        "rapids": (each for each in judgement.found if "path" in each.values),
+        "findings": judgement.of(FINDING),
+        "warnings": judgement.of(WARNING),
+        "not_judged": judgement.of(NOT_JUDGED),
+        "accepted": judgement.accepted,
+    }
+    stock = solids.stock and {
+        "text": solids.stock.text,
+        "bounds": list(solids.of(FACE).shape.bounds),
+        "top": solids.top(FACE),
+    }
     values = {
         "program": str(opened.source if opened else program.file),
         "ini": str(program.ini.path),
         "real": program.real is not None,
         **cuts,
-        "rapids": [_plain(each, judgement) for each in judgement.found if "path" in each.values],
-        "stock": _stock_values(judgement),
+        "stock": stock,
         "assumed": assumption(judgement, MM),
         "messages": [
             {"line": judgement.user_line(message.line), "text": message.text}
             for message in program.trace.messages
         ],
-        **{
-            name: [_plain(each, judgement) for each in judgement.of(severity)]
-            for name, severity in listed.items()
-        },
-        "accepted": [_plain(each, judgement) for each in judgement.accepted],
+        **{name: [_plain(each, judgement) for each in found] for name, found in listed.items()},
         "verdict": verdict(judgement.found),
     }
     return json.dumps(values, indent=2)
@@ -138,13 +145,6 @@ def _plain_measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
         line = judgement.user_line(values["lowest_feed_line"], cut.file)
         values |= {"lowest_feed_line": line}
     return {**lines, "file": cut.file or None, **values}
-
-
-def _stock_values(judgement: Judgement) -> dict[str, Any] | None:
-    stock, solids = judgement.solids.stock, judgement.solids
-    if not stock:
-        return None
-    return {"text": stock.text, "bounds": list(solids.shape(0.0).bounds), "top": solids.top(0.0)}
 
 
 def assumption(judgement: Judgement, unit: Unit) -> str:
@@ -205,12 +205,13 @@ def in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
 def _cut_lines(judgement: Judgement, unit: Unit) -> Iterator[tuple[str, ...]]:
     """Yield the columns of each cut: where, which code, what, how far off, how long."""
     for cut in judgement.program.cuts:
-        values = _shown(measures(cut, judgement))
-        core = CORE if cut.is_ring and cut.inner > cut.cutter else ""
-        what = in_words(LINES[kind_of(cut)] + core, values, unit)
-        allowed, off = (unit.fine(values[name]) for name in ("allowed", "deviation"))
+        values, name = _shown(measures(cut, judgement)), kind_of(cut)
+        cutter = CUTTER if values["cutter"] and name in ("sections", "shapes") else ""
+        core = CORE if cut.is_ring and cut.circle.inner > cut.cutter else ""
+        what = in_words(cutter + LINES[name] + core, values, unit)
+        off = in_words("{deviation:fine} off", values, unit)
+        off += f" ({unit.fine(values['allowed'])} allowed)"
         time = "" if values.get("seconds") is None else f"{plain(values['seconds'], 1)} s"
-        off = f"{off} {unit.name} off ({allowed} allowed)"
         yield _lines_text(cut, judgement), _code_text(values), what, off, time
 
 
@@ -219,7 +220,6 @@ def _shown(values: Mapping[str, Any]) -> dict[str, Any]:
     seconds, programmed = (values.get(name) for name in ("seconds", "seconds_programmed"))
     return {
         **values,
-        "cutter_or_0": values["cutter"] or 0.0,
         "holes": counted_as(values["count"], "hole") if "count" in values else None,
         "real_seconds": None if seconds == programmed else seconds,  # without acceleration
     }

@@ -10,21 +10,24 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from itertools import groupby
+from typing import Any, NamedTuple
 
 import numpy as np
-from shapely.affinity import rotate
+from shapely.affinity import rotate, translate
 from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cut_report import (
     CutElement,
+    CutReport,
     EventCut,
     FrameCut,
     HolesCut,
     PocketCut,
     PolygonCut,
+    ProgramFrame,
     RoundPocketCut,
     SectionCut,
     SlotCut,
@@ -33,6 +36,7 @@ from g12.cut_report import (
 )
 from g12.tools.path.part import ROLES, Roles, arc_segments, disc
 from g12.tools.preview.moves import ReportedCut, Trace
+from g12.tools.verify.model.finding import Finding, Kind
 
 CLOSED = 0.01  # mm between the ends of a contour that is closed
 CHORD = 1e-3  # of arcs
@@ -93,47 +97,38 @@ class Outline:
         return LineString(_xy(self.points)).buffer(away, single_sided=True, join_style=2)
 
 
-@dataclass
+class Circle(NamedTuple):
+    """The radii of a circle's wall and of what it leaves in its middle, mm, which may be a boss."""
+
+    wall: float
+    inner: float
+    is_boss: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Cut:
-    """One reported cut with the range of its moves; ``loaded`` is the loaded cutter's radius."""
+    """One reported cut: its moves are those from ``at`` to ``end``."""
 
     index: int
-    reported: ReportedCut
-    loaded: float
+    loaded: float  # the radius of the loaded cutter, mm
+    at: int
+    end: int
+    code: str
+    line: int  # in its file, "" is the program
+    last_line: int  # of a section the line that ends it
+    file: str
+    c_commanded: str  # as `ReportedCut` tells it
+    plan: Any  # the planner's record, a `PlannedCut`; which fields it has is asked by its kind
+    frame: ProgramFrame
+    report: CutReport
 
-    @property
-    def at(self) -> int:
-        return self.reported.at
-
-    @property
-    def end(self) -> int:
-        return self.reported.end
+    def found(self, of: Kind, place: Sequence[float] | None = None, /, **values: Any) -> Finding:
+        """Return a finding in its line."""
+        return Finding(of, self.line, values, place, self.file)
 
     @property
     def moves(self) -> range:
         return range(self.at, self.end)
-
-    @property
-    def plan(self) -> Any:
-        """The planner's record, a ``PlannedCut``; which fields it has is asked by its kind."""
-        return self.reported.report.cut
-
-    @property
-    def code(self) -> str:
-        return self.reported.report.code
-
-    @property
-    def line(self) -> int:
-        return self.reported.report.line
-
-    @property
-    def file(self) -> str:
-        return self.reported.report.file
-
-    @property
-    def last_line(self) -> int:
-        """The line that ends a section."""
-        return max(self.line, self.reported.last_line) if self.is_section else self.line
 
     @property
     def is_section(self) -> bool:
@@ -153,31 +148,26 @@ class Cut:
 
     @property
     def mm(self) -> float:
-        return self.reported.report.frame.mm
+        return self.frame.mm
 
     @cached_property
     def zero(self) -> tuple[float, float, float]:
         """The program's zero on the machine."""
-        x, y, z = (value * self.mm for value in self.reported.report.frame.zero[:3])
+        x, y, z = (value * self.mm for value in self.frame.zero[:3])
         return x, y, z
 
     @property
     def zero_c(self) -> float:
-        return self.reported.report.frame.zero[3]
+        return self.frame.zero[3]
 
-    @property
-    def rotation(self) -> float:
-        return self.reported.report.frame.rotation
-
-    @property
+    @cached_property
     def surface(self) -> float:
         """The radius of the cylinder on which it is, 0 on the face."""
         return getattr(self.plan, "surface", 0.0) * self.mm
 
     @property
     def used(self) -> UsedCutter:
-        passes = getattr(self.plan, "passes", self.plan)
-        return getattr(passes, "cutter", NO_CUTTER)
+        return getattr(getattr(self.plan, "passes", self.plan), "cutter", NO_CUTTER)
 
     @cached_property
     def cutter(self) -> float:
@@ -188,66 +178,43 @@ class Cut:
     def compensated(self) -> bool:
         return any(each.side for each in self.elements)
 
-    @cached_property
-    def top(self) -> float:
-        return self.surface or self.zero[2]
-
-    @cached_property
-    def wall(self) -> float:
-        """The radius that a circle clears; without a cutter its words are those of its centre."""
-        if isinstance(self.plan, ThreadCut):
-            return self.plan.large * self.mm
-        return self.plan.wall * self.mm + self._unknown_cutter if self.is_circle else 0.0
-
-    @cached_property
-    def inner(self) -> float:
-        """The radius of what a circle leaves in its middle, 0 if nothing."""
-        if isinstance(self.plan, PocketCut):
-            return max(self.plan.inner * self.mm - self._unknown_cutter, 0.0)
-        if isinstance(self.plan, ThreadCut):
-            return self.plan.small * self.mm if self.plan.outside else 0.0
-        return self.plan.boss * self.mm if isinstance(self.plan, EventCut) else 0.0
-
     @property
-    def has_boss(self) -> bool:
-        if isinstance(self.plan, ThreadCut):
-            return self.plan.outside
-        return isinstance(self.plan, EventCut) and self.plan.side > 0
+    def upright(self) -> bool:
+        return getattr(self.plan, "plane", "G17") != "G17"
+
+    @cached_property
+    def centre(self) -> tuple[float, float]:
+        at = self.frame.point(*self.plan.centre[:2])
+        return at.real, at.imag
+
+    @cached_property
+    def circle(self) -> Circle:
+        """What a circle clears and leaves; without a cutter its words are those of the centre."""
+        plan, mm, beside = self.plan, self.mm, 0.0 if self.cutter else self.loaded
+        if isinstance(plan, ThreadCut):
+            return Circle(plan.large * mm, plan.small * mm * plan.outside, plan.outside)
+        if isinstance(plan, EventCut):
+            return Circle(plan.wall * mm + beside, plan.boss * mm, plan.side > 0)
+        if isinstance(plan, PocketCut):
+            return Circle(plan.wall * mm + beside, max(plan.inner * mm - beside, 0.0), False)
+        return Circle(0.0, 0.0, False)
 
     @property
     def is_ring(self) -> bool:
         """Whether it is one circle."""
         return isinstance(self.plan, PocketCut) and not self.plan.step
 
-    def plane_words(self, at: complex) -> complex:
-        """Return a point of the face in the plane of a section: X as a radius, C as a length."""
-        return at / self._turned
-
-    @property
-    def _unknown_cutter(self) -> float:
-        return 0.0 if self.cutter else self.loaded
-
-    @cached_property
-    def centre(self) -> tuple[float, float]:
-        at = self.reported.report.frame.point(*self.plan.centre[:2])
-        return at.real, at.imag
-
-    @property
-    def upright(self) -> bool:
-        return getattr(self.plan, "plane", "G17") != "G17"
-
     @cached_property
     def levels(self) -> list[float]:
         """The levels of its floors: machine Z, or the radius on a cylinder."""
         plan = self.plan
         if isinstance(plan, SectionCut):
-            ends = [min(each.z0, each.z1) for each in self.elements if each.end is not None]
+            ends = [min(each.z0, each.z1) for each in self.drawn]
             return [self._level(min(ends))] if ends else []
         if isinstance(plan, HolesCut):
-            place = plan.places[0]
-            return [self._level((place[0] if plan.surface else place[1]) - plan.depth)]
-        levels = getattr(plan, "passes", plan).levels
-        return [self._level(level) for level in levels]
+            x, z, _ = plan.places[0]
+            return [self._level((x if plan.surface else z) - plan.depth)]
+        return [self._level(level) for level in getattr(plan, "passes", plan).levels]
 
     @cached_property
     def floor(self) -> float:
@@ -261,88 +228,72 @@ class Cut:
     @cached_property
     def goes(self) -> BaseGeometry:
         """What its words say is to go, at its floor; at a thread's nothing is gone all round."""
-        if isinstance(self.plan, ThreadCut):
-            return NOTHING
-        if self.is_circle and not self.upright:
-            return disc(self.centre, self.wall).difference(self._middle)
         if self.is_shape:
             return self._shape[0]
+        if self.is_circle and not self.upright and not isinstance(self.plan, ThreadCut):
+            return disc(self.centre, self.circle.wall, CHORD).difference(self._middle)
         return unary_union([o.polygon for o in self.outlines if o.is_closed and o.tool_inside])
 
     @property
     def _middle(self) -> BaseGeometry:
-        return disc(self.centre, self.inner) if self.inner > 0 else NOTHING
+        return disc(self.centre, self.circle.inner, CHORD) if self.circle.inner > 0 else NOTHING
 
-    @cached_property
+    @property
     def core(self) -> BaseGeometry:
         """What a circle leaves in its middle that is no boss."""
-        is_core = self.is_circle and not self.upright and not self.has_boss
-        return self._middle if is_core and self.inner > LEAST_CORE else NOTHING
+        return NOTHING if self.circle.is_boss or self.circle.inner < LEAST_CORE else self._middle
 
     @cached_property
     def stays(self) -> list[tuple[BaseGeometry, float]]:
         """What stays of the part beside it, and the level down to which it is cut."""
-        if self.has_boss:
+        if self.circle.is_boss:
             return [(self._middle, self.floor)]
         if self.is_shape:
             return [(self._shape[1], self.floor)]
-        width = max((each.radius for each in self.elements), default=0.0) * self.mm or 1.0
+        width = max(map(self.offset, self.elements), default=0.0) or 1.0
         return [(each.part_side(width), each.level) for each in self.outlines]
 
     @cached_property
     def island(self) -> BaseGeometry:
         """The part that it goes round on the outside, as far as that is closed."""
-        if self.has_boss or isinstance(self.plan, PolygonCut) or self._is_frame_outside:
+        if self.circle.is_boss or (self.is_shape and self._shape[0].is_empty):
             return self.stays[0][0]
         return unary_union([o.polygon for o in self.outlines if o.is_closed and not o.tool_inside])
 
     @cached_property
-    def loose_lines(self) -> set[int]:
-        """The blocks of a section that no contour keeps off the part: leads, without G41 or G42."""
-        leads = {outline.lines[0] for outline in self.outlines}
-        return leads | {each.line for each in self.elements if not each.side}
-
-    @property
-    def _is_frame_outside(self) -> bool:
-        return isinstance(self.plan, FrameCut) and self.plan.side > 0
-
-    @cached_property
-    def _frame(self) -> tuple[BaseGeometry, BaseGeometry]:
-        """What goes and what stays of a rectangle on a mill."""
-        plan, mm = self.plan, self.mm
-        (x, y), corner = self.centre, plan.corner * mm
-        across, along = (length * mm / 2 - corner for length in plan.lengths)
-        whole = box(x - across, y - along, x + across, y + along).buffer(corner, 64)
-        whole = rotate(whole, self.rotation, origin=(x, y))
-        if plan.side > 0:
-            return NOTHING, whole
-        beside = whole.buffer(-2 * self.cutter) if plan.middle else NOTHING
-        return whole.difference(beside), whole.buffer(1.0).difference(whole)
-
-    @cached_property
     def _shape(self) -> tuple[BaseGeometry, BaseGeometry]:
-        """What goes and what stays of a shape."""
-        if isinstance(self.plan, FrameCut):
-            return self._frame
-        plan, mm = self.plan, self.mm
+        """What goes of a pocket or a slot, nothing of a polygon or a frame, and what stays."""
+        plan, mm, middle = self.plan, self.mm, (0.0, 0.0)
         if isinstance(plan, PolygonCut):
-            stays = bar = disc((0, 0), plan.stock_diameter * mm / 2)
-            for side in range(plan.sides):
-                flat = box(plan.across_flats * mm / 2, -1e3, 1e3, 1e3)
-                middle = plan.angle + self.zero_c + 360 * side / plan.sides
-                stays = stays.difference(rotate(flat, middle, origin=(0, 0)))
-            radius = plan.corner_radius * mm
-            if radius > 0 and plan.sides > 2:
-                stays = stays.buffer(-radius, 64).buffer(radius, 64)
-            return bar.difference(stays), stays
-        if isinstance(plan, RoundPocketCut):
-            centre = complex(*plan.centre) * mm * cmath.rect(1.0, math.radians(self.zero_c))
-            whole = disc((centre.real, centre.imag), plan.diameter * mm / 2)
+            return NOTHING, self._polygon(plan)
+        if isinstance(plan, FrameCut):
+            middle, corner = self.centre, plan.corner * mm
+            x, y = (length * mm / 2 - corner for length in plan.lengths)
+            whole, turned = box(-x, -y, x, y).buffer(corner, 64), self.frame.rotation
+        elif isinstance(plan, RoundPocketCut):
+            centre = complex(*plan.centre) * mm
+            whole, turned = disc((centre.real, centre.imag), plan.diameter * mm / 2), self.zero_c
         else:
             half = (plan.length - plan.width) / 2 * mm
-            whole = LineString([(-half, 0), (half, 0)]).buffer(plan.width * mm / 2, 64)
-            whole = rotate(whole, plan.angle + self.zero_c, origin=(0, 0))
-        return whole, whole.buffer(1.0).difference(whole)
+            line = LineString([(-half, 0), (half, 0)])
+            whole, turned = line.buffer(plan.width * mm / 2, 64), plan.angle + self.zero_c
+        whole = translate(rotate(whole, turned, origin=(0, 0)), *middle)
+        if isinstance(plan, FrameCut) and plan.side > 0:
+            return NOTHING, whole
+        left = whole.buffer(-2 * self.cutter) if getattr(plan, "middle", False) else NOTHING
+        return whole.difference(left), whole.buffer(1.0).difference(whole)
+
+    def _polygon(self, plan: PolygonCut) -> BaseGeometry:
+        stays, radius = (
+            disc((0, 0), plan.stock_diameter * self.mm / 2),
+            plan.corner_radius * self.mm,
+        )
+        for side in range(plan.sides):
+            flat = box(plan.across_flats * self.mm / 2, -1e3, 1e3, 1e3)
+            middle = plan.angle + self.zero_c + 360 * side / plan.sides
+            stays = stays.difference(rotate(flat, middle, origin=(0, 0)))
+        rounded = radius > 0 and plan.sides > 2
+        return stays.buffer(-radius, 64).buffer(radius, 64) if rounded else stays
 
     @cached_property
     def places(self) -> list[complex]:
@@ -365,18 +316,33 @@ class Cut:
         return self.plan.elements if isinstance(self.plan, SectionCut) else ()
 
     @cached_property
-    def outlines(self) -> list[Outline]:
-        return list(self._outlines())
+    def drawn(self) -> list[CutElement]:
+        """The elements that are no plunge."""
+        return [each for each in self.elements if each.end is not None]
 
-    def _outlines(self) -> Iterator[Outline]:
-        run: list[CutElement] = []
-        for each in (*(e for e in self.elements if e.end is not None), None):
-            if run and not (each and each.side == run[-1].side):
-                if len(run) > 1:
-                    yield self._outline(run)
-                run = []
-            if each and each.side:
-                run.append(each)
+    @cached_property
+    def _runs(self) -> list[list[CutElement]]:
+        """What is drawn on one side of its contour; the first of each but a plain first is a lead.
+
+        A lead leads onto the contour or, by G40, away from it.
+        """
+        return [list(run) for _, run in groupby(self.drawn, key=lambda each: each.side)]
+
+    @cached_property
+    def outlines(self) -> list[Outline]:
+        return [self._outline(run) for run in self._runs if run[0].side and len(run) > 1]
+
+    @cached_property
+    def contour_lines(self) -> set[int]:
+        """The blocks of a section that are no leads."""
+        leads = [bool(run[0].side) or n > 0 for n, run in enumerate(self._runs)]
+        return {each.line for lead, run in zip(leads, self._runs) for each in run[lead:]}
+
+    @cached_property
+    def loose_lines(self) -> set[int]:
+        """The blocks of a section that no contour keeps off the part: leads, without G41 or G42."""
+        leads = {outline.lines[0] for outline in self.outlines}
+        return leads | {each.line for each in self.elements if not each.side}
 
     def _outline(self, run: Sequence[CutElement]) -> Outline:
         lead, *own = run
@@ -387,6 +353,10 @@ class Cut:
         low = self._level(min(lead.z0, lead.z1))
         lines = lead.line, own[-1].line
         return Outline(np.array(points), own[0].side > 0, self.point(lead.start), lines, level, low)
+
+    def offset(self, element: CutElement) -> float:
+        """Return how far the tool's centre is beside an element's contour, mm."""
+        return element.radius * self.mm * bool(element.side)
 
     @cached_property
     def roles(self) -> Roles:
@@ -411,9 +381,13 @@ class Cut:
             return at * self._upright * self.mm + complex(around, self.zero[self.roles.along])
         return at * self.mm * self._turned
 
+    def plane_words(self, at: complex) -> complex:
+        """Return a point of the face in the plane of a section: X as a radius, C as a length."""
+        return at / self._turned
+
     @cached_property
     def _turned(self) -> complex:
-        return cmath.rect(1.0, math.radians(self.reported.report.at[3] + self.zero_c))
+        return cmath.rect(1.0, math.radians(self.report.at[3] + self.zero_c))
 
     @cached_property
     def deep_reach(self) -> float:
@@ -423,11 +397,11 @@ class Cut:
         return max(ends, default=0.0) * self.mm
 
 
-def curve_points(element: CutElement) -> Iterator[complex]:
+def curve_points(element: CutElement, chord_error: float = CHORD) -> Iterator[complex]:
     """Yield the points of a line or an arc after its start."""
     start, centre = element.start, element.centre
     if centre is not None:
-        count = arc_segments(abs(start - centre), element.sweep, CHORD)
+        count = arc_segments(abs(start - centre), element.sweep, chord_error)
         for n in range(1, count):
             yield centre + (start - centre) * cmath.rect(1.0, element.sweep * n / count)
     yield element.end
@@ -435,11 +409,17 @@ def curve_points(element: CutElement) -> Iterator[complex]:
 
 def cuts_of(trace: Trace) -> list[Cut]:
     """Return the reported cuts in the order of their moves."""
-    last = len(trace.moves)
-    return [
-        Cut(index, each, trace.radius(each.at) if each.at < last else 0.0)
-        for index, each in enumerate(trace.cuts)
-    ]
+    return [_cut(index, each, trace) for index, each in enumerate(trace.cuts)]
+
+
+def _cut(index: int, each: ReportedCut, trace: Trace) -> Cut:
+    own, plan = each.report, each.report.cut
+    loaded = trace.radius(each.at) if each.at < len(trace.moves) else 0.0
+    last_line = max(own.line, each.last_line) if isinstance(plan, SectionCut) else own.line
+    return Cut(
+        *(index, loaded, each.at, each.end, own.code, own.line, last_line),
+        *(own.file, each.c_commanded, plan, own.frame, own),
+    )
 
 
 def _xy(points: np.ndarray) -> np.ndarray:

@@ -107,23 +107,18 @@ def is_known(sentence: str, values: Mapping[str, Any]) -> bool:
 class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
-    ``mm`` a length, ``length`` with its unit, ``fine`` a small one, ``mm2`` an area, ``feed`` and
-    ``feeds`` (a least and a greatest), ``xyz`` a place as letters and lengths, ``to`` a second one
-    or none, ``list`` lengths, ``twice`` a radius as a diameter, ``turns`` angles, ``words`` entries
-    by name. A number is of decimals.
+    ``mm`` a length, ``length`` with its unit, ``fine`` a small one, ``mm2`` an area, ``feed``,
+    ``xyz`` a place as letters and lengths, ``to`` a second one or none, ``list`` lengths, ``twice``
+    a radius as a diameter, ``turns`` angles, ``words`` entries by name. A number is of decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
-        def feed(value: float) -> str:
-            return f"{plain(value / unit.mm, 1)} {unit.name}/min"
-
         self._forms: dict[str, Callable[[Any], str]] = {
             "mm": unit.text,
             "length": lambda value: f"{unit.text(value)} {unit.name}",
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
-            "feed": feed,
-            "feeds": lambda ends: " to ".join(dict.fromkeys(map(feed, ends))),
+            "feed": lambda value: f"{plain(value / unit.mm, 1)} {unit.name}/min",
             "xyz": lambda words: " ".join(
                 letter + (at if isinstance(at, str) else unit.text(at)) for letter, at in words
             ),

@@ -25,6 +25,7 @@ from g12.tools.path.track import Limits, Track, limits_of, track
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.units import plain
 from g12.tools.verify.model.cut import Cut, cuts_of
+from g12.tools.verify.model.finding import Finding, Kind
 from g12.tools.verify.model.spindles import Spindles, spindles_of
 
 WEAR = 0.05  # of the loaded tool's radius: D may differ by that
@@ -34,10 +35,6 @@ KEPT_TIPS = 16384  # moves
 A, B = 3, 4
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
-OWN_SUBS = {  # their moves are reported cuts
-    *("POLAR_POLYGON", "POLAR_SLOT", "POLAR_POCKET"),
-    *("FACE_HOLES", "SIDE_HOLES", "FACE_HOLE_AT", "CIRCLE_MILL"),
-}
 
 
 class State(NamedTuple):
@@ -94,7 +91,7 @@ class TracedProgram:
     @cached_property
     def spindles(self) -> list[Spindles] | None:
         """The spindles after each line, None where the lines do not tell."""
-        return None if self.calls_files else spindles_of(self.texts, self.ini)
+        return spindles_of(self.texts, self.ini)
 
     # ------------------------------------------------------------ the part
 
@@ -125,21 +122,18 @@ class TracedProgram:
     def _tool_beside(self) -> float:
         return self.ini.tool_beside
 
-    def part_of_cut(self, cut: Cut) -> Part:
-        return self.part_at(cut.surface, cut.at)
-
     def part_at(self, radius: float, index: int) -> Part:
         """Return the part as the tool of a move sees it: the face, or a cylinder of a radius.
 
         The spindle's axis is where X0 is, which may differ from tool to tool.
         """
-        near = self.cuts[max(bisect_right(self._starts, index) - 1, 0) :]
-        first = near[0] if near else None
-        if len(near) > 1 and first.end <= index and self._changed(first.at, index):
-            first = near[1]
+        cut, tool = self.cut_near(index), self.moves[index].tool
+        following = self.cuts[cut.index + 1 : cut.index + 2] if cut and cut.end <= index else []
+        if cut and following and self.moves[cut.at].tool != tool:
+            (cut,) = following
         if radius:
-            return self._surface(radius, first.zero[first.roles.height] if first else 0.0)
-        centre = first.zero[X] if first else 0.0
+            return self._surface(radius, cut.zero[cut.roles.height] if cut else 0.0)
+        centre = cut.zero[X] if cut else 0.0
         return Part(self.turning, self._tool_beside, centre if self.turning else 0.0)
 
     def _surface(self, radius: float, centre: float = 0.0) -> Surface:
@@ -147,9 +141,6 @@ class TracedProgram:
         if not own:
             return Surface(True, 0.0, centre, radius=radius)
         return Surface(True, 0.0, centre, own.roles, radius, own.sense)
-
-    def _changed(self, one: int, other: int) -> bool:
-        return self.moves[one].tool != self.moves[other].tool
 
     @cached_property
     def zero(self) -> tuple[float, float, float]:
@@ -166,22 +157,16 @@ class TracedProgram:
     def z0(self) -> float:
         return self.zero[2]
 
-    @property
-    def rotation(self) -> float:
-        """The angle of the program's X on a mill where it first cuts, degrees."""
-        return self.cuts[0].rotation if self.cuts else 0.0
-
     def words(
         self, index: int, point: Sequence[float], radius: float
     ) -> list[tuple[str, float | str]]:
         """Return a point of a move on a part in the program's words: X Y Z, on a lathe X C Z."""
-        cut = self.cut_near(index)
-        zero = cut.zero if cut else self.zero
+        cut, zero = self.cut_near(index), self.zero_at(index)
         if radius and self.is_round:
             return self._words_round(index, point, radius)
         if not self.turning:
             x, y, z = (at - own for at, own in zip(point, zero))
-            turn = math.radians(-(cut.rotation if cut else 0.0))
+            turn = math.radians(-(cut.frame.rotation if cut else 0.0))
             cos, sin = math.cos(turn), math.sin(turn)
             return [("X", x * cos - y * sin), ("Y", x * sin + y * cos), ("Z", z)]
         factor = 2.0 if self.diameters(index) else 1.0
@@ -261,6 +246,15 @@ class TracedProgram:
         points = part.points(positions)
         return points - (0.0, 0.0, part.centre) if radius else points
 
+    def tips(self, moves: Sequence[int], radius: float = 0.0) -> np.ndarray:
+        """Return the points (n, 3) of successive moves."""
+        lines = [self.tip(index, radius) for index in moves] or [np.empty((0, 3))]
+        return np.concatenate([lines[0], *(line[1:] for line in lines[1:])])
+
+    def fed(self, cut: Cut) -> list[int]:
+        """Return the moves of a cut that are no rapids."""
+        return [index for index in cut.moves if self.moves[index].kind != "rapid"]
+
     def cutter(self, index: int) -> float:
         """Return the radius of a move's cutter: the loaded tool's, D's if it differs by wear."""
         radius, own = self.trace.radius(index), self.cut_at(index)
@@ -277,6 +271,10 @@ class TracedProgram:
         last = bisect_right(self._starts, index) - 1
         return self.cuts[max(last, 0)] if self.cuts else None
 
+    def zero_at(self, index: int) -> tuple[float, float, float]:
+        cut = self.cut_near(index)
+        return cut.zero if cut else self.zero
+
     @cached_property
     def _starts(self) -> list[int]:
         return [cut.at for cut in self.cuts]
@@ -288,19 +286,30 @@ class TracedProgram:
             return (move.line if cut.is_section else cut.line), cut.file
         return (move.line if not self.calls_files else move.block), ""
 
+    def found(
+        self, of: Kind, index: int, place: Sequence[float] | None = None, **values
+    ) -> Finding:
+        """Return a finding in the line of a move."""
+        line, file = self.where(index)
+        return Finding(of, line, values, place, file)
+
     @cached_property
     def calls_files(self) -> bool:
         """Whether the program calls a sub in a file of its own."""
         text = "\n".join(self.texts)
-        called = set(SUB_CALL.findall(text)) - OWN_SUBS
-        return bool(called - set(SUB_BEGIN.findall(text)) or self.trace.files)
+        called = {*SUB_CALL.findall(text)} - {*SUB_BEGIN.findall(text)}
+        return bool(called or self.trace.files)
+
+    @cached_property
+    def has_subs(self) -> bool:
+        return self.calls_files or any(map(SUB_BEGIN.search, self.texts))
 
     @cached_property
     def sides(self) -> list[set[float] | None]:
         """On what the tool of each move may be: the radii of its cuts next to the move.
 
-        On a mill always {0}, unless it cuts round a part: then None where the tool is not above
-        the axis of rotation; of a lathe's tool without a cut None.
+        0 is the face. None: a tool without a cut, where the part turns, and on a mill where it is
+        not above the axis of a round part; a tool that never feeds is judged on the face.
         """
         if not self.turning and not self.is_round:
             return [{0.0}] * len(self.moves)
@@ -308,34 +317,38 @@ class TracedProgram:
         for cut in self.cuts:
             if cut.at < len(self.moves):
                 of_tool.setdefault(self.moves[cut.at].tool, []).append(cut)
-        on_faces = any(not cut.surface for cut in self.cuts)
-        feeding = {move.tool for move in self.moves if move.kind != "rapid"}  # they turn
-        found: list[set[float] | None] = []
-        turned = False  # before the next cut, also by rapid from there
+        feeding = {move.tool for move in self.moves if move.kind != "rapid"}
+        return [
+            self._side(index, of_tool.get(move.tool, [])) if move.tool in feeding else {0.0}
+            for index, move in enumerate(self.moves)
+        ]
+
+    @cached_property
+    def _turned(self) -> list[bool]:
+        """Whether the part turns at each move, before the next cut also by rapid from there."""
+        found, turned = [], False
         for index, move in enumerate(self.moves):
-            own, inside = of_tool.get(move.tool), self.cut_at(index)
-            turned = not inside and (self._is_turned(index) or (turned and move.kind == "rapid"))
-            if turned or (self.is_round and not inside and self._is_beside_axis(move)):
-                found.append(None)
-                continue
-            if not own or inside:
-                on_face = None if move.tool in feeding or not on_faces else {0.0}
-                found.append({inside.surface} if inside else on_face)
-                continue
-            after = bisect_right(own, index, key=lambda cut: cut.at)
-            found.append({cut.surface for cut in own[max(after - 1, 0) : after + 1]})
+            state = self.state(index)
+            turns = self.several_spindles and state.spindle in ("M3", "M4") and state.speed > 0
+            goes_on = turned and move.kind == "rapid"
+            turned = not self.cut_at(index) and (turns or goes_on)
+            found.append(turned)
         return found
+
+    def _side(self, index: int, cuts: Sequence[Cut]) -> set[float] | None:
+        inside = self.cut_at(index)
+        if inside:
+            return {inside.surface}
+        beside = self.is_round and self._is_beside_axis(self.moves[index])
+        after = bisect_right(cuts, index, key=lambda cut: cut.at)
+        near = {cut.surface for cut in cuts[max(after - 1, 0) : after + 1]}
+        return near if near and not self._turned[index] and not beside else None
 
     def _is_beside_axis(self, move: Move) -> bool:
         """Return whether the tool of a mill's move is not above the axis of rotation all along."""
         cut = next(each for each in self.cuts if each.surface)
         across = cut.roles.across
         return any(abs(at[across] - cut.zero[across]) > SIZE for at in (move.start, move.end))
-
-    def _is_turned(self, index: int) -> bool:
-        """Return whether the part turns at a move, where tools have a spindle of their own."""
-        state = self.state(index)
-        return self.several_spindles and state.spindle in ("M3", "M4") and bool(state.speed)
 
     @property
     def sideways(self) -> list[set[bool]]:
@@ -430,7 +443,3 @@ class TracedProgram:
 
 def straight_down(points: np.ndarray) -> bool:
     return bool(np.ptp(points[:, :2], axis=0).max() < 0.05)
-
-
-def joined(lines: Sequence[np.ndarray]) -> np.ndarray:
-    return np.concatenate([lines[0], *(line[1:] for line in lines[1:])])

@@ -9,18 +9,20 @@ of them.
 import math
 from collections.abc import Iterable
 from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 from shapely.geometry import box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.cut_report import HolesCut, PolygonCut
-from g12.tools.material.material import Material, Sweep, Touch
+from g12.cut_report import PolygonCut
+from g12.tools.material.material import Material
 from g12.tools.material.stock import Stock
-from g12.tools.path.part import disc, swept
+from g12.tools.path.part import FLAT, disc, swept
+from g12.tools.preview.moves import Move
 from g12.tools.verify.model.cut import NOTHING, Cut
-from g12.tools.verify.model.program import TracedProgram, joined
+from g12.tools.verify.model.program import TracedProgram
 
 MARGIN = 50.0  # mm around everything that moves
 FACE = 0.0
@@ -28,6 +30,7 @@ JUST_ABOVE = 0.02  # of a floor: where material is looked for
 NEAR = 0.5  # mm around a tool's tip
 ALONG = 1.0  # mm beside what is cut on a cylinder
 LONG = 2000.0  # mm: a bar
+FULL_TURN = 2 * math.pi - 1e-6
 
 
 class Solids:
@@ -70,76 +73,51 @@ class Solids:
     def _stock(self, side: float, stock: Stock | None) -> BaseGeometry:
         program = self.program
         if side:
-            low, high = self._along(side)
-            above = self.program.is_round or (not stock and self.above_face(side))
-            return box(0.0, low, 2 * math.pi * side, high if above else min(high, self.z0))
+            above = program.is_round or (not stock and self._above_face(side))
+            return box(0.0, -LONG, 2 * math.pi * side, LONG if above else self.z0)
         if program.is_round and all(cut.surface for cut in program.cuts):
             return NOTHING
         if program.turning:
             return disc((0.0, 0.0), self.bar) if self.bar else NOTHING
-        circles = [cut for cut in program.cuts if cut.is_circle and not cut.upright]
-        whole = self._everywhere(circles)
+        pockets = [(c.centre, c.circle.wall) for c in program.cuts if c.is_circle and not c.upright]
         if stock and stock.is_whole:
-            pockets = [(cut.centre, cut.wall) for cut in circles]
-            return stock.shape(np.array(program.zero), program.rotation, pockets)
-        bores = [disc(cut.centre, stock.bore / 2) for cut in circles] if stock else []
+            turned = program.cuts[0].frame.rotation if program.cuts else 0.0
+            return stock.shape(np.array(program.zero), turned, pockets)
+        ends = np.array([move.end[:2] for move in program.moves] or [(0.0, 0.0)])
+        wide = MARGIN + max((wall for _, wall in pockets), default=0.0)
+        bores = [disc(centre, stock.bore / 2) for centre, _ in pockets] if stock else []
+        whole = box(*(ends.min(axis=0) - wide), *(ends.max(axis=0) + wide))
         return whole.difference(unary_union([NOTHING, *bores]))
 
-    def _everywhere(self, circles: Iterable[Cut]) -> BaseGeometry:
-        moves, program = self.program.moves, self.program
-        ends = np.array([move.end[:2] for move in moves] or [(0.0, 0.0)])
-        reach = (program.cutter(cut.at) + cut.wall for cut in circles if cut.at < len(moves))
-        wide = MARGIN + max(reach, default=0.0)
-        return box(*(ends.min(axis=0) - wide), *(ends.max(axis=0) + wide))
-
-    def above_face(self, side: float) -> bool:
+    def _above_face(self, side: float) -> bool:
         """Return whether all that is cut on a cylinder is above Z0: that is not the part's face."""
-        low, _ = self._along(side)
-        own = [
-            self.program.cutter(c.at)
-            for c in self.program.cuts
-            if c.surface == side and c.at < c.end
-        ]
-        return bool(low + max(own, default=0.0) + ALONG >= self.z0)
-
-    def _along(self, side: float) -> tuple[float, float]:
-        """Return from which to which Z a cylinder is: of a bar all, else where it is cut."""
-        if self.stock and self.stock.diameter:
-            return -LONG, LONG
-        own = [cut for cut in self.program.cuts if cut.surface == side and cut.at < cut.end]
-        moves, tip = self.program.moves, self.program.tip
-        fed = (i for cut in own for i in cut.moves if moves[i].kind != "rapid")
-        ends = [(line[0][1], line[-1][1]) for line in (tip(i, side) for i in fed)]
-        wide = max((self.program.cutter(cut.at) for cut in own), default=0.0) + ALONG
-        return np.min(ends, initial=math.inf) - wide, np.max(ends, initial=-math.inf) + wide
+        program = self.program
+        cuts = [cut for cut in program.cuts if cut.surface == side and cut.at < cut.end]
+        own = [(program.tip(i, side)[:, 1].min(), i) for cut in cuts for i in program.fed(cut)]
+        low, first = min(own, default=(math.inf, 0))
+        return bool(low + program.cutter(first) + ALONG >= self.z0)
 
     @cached_property
     def unbored(self) -> BaseGeometry:
         """The stock on the face without its bores."""
         return self._stock(FACE, self.stock._replace(bore=0.0) if self.stock else None)
 
-    def shape(self, side: float) -> BaseGeometry:
-        return self._materials[side].shape
+    def of(self, side: float) -> Material:
+        return self._materials[side]
 
     # ------------------------------------------------------------ what is made
 
     def _cut_all(self) -> None:
-        """Remove what each stretch at feed sweeps."""
+        """Remove what each stretch at feed sweeps, full circles one by one."""
         program = self.program
         for rapid, run in program.runs():
             sides, radius = program.sides[run[0]], program.cutter(run[0])
             if rapid or not sides or radius <= 0:
                 continue
             side = max(sides)
-            for piece in pieces(joined([program.tip(i, side) for i in run])):
-                self._materials[side].cut(run[-1], piece, radius)
-
-    def made_by(self, cut: Cut) -> list[Sweep]:
-        return self._materials[cut.surface].sweeps_of(cut.moves)
-
-    def touched(self, points: np.ndarray, index: int, side: float) -> Touch | None:
-        """Return what a move (index) goes through of what stands before it."""
-        return self._materials[side].touched(points, self.program.cutter(index), index)
+            for _, own in groupby(run, lambda index: is_circle(program.moves[index]) and index):
+                for piece in pieces(program.tips(list(own), side)):
+                    self._materials[side].cut(run[-1], piece, radius)
 
     def standing(
         self, region: BaseGeometry, level: float, side: float, before: float = math.inf
@@ -147,16 +125,11 @@ class Solids:
         """Return what stands in a region just above a level."""
         return self._materials[side].standing(region, level + JUST_ABOVE, before)
 
-    def removes(self, cut: Cut) -> bool:
-        """Return whether a cut's feed moves remove anything."""
-        return self._materials[cut.surface].removes(cut.moves)
-
     def is_met(self, cut: Cut) -> bool:
         """Return whether a cut is over the stock or in it."""
-        material, tip = self._materials[cut.surface], self.program.tip
-        fed = (i for i in cut.moves if self.program.moves[i].kind != "rapid")
-        lines = (tip(i, cut.surface)[:, :2] for i in fed)
-        return any(material.is_under(line, self.program.cutter(cut.at)) for line in lines)
+        material, program = self._materials[cut.surface], self.program
+        lines = (program.tip(i, cut.surface)[:, :2] for i in program.fed(cut))
+        return any(material.is_under(line, program.cutter(cut.at)) for line in lines)
 
     def surrounds(self, tip: np.ndarray, index: int, side: float) -> bool:
         """Return whether a tool's tip is below the top, inside of what the stock was."""
@@ -181,6 +154,10 @@ class Solids:
         return unary_union([NOTHING, *areas]), first
 
 
+def is_circle(move: Move) -> bool:
+    return move.kind == "arc" and move.plane == FLAT and abs(move.sweep) > FULL_TURN
+
+
 def pieces(points: np.ndarray) -> list[np.ndarray]:
     """Return a path (n, 3) without its vertical portions, of which the lower ends count."""
     upright = np.abs(np.diff(points[:, :2], axis=0)).max(axis=1, initial=0.0) < 1e-6
@@ -196,15 +173,11 @@ def needed_bar(cut: Cut, cutter: float) -> float:
         return cut.plan.stock_diameter * cut.mm / 2
     if cut.is_shape:
         return max(map(abs, cut.goes.bounds))
-    if isinstance(cut.plan, HolesCut):
-        return max(map(abs, cut.places), default=0.0) + cutter + 1.0
-    if not cut.outlines:
-        return cut.deep_reach
-    found = 0.0
-    for outline in cut.outlines:
-        ends = np.abs(outline.points)
-        found = max(found, ends.max() if outline.is_closed else min(ends[0], ends[-1]))
-    return float(found)
+    if cut.places:
+        return max(map(abs, cut.places)) + cutter + 1.0
+    ends = [np.abs(outline.points) for outline in cut.outlines]
+    reach = (at.max() if o.is_closed else min(at[0], at[-1]) for o, at in zip(cut.outlines, ends))
+    return float(max(reach, default=cut.deep_reach))
 
 
 def reachable(region: BaseGeometry, radius: float) -> BaseGeometry:

@@ -57,15 +57,13 @@ def spindles_of(texts: Sequence[str], ini: Ini) -> list[Spindles] | None:
 
 
 def _after(state: Spindles, codes: set[str], text: str, on: set[str], off: set[str]) -> Spindles:
-    named, turning = SPINDLE.search(text), set(state.turning or ())
-    if "M6" in codes or ("M5" in codes and (not named or int(named[1]) == EVERY)):
-        turning.clear()
-    elif "M5" in codes:
-        turning.discard(int(named[1]))
+    named = SPINDLE.search(text)
+    own = {MAIN, LIVE} if named and int(named[1]) == EVERY else {int(named[1]) if named else MAIN}
+    turning = set(state.turning or ())
+    if "M5" in codes:
+        turning -= own if named else turning
     if codes & {"M3", "M4"}:
-        number = int(named[1]) if named else MAIN
-        turning |= {MAIN, LIVE} if number == EVERY else {number}
-    if codes & on:
-        turning.discard(MAIN)
+        turning |= own
+    turning -= turning if "M6" in codes else {MAIN} if codes & on else set()
     is_c = bool(codes & on) or (state.is_c and not codes & off)
     return Spindles(is_c, None if state.turning is None else frozenset(turning))

@@ -1,18 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Feeds that were most likely meant otherwise."""
 
-from g12.cut_report import HolesCut
-from g12.tools.path.part import C, X, Z
+from g12.tools.path.part import X, Z
 from g12.tools.verify.model.finding import WARNING
-from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.rules.table import Site, Values, rule
 
 MOST_PER_TURN, LEAST_PER_MINUTE = 3.0, 1.0  # mm
 CUT_DOWN = 0.98  # of the feed
-TURNS = 1e-6  # degrees or mm
 
 
-@rule("feed-per-turn", WARNING, "a feed or pitch of {feed:fine} a revolution: meant per minute?")
+@rule("feed-per-turn", WARNING, "{feed:fine} a revolution: meant per minute?")
 def feed_per_turn(site: Site) -> Values:
     most = max(_per_turn(site), default=0.0)
     return {"feed": most} if most > MOST_PER_TURN else None
@@ -20,16 +17,16 @@ def feed_per_turn(site: Site) -> Values:
 
 def _per_turn(site: Site) -> list[float]:
     """Return the feeds per revolution of a cut in mm, as moved or as planned."""
-    cut, report = site.own, site.own.reported.report
-    moved = [m.feed for m in site.program.moves[cut.at : cut.end] if m.feed_mode == "G95"]
-    if isinstance(cut.plan, HolesCut) and (cut.is_tap or report.per_revolution):
-        return [*moved, cut.plan.feed * cut.mm]
-    if not report.per_revolution or cut.is_circle:
-        return moved
-    if cut.is_section:
+    cut, per_turn = site.own, site.own.report.per_revolution
+    feeds = [m.feed for m in site.program.moves[cut.at : cut.end] if m.feed_mode == "G95"]
+    if cut.is_tap or (cut.places and per_turn):
+        feeds.append(cut.plan.feed * cut.mm)
+    elif cut.is_section and per_turn:
         speed = site.program.state(cut.at).speed
-        return [*moved, *(each.feed * cut.mm / speed for each in cut.elements if speed)]
-    return [*moved, cut.plan.passes.feed * cut.mm]
+        feeds += [each.feed * cut.mm / speed for each in cut.elements if speed]
+    elif hasattr(cut.plan, "passes") and per_turn:
+        feeds.append(cut.plan.passes.feed * cut.mm)
+    return feeds
 
 
 @rule("feed-per-minute", WARNING, "F is {feed:feed}: meant per revolution?", plain=True)
@@ -38,12 +35,7 @@ def feed_per_minute(site: Site) -> Values:
     return {"feed": least} if least < LEAST_PER_MINUTE else None
 
 
-@rule(
-    "feed-cut-down",
-    WARNING,
-    "a feed of {feed:feed}, the machine's limits allow {most:feed}",
-    plain=True,
-)
+@rule("feed-cut-down", WARNING, "{feed:feed}, the machine's limits allow {most:feed}", plain=True)
 def feed_cut_down(site: Site) -> Values:
     feeds = _planned_feeds(site)
     most = 60.0 * min([site.program.limits.path, *_speeds(site)])
@@ -66,20 +58,3 @@ def _planned_feeds(site: Site) -> list[float]:
     if site.cut and site.cut.is_tap:
         feeds.append(site.cut.plan.feed * site.cut.mm * site.program.state(site.at).speed)
     return feeds
-
-
-@rule(
-    "native-c",
-    WARNING,
-    "C turns together with X or Z outside of a section, where F counts for X and Z alone: the "
-    "part's edge sees {feed:feed}",
-    program=True,
-)
-def native_c(program: TracedProgram) -> Values:
-    for index, move in enumerate(program.moves if program.turning else ()):
-        change = [abs(end - start) > TURNS for start, end in zip(move.start, move.end)]
-        both = move.kind == "feed" and change[C] and (change[X] or change[Z])
-        if both and move.feed_mode != "G93" and not program.cut_at(index):
-            feed = program.path.part_feed(index)
-            return {"feed": feed, "at_line": program.where(index)[0]}
-    return None

@@ -3,68 +3,63 @@
 
 import os
 import re
+from collections.abc import Callable
+from itertools import pairwise
 
 from g12.machine_ini import remap_lines
+from g12.tools.path.part import C
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.spindles import MAIN, switching_codes
 from g12.tools.verify.rules.table import Site, Values, rule
 
 RUNS = ("M3", "M4")
-MAIN_SPINDLE, LIVE_TOOL = "the spindle", "the live tool"
 C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
 NO_MOVE = re.compile(r"G0*(10|92|52|7\.1)(?![.\d])")
 USER_CODE = re.compile(r"(M1\d\d) P")
 
 
-@rule(
-    "spindle",
-    FINDING,
-    "{which} does not turn: S and {code} are missing after the last M5 or M6",
-    plain=True,
-)
+@rule("spindle", FINDING, "{which} does not turn: {code} and S are missing", plain=True)
 def spindle_off(site: Site) -> Values:
-    """Look at the whole cut: an M5 in a section is found at the move after it."""
+    return _first_move(lambda index: _standing(index, site), site)
+
+
+def _first_move(wrong: Callable[[int], Values], site: Site) -> Values:
+    """Return the values of the first wrong move: an M5 in a section is found at the next one."""
     for index in site.moves:
-        which = _standing(index, site)
-        if which:
-            own = {"which": which, "code": "M3 $1" if which == LIVE_TOOL else "M3"}
-            return own if index == site.at else {**own, "at_line": site.program.where(index)[0]}
+        values = wrong(index)
+        if values is not None:
+            at_line = {"at_line": site.program.where(index)[0]} if index > site.at else {}
+            return {**values, **at_line}
     return None
 
 
-def _standing(index: int, site: Site) -> str:
-    """Return which spindle should turn at a move and does not, "" if none is known."""
+def _standing(index: int, site: Site) -> Values:
+    """Tell which spindle should turn at a move and does not, None if none is known."""
     program, state = site.program, site.program.state(index)
     if not program.several_spindles:
         turns = state.user_code or (state.spindle in RUNS and state.speed)
-        return "" if turns else MAIN_SPINDLE
+        return None if turns else {"which": "the spindle", "code": "M3"}
     if not program.spindles:
-        return ""
+        return None
     is_c, turning = program.spindles[program.moves[index].block]
-    if turning is None or (turning if is_c or site.cut else MAIN in turning):
-        return ""
-    return LIVE_TOOL if is_c or site.cut else MAIN_SPINDLE
+    of_live = is_c or site.cut
+    if turning is None or (turning if of_live else MAIN in turning):
+        return None
+    if of_live:
+        return {"which": "the live tool", "code": "M3 $1"}
+    return {"which": "the spindle", "code": "M3"}
 
 
-@rule(
-    "spindle-m4",
-    WARNING,
-    "the spindle turns counterclockwise: right-hand tools cut with M3",
-    plain=True,
-)
+@rule("spindle-m4", WARNING, "M4: right-hand tools cut with M3", plain=True)
 def spindle_reversed(site: Site) -> Values:
     if site.program.several_spindles or (site.cut and site.cut.is_tap):
         return None
-    for index in site.moves:
-        if site.program.state(index).spindle == "M4":
-            return {} if index == site.at else {"at_line": site.program.where(index)[0]}
-    return None
+    state = site.program.state
+    return _first_move(lambda index: {} if state(index).spindle == "M4" else None, site)
 
 
-@rule(
-    "spindle-unseen", NOT_JUDGED, "whether the tool turns: no preview shows its spindle", once=True
-)
+@rule("spindle-unseen", NOT_JUDGED, "whether the tool turns: no preview shows it", once=True)
 def spindle_unseen(site: Site) -> Values:
     if not site.program.several_spindles:
         return None
@@ -75,7 +70,7 @@ def spindle_unseen(site: Site) -> Values:
 @rule(
     "main-spindle",
     FINDING,
-    "M3 or M4 of the spindle that is C: it does not turn. {off} is missing before it, or $1",
+    "M3 or M4 of the spindle that is C: {off} or $1 is missing",
     program=True,
 )
 def main_spindle_turns(program: TracedProgram) -> Values:
@@ -86,55 +81,35 @@ def main_spindle_turns(program: TracedProgram) -> Values:
     return None
 
 
-@rule(
-    "m-code",
-    FINDING,
-    "{code} is no program in [RS274NGC] USER_M_PATH or [DISPLAY] PROGRAM_PREFIX: the machine stops",
-    program=True,
-)
+@rule("m-code", FINDING, "{code} is no program in USER_M_PATH or PROGRAM_PREFIX", program=True)
 def unknown_code(program: TracedProgram) -> Values:
-    remapped = {remap.code for remap in remap_lines(program.ini.all)}
+    ini = program.ini
+    folders = [ini.get("DISPLAY", "PROGRAM_PREFIX")]
+    folders += (ini.get("RS274NGC", "USER_M_PATH") or "").split(":")
+    places = [ini.directory / os.path.expanduser(folder) for folder in folders if folder]
+    remapped = {remap.code for remap in remap_lines(ini.all)}
     for event in program.trace.events:
         code = USER_CODE.match(event.text)
-        if (
-            code
-            and code[1] not in remapped
-            and not any(os.access(place / code[1], os.X_OK) for place in _folders(program))
-        ):
+        own = code and code[1] not in remapped and [place / code[1] for place in places]
+        if own and not any(os.access(file, os.X_OK) for file in own):
             return {"code": code[1], "at_line": event.line}
     return None
 
 
-def _folders(program: TracedProgram):
-    ini = program.ini
-    named = [
-        ini.get("DISPLAY", "PROGRAM_PREFIX"),
-        *(ini.get("RS274NGC", "USER_M_PATH") or "").split(":"),
-    ]
-    return [ini.directory / os.path.expanduser(name) for name in named if name]
-
-
-@rule(
-    "clamp-closed",
-    FINDING,
-    "C turns with its clamp closed: {opens} does not come before it",
-    program=True,
-)
+@rule("clamp-closed", FINDING, "C turns with its clamp closed: {opens} is missing", program=True)
 def clamp_closed(program: TracedProgram) -> Values:
     """Look for the first turn of C between a code that closes its clamp and the next code.
 
     Holes have their own codes. In sections and shapes a light drag may take the clamp's place.
     """
     settings = program.ini.settings
-    codes = [each for each in program.trace.events if each.text.startswith("clamp ")]
-    if not codes or not settings.c_clamp:
-        return None
-    closes, opens = (f"M{code}" for code in settings.c_clamp)
-    for event, end in zip(codes, [*(each.at for each in codes[1:]), len(program.moves)]):
-        for index in range(event.at, end) if event.text == f"clamp {closes}" else ():
+    codes = [(each.at, each.text) for each in program.trace.events if "clamp " in each.text]
+    closes, opens = (f"M{code}" for code in settings.c_clamp or ("", ""))
+    for (at, text), (end, _) in pairwise([*codes, (len(program.moves), "")]):
+        for index in range(at, end) if text == f"clamp {closes}" else ():
             move, cut = program.moves[index], program.cut_at(index)
             apart = cut and (cut.places or settings.c_clamp_shapes)
-            if not apart and move.start[5] != move.end[5]:
+            if not apart and move.start[C] != move.end[C]:
                 return {"opens": opens, "at_line": program.where(index)[0]}
     return None
 
@@ -142,7 +117,7 @@ def clamp_closed(program: TracedProgram) -> Values:
 @rule(
     "clamp-unseen",
     NOT_JUDGED,
-    "the clamp of C: no trace shows its codes; both have to be remapped to a sub (ngc=)",
+    "the clamp of C: its codes need ngc= in their REMAP lines",
     once=True,
 )
 def clamp_unseen(site: Site) -> Values:
@@ -151,12 +126,7 @@ def clamp_unseen(site: Site) -> Values:
     return {} if unseen and site.own.places else None
 
 
-@rule(
-    "c-axis",
-    FINDING,
-    "the spindle is no C axis here: {code} does not come before it",
-    program=True,
-)
+@rule("c-axis", FINDING, "the spindle is no C axis here: {code} is missing", program=True)
 def spindle_is_c(program: TracedProgram) -> Values:
     """Look in the program's lines: a preview does not show the codes that switch the spindle."""
     needs_c = {cut.line for cut in program.cuts if not cut.file}

@@ -3,7 +3,7 @@
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -17,18 +17,10 @@ from g12.tools.verify.rules.table import Values, rule
 ROTATIONS = range(5230, 5391, 20)  # parameters of a var file
 SHIFTS = ("axis_offset_x", "axis_offset_y", "axis_offset_z", "CC_axis_offset")
 SHIFT_CODE, ROTATES = re.compile(r"G(92|52)(?![.\d])"), re.compile(r"G10.*R")
-OUR_CODE = re.compile(r"\s*/?\s*(?:N\d+)?\s*(G0*1[23](?:\.[12])?|G0*7\.1)(?![.\d])")
-ENDS_SECTION = re.compile(r"G0*13\.1|G0*7\.1.*[ABC]\s*[-+]?0*\.?0*(?![.\d])")
-RETURN_LEVEL = re.compile(r"G(98|99)(?![.\d])")
-DRILLING = re.compile(r"G(73|74|8[1-9])(?![.\d])")
-MEANT = {"98": "G94", "99": "G95"}
 
 
 @rule(
-    "travel",
-    FINDING,
-    "the {axis} axis would go to {position:mm}, its limit is {limit:length}",
-    program=True,
+    "travel", FINDING, "{axis} would go to {position:mm}, its limit is {limit:length}", program=True
 )
 def beyond_travel(program: TracedProgram) -> Values:
     """Without a work offset only what is wider than the travel itself is known."""
@@ -75,10 +67,7 @@ def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
 
 
 @rule(
-    "g92-stale",
-    WARNING,
-    "G92 is in force when the program begins, by the var file: {shift} (G92.1 ends it)",
-    program=True,
+    "g92-stale", WARNING, "G92 is in force by the var file: {shift} (G92.1 ends it)", program=True
 )
 def stale_g92(program: TracedProgram) -> Values:
     shift = shift_at_start(program.parameters, program.ini)
@@ -86,10 +75,7 @@ def stale_g92(program: TracedProgram) -> Values:
 
 
 @rule(
-    "rotation-stale",
-    WARNING,
-    "a work offset is rotated by the var file: {turned:3}°",
-    program=True,
+    "rotation-stale", WARNING, "a work offset is rotated by the var file: {turned:3}°", program=True
 )
 def stale_rotation(program: TracedProgram) -> Values:
     turned = [program.parameters.get(number, 0.0) for number in ROTATIONS]
@@ -97,12 +83,7 @@ def stale_rotation(program: TracedProgram) -> Values:
     return {"turned": max(turned, key=abs)} if any(turned) and not own else None
 
 
-@rule(
-    "g92-left",
-    WARNING,
-    "G92 or G52 is in force at the program's end, also for the next one: G92.1 ends it",
-    program=True,
-)
+@rule("g92-left", WARNING, "G92 or G52 is left in force: G92.1 ends it", program=True)
 def left_g92(program: TracedProgram) -> Values:
     left = [program.trace.state.get(name, 0.0) for name in SHIFTS]
     left[3] = math.remainder(left[3], 360.0)
@@ -129,45 +110,25 @@ def _last_line(code: re.Pattern, program: TracedProgram) -> int:
 @rule(
     "block-delete",
     NOT_JUDGED,
-    "the program with block delete off: a preview skips what begins with /",
+    "the program with block delete off: lines with / are skipped",
     program=True,
 )
 def block_delete(program: TracedProgram) -> Values:
-    deleted = (n for n, text in enumerate(program.texts, 1) if text.lstrip().startswith("/"))
-    line = next(deleted, 0)
+    return _first_line(lambda text: text.lstrip().startswith("/"), program)
+
+
+@rule(
+    "tool-table-set",
+    NOT_JUDGED,
+    "cuts with the sizes of this G10 L1: a random tool changer",
+    program=True,
+)
+def table_set(program: TracedProgram) -> Values:
+    swaps = program.ini.swaps_pockets
+    return _first_line(lambda text: swaps and "G10" in text and "L1" in text, program)
+
+
+def _first_line(applies: Callable[[str], bool], program: TracedProgram) -> Values:
+    lines = (number for number, text in enumerate(program.texts, 1) if applies(text))
+    line = next(lines, 0)
     return {"at_line": line} if line else None
-
-
-@rule(
-    "never-run",
-    WARNING,
-    "{code} is never run: the program ends before it, jumps over it, or block delete skips it",
-    program=True,
-)
-def never_run(program: TracedProgram) -> Values:
-    ran = {cut.line for cut in program.cuts} | {move.block for move in program.moves}
-    for number, text in enumerate(program.texts, 1):
-        found = OUR_CODE.match(text)
-        if found and number not in ran and not ENDS_SECTION.search(text):
-            return {"code": found[1], "at_line": number}
-    return None
-
-
-@rule(
-    "return-level",
-    WARNING,
-    "{code} outside of a section is a return level of drilling cycles to LinuxCNC, no feed mode: "
-    "write {meant}",
-    program=True,
-)
-def return_level(program: TracedProgram) -> Values:
-    if not program.turning or any(map(DRILLING.search, program.texts)):
-        return None
-    inside = {
-        n for cut in program.cuts for n in range(cut.line, cut.last_line + 1) if cut.is_section
-    }
-    for number, text in enumerate(program.texts, 1):
-        found = RETURN_LEVEL.search(text)
-        if found and number not in inside:
-            return {"code": found[0], "meant": MEANT[found[1]], "at_line": number}
-    return None
