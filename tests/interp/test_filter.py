@@ -116,7 +116,7 @@ def test_a_filter_that_fails_is_named(reported, command, last):
 def test_a_picture_has_the_lines_of_the_users_file(reported, tmp_path):
     picture = tmp_path / "part.svg"
     code, out, _ = reported("plot", POCKET.replace("D02", "D03"), "-o", str(picture))
-    assert (code, "in red, line 8: T2 (⌀ " in out) == (0, True)
+    assert (code, "in red, line 8: T2 is ⌀ 0.5" in out) == (0, True)
     assert "finding in line 8" in picture.read_text()
     code, *_ = reported("plot", POCKET.replace("I.6", "I.1"), "-o", str(picture))
     assert (code, "refused in line 8: G12: I0.1 must" in picture.read_text()) == (2, True)

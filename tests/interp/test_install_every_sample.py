@@ -68,6 +68,7 @@ def in_and_out(path, names):
 REFUSED = {  # a single feature that a machine may not take: the kinds of findings
     "spindle-c": {"pins", "spindle-c"},
     "polar-kinematics": {"kinematics"},
+    "cylinder": {"cylinder"},  # A and B: which of them turns the part is asked
     "forms": {"forms"},
     "cycles-page": {"cycles-page"},
 }

@@ -331,9 +331,7 @@ def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
     program.write_text("M2\n")
     assert install.main([str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
     wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
-    assert capsys.readouterr().err == (
-        f"g12 install: {wrong}; cure: write drive-pid.command, if that is meant\n"
-    )
+    assert capsys.readouterr().err == (f"g12 install: {wrong}; cure: correct its name\n")
     assert ini.read_bytes() == before
     for line, says in (
         ("HALCMD = unlinkp drive-pid.comand", "HAL: ERROR: pin 'drive-pid.comand' not found"),
