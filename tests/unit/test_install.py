@@ -2,6 +2,7 @@
 """What `install` writes and `uninstall` takes out; without LinuxCNC."""
 
 import re
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from hypothesis import strategies as st
 
 from g12.tools import progress
 from g12.tools.commands import install, uninstall
-from g12.tools.install import package_copy
+from g12.tools.install import installation, package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import Refused
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniText
@@ -413,3 +414,33 @@ def test_uninstall_shows_first_and_is_done_to_its_end_though_nobody_reads(
         uninstall.main([str(ini)])
     assert content_of(tmp_path).keys() == {"mill.ini", "mill.tbl"}
     assert list(map(str, planned(ini, "haas").text.changes())) == [str(ini)]
+
+
+def test_uninstall_takes_the_codes_before_what_they_need(tmp_path, monkeypatch):
+    """Killed between two files, LinuxCNC still starts: codes without their Python would stop it."""
+    rs274ngc = "[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+    text = MILL.replace(rs274ngc, "[PYTHON]\nPATH_APPEND = own\n") + "#INCLUDE codes.inc\n"
+    ini = write_config(tmp_path, text, codes_inc=f"{rs274ngc}[EMCMOT]\n")
+    put_in(ini, "haas")
+    assert "REMAP" in (tmp_path / "codes.inc").read_text()
+    written, write = [], installation.write
+
+    def noted(path, content):
+        written.append(path.name)
+        write(path, content)
+
+    monkeypatch.setattr(installation, "write", noted)
+    take_out(ini)
+    assert written[0] == "codes.inc"
+    assert "mill.ini" in written
+
+
+def test_a_link_in_place_of_a_folder_is_kept_aside(tmp_path):
+    ini = write_config(tmp_path)
+    put_in(ini, "haas")
+    (tmp_path / "my-ngc").mkdir()
+    shutil.rmtree(tmp_path / "g12" / "ngc")
+    (tmp_path / "g12" / "ngc").symlink_to(tmp_path / "my-ngc")
+    put_in(ini, "haas")
+    assert (tmp_path / "g12" / "ngc.edited").is_symlink()
+    assert (tmp_path / "g12" / "ngc" / "g12_haas.ngc").is_file()

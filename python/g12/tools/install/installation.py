@@ -199,7 +199,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     if dry_run:
         yield "dry run: nothing was written"
         return
-    for path, content in changes.items():
+    for path, content in reversed(changes.items()):  # the codes first: they need the rest
         write(path, content)
     for path in text.files:
         drop_backups(path, path.read_bytes())

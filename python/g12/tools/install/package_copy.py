@@ -131,6 +131,8 @@ def build(new: Path, copy: Path, files: Mapping[str, bytes]) -> list[str]:
         (new / name).write_bytes(content)
     names = dict(users_files(copy, digests(files)))
     for name, target in names.items():
+        if (new / target).is_dir():  # the user's link stands in place of a folder
+            names[name] = target = aside(copy, name)
         (new / target).parent.mkdir(parents=True, exist_ok=True)
         (new / target).unlink(missing_ok=True)
         shutil.copy2(copy / name, new / target, follow_symlinks=False)
@@ -148,8 +150,11 @@ def users_files(copy: Path, new: Mapping[str, str]) -> Iterator[tuple[str, str]]
     for name in files_below(copy):
         versions = old.get(name), new.get(name)
         if name != MANIFEST and digest_of(copy / name) not in versions:
-            aside = free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
-            yield name, name if versions[0] == versions[1] else aside
+            yield name, name if versions[0] == versions[1] else aside(copy, name)
+
+
+def aside(copy: Path, name: str) -> str:
+    return free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
 
 
 def files_below(folder: Path) -> list[str]:
