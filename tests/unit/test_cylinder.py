@@ -251,6 +251,10 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
     assert planning.height_acceleration == 1100.0
 
 
+def test_a_spindle_that_is_not_c_does_not_matter_round_a_mills_part():
+    assert on_mill("A", missing_code="M133").planning
+
+
 @pytest.mark.parametrize(
     ("letter", "found", "rule"),
     [

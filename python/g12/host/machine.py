@@ -114,7 +114,7 @@ class RunningMachine:
     @functools.cached_property
     def axes(self) -> dict[str, Axis]:
         """The limits of the axes; raises Refusal for a value that no axis can have."""
-        return axes_of(self._ini.find, self.coordinates)
+        return axes_of(self._ini.find, self.coordinates | set("XZC"))
 
     @functools.cached_property
     def face(self) -> FaceAxes | None:

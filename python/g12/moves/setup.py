@@ -114,7 +114,10 @@ def check_entry(
             f"needs a machine with an {', '.join(others)} and a {last} axis",
         ),
         (start.alone, "must be alone in its block"),
-        (not start.missing_code, f"needs the spindle as C: {start.missing_code} first"),
+        (
+            "C" not in needed or not start.missing_code,
+            f"needs the spindle as C: {start.missing_code} first",
+        ),
         (not state.compensated, "needs G40: compensation is switched on inside"),
         (not state.inverse_time, "needs G94 or G95, not G93"),
         (not state.surface_speed, "needs G97: with G96 the speed would change with X"),
