@@ -39,8 +39,8 @@ def test_any_valid_block_cuts_what_its_words_say(metric, helical, kind, seed):
 WRONG = {  # words that replace those of a good block, and a word of the rule
     "G13.5 Z-5 R0 I4 P.2 D1": {
         "I0": "greater", "I-4": "greater", "I2.9": "greater", "P0": "greater", "P-1": "greater",
-        "P": "missing", "P3": "ENTRY_ANGLE", "Z": "missing", "Z0": "below", "Z4": "below",
-        "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
+        "P": "missing", "P3": "ENTRY_ANGLE", "P5.1": "longer", "Z": "missing", "Z0": "below",
+        "Z4": "below", "R6": "retract", "K-1": "least", "K4": "less", "K9": "less", "Q0": "greater",
         "Q-1": "greater", "D99": "table", "E1": "not a word", "H1": "not a word",
         "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter", "D0": "no diameter",
         "L99990": "P, Q and L make",
@@ -174,7 +174,7 @@ G0 X0 Z5
 M2
 """
 EDITS = [  # an edit of the program, and what verify says of it
-    ("G13.5 Z-12 R0 I5.188 P.3 Q2 D1\n", "", "rapid"),
+    ("G13.5 Z-12 R0 I5.188 P.3 Q2 D1\n", "", "H1 is missing"),
     ("T1 M6", "T2 M6", "the path is that of ⌀ 6"),
     ("Z-12 R0", "Z-5 R0", "rapid"),
     ("G13.7", "G0 Z-2\nG13.7", "rapid"),

@@ -32,6 +32,9 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     if stepover:  # the first helix leaves no core
         first = min(last, max(CLEARED * cutter.radius, opened + stepover - cutter.radius))
         steps = steps_between(first, last, stepover, words.context.rounding)
+    if pitch > hole.depth + words.context.rounding:
+        rule = f"is longer than the hole, {number(hole.depth)} from its top to Z: it is no feed"
+        raise words.refuse_word("P", pitch, rule)
     check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
     if opened < 2 * cutter.radius:
         check_slope(words, pitch, first, steepest)

@@ -10,7 +10,7 @@ from shapely.ops import unary_union
 from g12.tools.path.part import disc
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.program import TracedProgram, dialect_of
 from g12.tools.verify.model.solid import Solids
 from g12.tools.verify.remains import LEAST_GONE
 
@@ -57,7 +57,7 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     high = sum(level > top - LEVEL for level in levels)
     if high and lowest < top - LEVEL:
         yield cut.found(AIR_LEVELS, place, n=high, of=len(levels))
-    if cut.levels:
+    if cut.levels and dialect_of(cut.code, solids.program.ini) != "bore":  # cuts by its helices
         yield from _deep(cut, solids)
     if solids.bottom - cut.floor > THROUGH:
         yield cut.found(BELOW, place, below=solids.bottom - cut.floor)

@@ -91,8 +91,8 @@ def between_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     for before, after in zip(circles, circles[1:]):
         for index in range(before.end, after.at):
             points = program.tip(index, FACE)
-            is_rapid = program.moves[index].kind == "rapid"
-            if is_rapid or straight_down(points) or points[:, 2].min() > solids.top(FACE) - 0.01:
+            is_other = program.cut_at(index) or program.moves[index].kind == "rapid"
+            if is_other or straight_down(points) or points[:, 2].min() > solids.top(FACE) - 0.01:
                 continue
             touch = solids.of(FACE).touched(points, program.cutter(index), index)
             if touch:

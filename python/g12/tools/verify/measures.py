@@ -6,13 +6,12 @@ mm, mm², mm/min, degrees, seconds; None is not known. Positions are the program
 
 import cmath
 import math
-import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
 from g12.cut_report import CutElement, HolesCut
 from g12.geometry.curve import Arc, Curve, Line
-from g12.machine_ini import AXIS_LETTERS, remap_lines
+from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 from g12.tools.path.lathe_axes import lathe_axes
 from g12.tools.path.part import C, X
@@ -22,7 +21,7 @@ from g12.tools.path.track import track
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.deviation import allowed_off, circles_of, deviation_of, off_circles
-from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.program import TracedProgram, dialect_of
 
 SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "on the contour"}
 THIRD = {"G17": 2, "G18": 1, "G19": 0}
@@ -86,15 +85,6 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "lowest": min(levels, default=0.0) * cut.mm,
         "off_circles": off_circles(cut, program).size,
     }
-
-
-def dialect_of(code: str, ini: Ini) -> str | None:
-    """Return the name of the cycles that a machine's code calls."""
-    for remap in remap_lines(ini.all):
-        if remap.code == code:
-            found = re.search(r"prolog=g1[23]_(\w+)", str(remap))
-            return found[1] if found else None
-    return None
 
 
 def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:

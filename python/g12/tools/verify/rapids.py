@@ -5,6 +5,7 @@ from collections.abc import Container, Iterator
 
 import numpy as np
 
+from g12.cut_report import ThreadCut
 from g12.tools.material.material import ALLOWED, Touch
 from g12.tools.path.part import C, X, Y, Z
 from g12.tools.preview.moves import Move
@@ -26,6 +27,7 @@ OTHER_TOOL = kind(
 OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed outside of a section")
 ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
 BORED = "; was it bored before? (--stock 'bore DIAMETER')"
+THREAD = "; a thread outside? H1 is missing"
 
 
 def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -99,15 +101,16 @@ def _rapid(
 ) -> Finding:
     path = touch.points if len(touch.points) else points[-1:]
     down = straight_down(points)
-    after = next((cut for cut in program.cuts if cut.at > index), None)
-    is_bored = down and after and after.is_circle and not program.turning
+    after = program.cut_at(index) or next((cut for cut in program.cuts if cut.at > index), None)
+    is_circle = down and after and after.is_circle and not program.turning
+    is_inside = is_circle and isinstance(after.plan, ThreadCut) and not after.plan.outside
     return program.found(
         *(RAPID, index, path[0]),
         how="straight down into" if down else "through",
         area=touch.area,
         at=program.words(index, path[0], side),
         to=[] if down else program.words(index, path[-1], side),
-        hint=BORED if is_bored else "",
+        hint=BORED * bool(is_circle) + THREAD * bool(is_inside),
         path=path,
         surface=side,
     )

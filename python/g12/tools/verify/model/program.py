@@ -14,7 +14,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from g12.lengths import MM_PER_INCH
-from g12.machine_ini import AXIS_LETTERS
+from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.nearest import shares_along
@@ -44,6 +44,15 @@ class State(NamedTuple):
     speed: float = 0.0
     user_code: bool = False  # an M1xx came, which may turn a spindle
     length_code: str = ""  # G43, G43.1, G43.2, G49; tool: none since M6
+
+
+def dialect_of(code: str, ini: Ini) -> str | None:
+    """Return the name of the cycles that a machine's code calls."""
+    for remap in remap_lines(ini.all):
+        if remap.code == code:
+            found = re.search(r"prolog=g1[23]_(\w+)", str(remap))
+            return found[1] if found else None
+    return None
 
 
 @dataclass(frozen=True)
