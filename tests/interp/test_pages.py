@@ -174,6 +174,7 @@ MESSAGES = {
         "G13.6 Z-12 R0 I5 P1.5 E6.25 D3",
         "G12.6 Z-12 R0 I20 P1 K.1 H1 D3",
         "G13.6 Z-12 R0 I5 P1.5 H2 D3",
+        "G13.6 Z-12 R0 I3.8 P1 E.0625 D3",
     ),
     "ngc/frame.md": (
         HOLE,
@@ -185,6 +186,7 @@ MESSAGES = {
         "G13.7 Z-4 I40 J30 R5 H1 Q4 D3",
         "G13.7 Z-4 I40 J30 R5 E4 D3",
         "G13.7 Z-4 I40 J30 R5 Q4.6 D3",
+        "G13.7 Z-4 I40 J30 R5 K-2 D3",
     ),
     "ngc/polar.md": (
         LATHE,
