@@ -150,6 +150,9 @@ def test_the_threads_of_the_page_are_computed():
             assert float(per_inch) == threads
             small = outside - (0.05 * outside + 1.1) / threads  # pitch diameter at the pipe's end
             at_face, height = small + hand_tight / 16, 0.8 / threads
+            depths = [shown.pop(3), shown.pop()]  # with the wrench's turns; the effective thread
+            effective = (0.8 * outside + 6.8) / threads
+            assert depths == pytest.approx([hand_tight + 3 / threads, effective], abs=6e-4)
             due = [1 / threads, (at_face + height) / 2, (at_face - height) / 2,
                    (small + height) / 2, (small - height) / 2]  # fmt: skip
         else:
