@@ -4,12 +4,12 @@
 import cmath
 import math
 
+import numpy as np
 import pytest
 
 from g12.geometry.curve import Arc, Line
 from g12.tools.machine.ini import read_machine_ini
-from g12.tools.path.lathe_axes import Rates, lathe_axes
-from g12.tools.path.section_times import Leg, section_times
+from g12.tools.path.section_times import Leg, axis_derivatives, lathe_axes, section_times
 from support.sim_machines import SIM
 
 FLAT, CUTTER = 13.5, 6.0  # mm, radii
@@ -90,9 +90,23 @@ def test_slow_is_the_same_whoever_plans_it():
     assert segments == pytest.approx(least, rel=0.01) and face == segments
 
 
-def test_c_may_pass_its_limit_by_half_the_acceleration_of_a_period():
-    axes = lathe_axes(read_machine_ini(SIM / f"{LATHE}.ini"))
-    assert axes._replace(c=Rates(90.0, 1200.0)).most_c_speed == pytest.approx(90.6)
+@pytest.mark.parametrize("bend", [1 / 30, 0.0])
+def test_the_derivatives_are_those_of_radius_and_angle(bend):
+    """Against finite differences, on an arc round (10, 0) and on a line."""
+    step = 1e-3
+
+    def path(at):
+        return 10 + 30 * np.exp(1j * at / 30) if bend else 7 + at * cmath.rect(1, 0.4)
+
+    at = np.linspace(-20.0, 30.0, 40)
+    before, points, after = (path(at + shift) for shift in (-step, 0.0, step))
+    polar = (after - before) / (2 * step) * points.conj() / abs(points)
+    found = axis_derivatives(abs(points), polar.real, polar.imag, bend)
+    places = [abs(before), abs(points), abs(after)]
+    angles = list(np.unwrap(np.angle([before, points, after]), axis=0))
+    for (first, second), (one, two, three) in zip(found, (places, angles)):
+        assert (three - one) / (2 * step) == pytest.approx(first, abs=1e-6)
+        assert (three - 2 * two + one) / step**2 == pytest.approx(second, abs=1e-5)
 
 
 def ends(turn):

@@ -33,7 +33,7 @@ from g12.request import (
 from g12.state import XY
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
-POCKET, WALL_INSIDE, WALL_OUTSIDE = 0, 1, 2  # H
+POCKET, WALL_OUTSIDE = 0, 2  # H; 1 is the wall inside
 WIDEST = 0.7  # stepover in tool diameters: more leaves material in the corners between the rings
 
 

@@ -173,8 +173,8 @@ READING_WORDS = (  # codes that read words of a cycle's block
 # M codes that neither read words of the block nor change the tool
 HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 
-# every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
 FORM = "form_"  # begins the name of a form's sub
+# every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
 CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
 
 

@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from g12.geometry.curve import Curve
-from g12.tools.path.face_follow import axis_derivatives
-from g12.tools.path.lathe_axes import LatheAxes
+from g12.machine_ini import face_of
+from g12.tools.machine.ini import Ini
 from g12.tools.path.least_time import least_seconds, seconds_at
 
 STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
@@ -32,6 +32,44 @@ TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried val
 PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
 TINY = 1e-9
+POLE_RADIUS = 1e-6  # mm: there C has no angle
+Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
+
+
+class Rates(NamedTuple):
+    """The greatest speed and acceleration of an axis."""
+
+    speed: float
+    acceleration: float
+
+
+class LatheAxes(NamedTuple):
+    """The limits of the slide in mm, and of C in degrees.
+
+    ``face`` are the accelerations of X and of Y on the face of the kinematics, empty without them;
+    ``tolerance`` is POLAR_TOLERANCE.
+    """
+
+    slide: Rates
+    c: Rates
+    face: tuple[float, ...] = ()
+    tolerance: float = 0.0
+
+    @property
+    def c_radians(self) -> Rates:
+        return Rates(*map(math.radians, self.c))
+
+
+def lathe_axes(ini: Ini) -> LatheAxes:
+    """Return the limits in an INI; the slide's are those of its joint with kinematics."""
+    axes, face, mm = ini.axis_limits, face_of(ini.get), ini.mm
+    slide, c = (face.slide if face else axes["X"]), axes["C"]
+    return LatheAxes(
+        Rates(slide.velocity * mm, slide.acceleration * mm),
+        Rates(c.velocity, c.acceleration),
+        (face.x.acceleration * mm, face.y.acceleration * mm) if face else (),
+        ini.settings.tolerance(mm) * mm,
+    )
 
 
 class Leg(NamedTuple):
@@ -191,3 +229,17 @@ def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> floa
             squares[at] = min(squares[at], reached)
             reached = squares[at] + gains[at]
     return seconds_at(squares, stretch.step)
+
+
+def axis_derivatives(
+    radius: np.ndarray, along: np.ndarray, around: np.ndarray, bend: np.ndarray | float
+) -> tuple[Derivatives, Derivatives]:
+    """Return the derivatives of the slide's position and C's angle on a path of curvature ``bend``.
+
+    ``along`` and ``around`` are its direction's components along the radius and around the pole.
+    At the pole they are nan.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        radius = np.where(radius < POLE_RADIUS, np.nan, radius)
+        turn = around / radius
+        return (along, around * (turn - bend)), (turn, along * (bend - 2.0 * turn) / radius)

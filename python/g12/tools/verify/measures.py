@@ -13,9 +13,8 @@ from g12.cut_report import CutElement, HolesCut
 from g12.geometry.curve import Arc, Curve, Line
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
-from g12.tools.path.lathe_axes import lathe_axes
 from g12.tools.path.part import C, X
-from g12.tools.path.section_times import Leg, SectionTimes, section_times
+from g12.tools.path.section_times import Leg, SectionTimes, lathe_axes, section_times
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.verify.judge import Judgement

@@ -13,7 +13,6 @@ from g12.tools.units import MM, Unit, counted_as, plain
 
 FINDING, WARNING, NOT_JUDGED = "finding", "warning", "not judged"
 SEVERITIES = (FINDING, WARNING, NOT_JUDGED)
-WHOLE_PROGRAM = 0  # in place of a line
 MOST_LINES = 10  # that a report names
 
 
