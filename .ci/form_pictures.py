@@ -427,51 +427,45 @@ def polar(plan: Axes, side: Axes) -> None:
     side.text(-0.28, 0.62, "turns as C", **WORDS)
 
 
-def cylinder(plan: Axes, side: Axes) -> None:
-    """Draw the words of a section on a turned surface, unrolled and seen from outside."""
+def unrolled(plan: Axes, side: Axes, letters: str, centre: str) -> None:
+    """Draw a section on a turned surface; ``letters`` are right, upwards, across."""
+    right, up, height = letters.split()
     box(plan, -0.9, -0.8, 1.9, 1.75, STOCK)
-    axes_of(plan, "C", "Z")
+    axes_of(plan, right, up)
     tool(plan, 0.16, (0.6, 0.55))
-    corner = (-0.5, 0.1)
-    arc = [at_from(corner, 0.3, angle) for angle in range(0, 91, 10)]
-    plan.plot(*zip((-0.2, -0.5), *arc, (-0.8, 0.4)), color=INK, lw=1.2)
-    measure(plan, corner, (-0.5, 0.4), "K", 0.45)
-    measure(plan, corner, (-0.2, 0.1), "J")
-    measure(plan, corner, at_from(corner, 0.3, 40), "R", 0.85)
-    measure(plan, (-0.9, -0.95), (1.0, -0.95), "")
-    plan.text(0.05, -1.14, "360° of C: π · diameter long", **NOTE)
-    plan.text(0, 1.15, "the surface unrolled, seen from outside", **NOTE)
+    middle, radius = (-0.6, -0.1), 0.5
+    arc = [at_from(middle, radius, angle) for angle in range(0, 61, 10)]
+    start = arc[-1]
+    plan.plot(*zip((arc[0][0], -0.6), *arc, (-0.85, start[1])), color=INK, lw=1.2)
+    circle(plan, 0.03, centre=start, fill=INK)
+    measure(plan, start, (start[0], middle[1]), centre[1], 0.45)
+    measure(plan, (start[0], middle[1]), middle, centre[0])
+    measure(plan, middle, at_from(middle, radius, 20), "R", 0.8)
     circle(side, 0.5, centre=(0.1, -0.2), fill=STOCK)
     box(side, 0.02, 0.15, 0.16, 0.9, TOOL)
     measure(side, (0.1, -0.2), at_from((0.1, -0.2), 0.5, 240), "")
-    side.text(0.14, -0.85, "C of G7.1: radius", **WORDS)
     measure(side, (-0.3, -0.2), (-0.3, 0.15), "")
     side.plot((-0.42, 0.1), (0.15, 0.15), color=WORD, lw=0.5, ls=(0, (2, 2)))
-    side.text(-0.5, 0.25, "X", **WORDS)
+    side.text(-0.5, 0.25, height, **WORDS)
+
+
+def cylinder(plan: Axes, side: Axes) -> None:
+    """Draw the words of a section on a turned surface, unrolled and seen from outside."""
+    unrolled(plan, side, "C Z X", "JK")
+    measure(plan, (-0.9, -0.95), (1.0, -0.95), "")
+    plan.text(0.05, -1.14, "360° of C: π · diameter long", **NOTE)
+    plan.text(0, 1.15, "the surface unrolled, seen from outside", **NOTE)
+    side.text(0.14, -0.85, "C of G7.1: radius", **WORDS)
 
 
 def round_part(plan: Axes, side: Axes) -> None:
     """Draw the words of a section round a mill's part, unrolled and seen from the tool."""
-    box(plan, -0.9, -0.8, 1.9, 1.75, STOCK)
-    axes_of(plan, "X", "A−")
-    tool(plan, 0.16, (0.6, 0.55))
-    corner = (-0.5, 0.1)
-    arc = [at_from(corner, 0.3, angle) for angle in range(0, 91, 10)]
-    plan.plot(*zip((-0.2, -0.5), *arc, (-0.8, 0.4)), color=INK, lw=1.2)
-    measure(plan, corner, (-0.5, 0.4), "J", 0.45)
-    measure(plan, corner, (-0.2, 0.1), "I")
-    measure(plan, corner, at_from(corner, 0.3, 40), "R", 0.85)
+    unrolled(plan, side, "X A− Z", "IJ")
     measure(plan, (-1.03, -0.8), (-1.03, 0.95), "")
     plan.text(0.05, -1.0, "360° of A: π · diameter long", **NOTE)
     plan.text(0, 1.15, "the surface unrolled, seen from the tool", **NOTE)
-    circle(side, 0.5, centre=(0.1, -0.2), fill=STOCK)
-    box(side, 0.02, 0.15, 0.16, 0.9, TOOL)
-    measure(side, (0.1, -0.2), at_from((0.1, -0.2), 0.5, 240), "")
     side.text(0.14, -0.85, "A of G7.1: radius", **WORDS)
     side.text(0.14, -1.1, "seen from X+, Y to the right", **NOTE)
-    measure(side, (-0.3, -0.2), (-0.3, 0.15), "")
-    side.plot((-0.42, 0.1), (0.15, 0.15), color=WORD, lw=0.5, ls=(0, (2, 2)))
-    side.text(-0.5, 0.25, "Z", **WORDS)
     turns = [at_from((0.1, -0.2), 0.6, angle) for angle in range(65, 14, -5)]
     side.plot(*zip(*turns), color=WORD, lw=0.8)
     side.annotate("", turns[-1], turns[-2], arrowprops={**ARROW, "arrowstyle": "-|>"})
