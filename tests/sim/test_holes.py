@@ -98,6 +98,14 @@ def test_a_tap_follows_the_spindle(lathe, kind, code):
     assert speed == pytest.approx(300 / 60, rel=0.02)
 
 
+def phase_of(status):
+    """Return where a cycle on the face is: low in a hole, turning C to the next one, or neither."""
+    if status.actual[Z] < 1.9:
+        return "low"
+    from_a_hole = (status.actual[C] - 20 + 60) % 120 - 60
+    return "turning" if abs(from_a_hole) > 1 else None
+
+
 @in_segments
 def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
     lathe.reset()
@@ -107,10 +115,9 @@ def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
     seen = set()
     while not (status := lathe.stat()).idle or not seen:
         closed = bool(lathe.get(CLOSED))
-        if status.actual[Z] < 1.9:
-            seen.add(("low", closed))
-        elif abs(status.actual[C] - round((status.actual[C] - 20) / 120) * 120 - 20) > 1:
-            seen.add(("turning", closed))
+        phase = phase_of(status)
+        if phase and phase == phase_of(lathe.stat()):
+            seen.add((phase, closed))
     assert seen == {("low", True), ("turning", False)}
     assert not lathe.get(CLOSED)
 
