@@ -246,16 +246,6 @@ def test_where_nothing_may_be_written_nothing_is(tmp_path):
 # The package.
 
 
-def test_a_package_that_the_users_own_lines_load_is_used_and_stays(tmp_path):
-    ini = write_config(tmp_path, MILL + OWN_PYTHON)
-    handlers = dict.fromkeys([*features.functions_of("haas"), features.ABORT_SUB], "g12.remap")
-    with restored(ini):
-        put_in(ini, "haas", remap=handlers, package=tmp_path / "tools" / "python" / "g12")
-        assert "SUBROUTINE_PATH = tools/ngc" in ini.read_text()
-        assert "TOPLEVEL = python/toplevel.py" in ini.read_text()
-        assert not (tmp_path / "g12").exists()
-
-
 def test_the_copy_is_checked_by_sha256sum(tmp_path, ini):
     copy = tmp_path / "g12"
     subprocess.run(["sha256sum", "--check", "--strict", "MANIFEST"], cwd=copy, check=True)

@@ -12,7 +12,6 @@ from g12.tools.errors import UsageError
 from g12.tools.install.config import features
 from g12.tools.install.config.filters import filter_findings, installed_programs
 from g12.tools.install.config.findings import Refused
-from g12.tools.install.config.screen import screen_findings
 from g12.tools.install.installation import question_of
 from g12.tools.install.lathe import kinematics
 from g12.tools.install.lathe.kinematics import kinematics_findings
@@ -116,7 +115,6 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, names
         put_in(ini, *names)
         text = ini.read_text()
         assert text.count(lines) == 1 and text.count("[DISPLAY]") == 1
-        assert list(screen_findings(config_of(ini))) == []
         assert put_in(ini, names[-1]) == []
 
 
@@ -126,14 +124,15 @@ def test_of_two_rotary_axes_the_screens_is_asked_for(tmp_path):
 
 
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
+    own = "USER_COMMAND_FILE = own.py\nGEOMETRY = XZ\n"
+    lathe = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", own), "lathe.ini")
+    put_in(lathe, "polar")
+    assert lathe.read_text().count("USER_COMMAND") == lathe.read_text().count("GEOMETRY") == 1
     own = "TKPKG = Ngcgui 1.0\nNGCGUI_SUBFILE = simp.ngc\nNGCGUI_SUBFILE = form_haas_mm.ngc\n"
     ini = write_config(tmp_path, with_lines(AXIS, "DISPLAY", own))
     put_in(ini, "haas", "forms")
     text = ini.read_text()
     assert text.count("TKPKG") == text.count("form_haas_mm") == 1
-    geometry = with_lines(ON_LATHE, "DISPLAY", "GEOMETRY = XZ\n")
-    put_in(write_config(tmp_path, geometry, "lathe.ini"), "polar")
-    assert (tmp_path / "lathe.ini").read_text().count("GEOMETRY") == 1
 
 
 @pytest.mark.parametrize("screen", [ON_LATHE.replace("LATHE = 1\n", ""), QTVCP + LATHE])
@@ -141,16 +140,6 @@ def test_other_screens_show_the_face_already(tmp_path, screen):
     ini = write_config(tmp_path, screen)
     put_in(ini, "polar")
     assert "face" not in ini.read_text()
-
-
-def test_a_file_of_the_users_own_in_the_place_of_the_face_is_named(tmp_path):
-    ini = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", "USER_COMMAND_FILE = own.py\n"),
-                       own_py="print()\n")  # fmt: skip
-    put_in(ini, "polar")
-    (said,) = screen_findings(config_of(ini))
-    assert "USER_COMMAND_FILE = own.py is yours and stays" in said.text
-    (tmp_path / "own.py").write_text("# axis_face.py\n")
-    assert list(screen_findings(config_of(ini))) == []
 
 
 @pytest.mark.parametrize(
@@ -183,8 +172,8 @@ COMMAND = "python3 g12/python/g12 translate --control"
 def test_each_usual_extension_is_opened_in_both_cases(tmp_path, control, suffixes, options):
     ini = write_config(tmp_path)
     with restored(ini):
-        put_in(ini, f"programs-{control}", numbers=options)
-        put_in(ini, "circle-mill", numbers=options)
+        put_in(ini, f"programs-{control}", options=options)
+        put_in(ini, "circle-mill", options=options)
         filters = ini.read_text().partition("[FILTER]\n")[2].partition("# <<<")[0]
         shown = ",".join(f".{suffix}" for suffix in suffixes.split())
         assert filters.splitlines() == [

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The [FILTER] of a machine config: the lines for other controls' programs, and the checks.
+"""The [FILTER] of a machine config: the lines for other controls' programs, and the check.
 
 Every screen (AXIS, gmoccapy, QtVCP, Touchy) looks the extension of a file up among the keys of
 [FILTER] as it is written: with ``nc`` alone PART.NC is opened as it is, without a word. Its list of
 files shows the extensions of PROGRAM_EXTENSION, in gmoccapy as written too.
 """
 
+import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -15,8 +16,8 @@ from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.system import PROGRAM
 from g12.tools.translate.blocks.control import Control
 
-TRANSLATE, DYNAPATH = "translate", "dynapath"  # the commands that are filters
-MAX_NAMED = 8  # files are named in a line
+# The commands that are filters, behind the package's program.
+CALL = re.compile(rf"(\S*{PROGRAM.name}) (?:dynapath\b|translate\s(?:.*\s)?--control (\S+))")
 
 
 class Filter(NamedTuple):
@@ -24,26 +25,21 @@ class Filter(NamedTuple):
 
     suffix: str
     command: str
+    program: str
     control: str
 
 
 def filters_of(config: Config) -> Iterator[Filter]:
     """Yield the lines of [FILTER] that call the package."""
     for _, key, value in entries_of(config.ini.lines, "FILTER"):
-        words = value.split()
-        if TRANSLATE in words and "--control" in words[:-1]:
-            yield Filter(key, value, words[words.index("--control") + 1])
-        elif DYNAPATH in words[1:] and words[words.index(DYNAPATH) - 1].endswith(PROGRAM.name):
-            yield Filter(key, value, "")
-
-
-def translating_filters(config: Config) -> Iterator[Filter]:
-    return (each for each in filters_of(config) if each.control)
+        call = CALL.search(value)
+        if call:
+            yield Filter(key, value, call[1], call[2] or "")
 
 
 def installed_programs(config: Config) -> list[str]:
     """Return the controls whose programs the machine opens."""
-    return list(dict.fromkeys(each.control for each in translating_filters(config)))
+    return list(dict.fromkeys(each.control for each in filters_of(config) if each.control))
 
 
 def both_cases(suffix: str) -> tuple[str, str]:
@@ -64,13 +60,12 @@ def filter_lines(control: Control, command: str, missing: list[str]) -> list[str
 
 def filter_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find a filter that cannot work."""
-    for suffix, command, name in filters_of(config):
-        words, used = command.split(), TRANSLATE if name else DYNAPATH
-        program = folder_from_ini(config.ini, words[words.index(used) - 1])
-        if not program.exists():
+    for suffix, command, program, _ in filters_of(config):
+        file = folder_from_ini(config.ini, program)
+        if not file.exists():
             yield problem(
                 "filter",
-                f"[FILTER] {suffix}: {program} is not there: no .{suffix} program opens",
+                f"[FILTER] {suffix}: {file} is not there: no .{suffix} program opens",
                 f"write {PROGRAM} in its place, or take the line out",
             )
         for other in both_cases(suffix):
@@ -81,9 +76,3 @@ def filter_findings(config: Config) -> Iterator[ConfigFinding]:
                     "another way, or as it is, without a word",
                     f"have in [FILTER]: {other} = {command}, and .{other} in PROGRAM_EXTENSION",
                 )
-
-
-def shortened(names: list[str]) -> str:
-    """Return some names in one line, and the number of the others."""
-    more = f" and {len(names) - MAX_NAMED} more" if len(names) > MAX_NAMED else ""
-    return ", ".join(names[:MAX_NAMED]) + more

@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 from g12.errors import LONGEST_BLOCK
 from g12.machine_ini import entries_of, included_file, key_and_value, section_extent
+from g12.tools.errors import UsageError
+from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, IniError, as_included, broken_line
 
 BEGIN_MARK, END_MARK = "# >>> g12 install", "# <<< g12 install"
@@ -244,6 +246,17 @@ class IniText:
         if kept and len(lines) - 1 in rows and not lines[-1].endswith("\n"):
             kept[-1] = kept[-1].rstrip("\r\n")
         self.files[file] = kept
+
+
+def read_config_text(ini: Path) -> IniText:
+    """Return the INI of a machine; refuse a file that is none."""
+    existing(ini)
+    if ini.suffix == ".expanded":
+        raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
+    text = IniText(ini)
+    if not text.section("RS274NGC"):
+        raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
+    return text
 
 
 def unpaired(line: IniLine) -> IniError:

@@ -4,14 +4,14 @@
 import json
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
 from g12.machine_ini import Remap, remap_from_value
 from g12.settings import Settings
-from g12.tools.install.config.features import model_of
+from g12.tools.install.config.features import feature_of
 from g12.tools.install.config.ini_edit import IniLine, IniText
 from g12.tools.machine.ini import Ini, IniError, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
@@ -24,9 +24,8 @@ def g12_config():
     import json, sys
     remap = vars(sys.modules["__main__"]).get("remap")
     items = vars(remap).items() if hasattr(remap, "__dict__") else ()
-    functions = {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}}
-    package = getattr(sys.modules.get("g12"), "__file__", None)
-    return {ANSWER!r} + json.dumps({{"remap": functions, "package": package}})
+    return {ANSWER!r} + json.dumps(
+        {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}})
 print(g12_config(), flush=True)
 """
 UNKNOWN = "Unknown"  # begins LinuxCNC's error for a G code that it does not have
@@ -36,32 +35,28 @@ MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
 @dataclass(frozen=True)
 class Python:
-    """The definitions of the machine's Python modules in the interpreter.
+    """The handlers that the machine's Python modules define in the interpreter.
 
     ``remap`` maps the functions of that module to the module that made them, and is empty if the
-    config has none. ``package`` is the folder of the package g12 in use. ``error`` is the exception
-    that stopped the modules, with its file and line.
+    config has none. ``error`` is the exception that stopped the modules, with its file and line.
     """
 
     remap: dict[str, str | None] = field(default_factory=dict)
-    package: Path | None = None
     error: str | None = None
 
-    @property
-    def users(self) -> dict[str, str | None]:
-        """The functions of ``remap`` that are not the package's."""
-        modules = self.remap.items()
-        return {name: module for name, module in modules if (module or "").split(".")[0] != "g12"}
+    def lacks(self, names: Iterable[str]) -> list[str]:
+        """Return those of the handlers that are not there, or not the package's."""
+        modules = {name: self.remap.get(name) or "" for name in names}
+        return sorted(name for name in modules if modules[name].split(".")[0] != "g12")
 
 
 @dataclass(frozen=True)
 class Code:
-    """A REMAP line of the package in a config, with the package's own line for it."""
+    """A REMAP line of the package in a config, and its feature."""
 
     line: IniLine
     remap: Remap
     feature: str
-    model: Remap
 
 
 @dataclass(frozen=True)
@@ -111,8 +106,8 @@ def remaps_in(text: IniText) -> list[tuple[IniLine, Remap]]:
 
 def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
     """Return the REMAP lines that are the package's."""
-    found = ((line, remap, model_of(remap)) for line, remap in remaps)
-    return [Code(line, remap, *model) for line, remap, model in found if model]
+    found = (Code(line, remap, feature_of(remap)) for line, remap in remaps)
+    return [code for code in found if code.feature]
 
 
 def load_config(text: IniText, ini: Ini | None = None) -> Config:
@@ -151,10 +146,7 @@ def python_of(tracer: Tracer) -> Python:
     answers = [line for line in printed.splitlines() if line.startswith(ANSWER)]
     if not answers:
         return Python(error="the modules loaded, but the interpreter's Python gives no answer")
-    found = json.loads(answers[-1][len(ANSWER) :])
-    package = found.pop("package")
-    here = tracer.ini.directory
-    return Python(**found, package=here / Path(package).parent if package else None)
+    return Python(json.loads(answers[-1][len(ANSWER) :]))
 
 
 def folder_from_ini(ini: Ini, name: str) -> Path:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints, leading_number
 from g12.settings import INI_SECTION, LIVE_SPINDLE
 from g12.tools.errors import UsageError
-from g12.tools.install.config.features import KINEMATICS, ROOT
+from g12.tools.install.config.features import COPY, KINEMATICS, ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.hal import (
@@ -209,10 +209,8 @@ def signals_wanted(config: Config, kinematics: bool) -> dict[str, str]:
     return {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
 
 
-def lines_for(
-    config: Config, features: Sequence[str], pins: Pins, prefix: str
-) -> dict[str, list[str]]:
-    """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
+def lines_for(config: Config, features: Sequence[str], pins: Pins) -> dict[str, list[str]]:
+    """Return the lines that each section gets."""
     drive = [
         line
         for name, pin in pins.drive.items()
@@ -221,9 +219,9 @@ def lines_for(
     wanted = signals_wanted(config, KINEMATICS in features)
     return {
         "HAL": [
-            f"HALFILE = {prefix}/{SPINDLE_C_HAL}",
+            f"HALFILE = {COPY}/{SPINDLE_C_HAL}",
             *drive,
-            f"HALCMD = loadusr sh {prefix}/{LIMITS_SCRIPT}",
+            f"HALCMD = loadusr sh {COPY}/{LIMITS_SCRIPT}",
         ],
         "SPINDLE_C": [
             f"JOINT = {joint_of_c(config)}",
