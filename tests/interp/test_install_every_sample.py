@@ -11,10 +11,9 @@ from g12.machine_ini import remap_from_value
 from g12.tools.commands import install, uninstall
 from g12.tools.forms.table import HANDLERS
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import installed_programs
 from g12.tools.install.config.findings import PROBLEM, Refused
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import load_config
+from g12.tools.install.config.loaded import installed_programs, load_config
 from g12.tools.install.rules import findings_of
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree

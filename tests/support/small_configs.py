@@ -113,15 +113,11 @@ def with_lines(text: str, section: str, lines: str) -> str:
     return text.replace(f"[{section}]\n", f"[{section}]\n{lines}")
 
 
-def config_of(
-    ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
-) -> Config:
+def config_of(ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", **python) -> Config:
     """Return the config of an INI that no LinuxCNC has loaded."""
     text = ini if isinstance(ini, IniText) else IniText(ini)
     loaded = Python(**python)
-    return Config(
-        text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure, diameters
-    )
+    return Config(text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure)
 
 
 def content_of(folder: Path) -> dict[str, bytes]:

@@ -9,7 +9,7 @@ from g12.tools.commands import check
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, PROBLEM
-from g12.tools.install.lathe import hal, kinematics, pins
+from g12.tools.install.lathe import hal, kinematics
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.rules import findings_of
 from g12.tools.preview.loading import python_error
@@ -111,8 +111,6 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
      "cylinder needs axis C"),
     (with_lines(LATHE, "RS274NGC", SUBS + lines_of("polar-shapes")) + PYTHON, {}, "no-polar",
      "needs polar or polar-g12.3"),
-    (GOOD, {"diameters": {1: 0.0}}, "no-diameters", "TOOL_TABLE = mill.tbl"),
-    (GOOD, {"version": ""}, "no-linuxcnc", ""),
     (GOOD + FILTER, COMMANDS, "filter", "nc is not for .NC files"),
     (GOOD + f"{FILTER}NC = mine\n", COMMANDS, "filter", "nc is not for .NC files"),
     (GOOD + "[FILTER]\ndyn = python3 gone/g12 dynapath\nDYN = python3 gone/g12 dynapath\n", {},
@@ -133,9 +131,7 @@ def test_one_thing_that_is_wrong_is_one_finding(found, text, facts, kind, says):
     ("text", "facts"),
     [
         (GOOD, {}),
-        (GOOD, {"diameters": {1: 0.0, 2: 0.25}}),
-        (GOOD.replace("TOOL_TABLE = mill.tbl", "DB_PROGRAM = ./tools"), {"diameters": {}}),
-        (ON_LATHE, {"diameters": {}}),
+        (ON_LATHE, {}),
         (with_lines(MILL.replace("X Y Z", "X Y Z A"), "RS274NGC", SUBS + lines_of("cylinder"))
          + PYTHON, {}),
         (GOOD + "[FILTER]\npy = python3\n[HAL]\nHALFILE = gone.hal\n", {}),
@@ -302,14 +298,13 @@ def hal_findings(tmp_path, monkeypatch):
         texts = b"\0".join(form.encode() for form in formats)
         odd = b"xyza" if name == "boss_plc" else b""  # letters without an end
         (tmp_path / f"{name}.so").write_bytes(b"\x7fELF\0" + odd + texts + b"\0\xff")
-    monkeypatch.setattr(pins, "linuxcnc_folder", lambda _: tmp_path)
     monkeypatch.setattr(hal, "linuxcnc_folder", lambda _: tmp_path)
 
     def find(lines, name="motion.hal"):
         ini = write_config(tmp_path, f"{MILL}[HAL]\nHALFILE = {name}\n")
         (tmp_path / name.removeprefix("LIB:")).write_text(LINES + lines)
         config = config_of(ini)
-        return [*pins.pins_missing(config), *pins.pins_taken(config)]
+        return [*hal.pins_missing(config), *hal.pins_taken(config)]
 
     return find
 

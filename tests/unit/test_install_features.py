@@ -10,13 +10,14 @@ import pytest
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import filter_findings, installed_programs
 from g12.tools.install.config.findings import Refused
+from g12.tools.install.config.loaded import installed_programs
 from g12.tools.install.installation import question_of
 from g12.tools.install.lathe import kinematics
+from g12.tools.install.lathe.hal import pins_taken
 from g12.tools.install.lathe.kinematics import kinematics_findings
-from g12.tools.install.lathe.pins import pins_taken
 from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
+from g12.tools.install.rules import filter_findings
 from g12.tools.translate.blocks.control import read_control
 from support.small_configs import (
     FILES_OF_PAGES,
@@ -408,9 +409,9 @@ def test_only_what_is_missing_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("velocity = 'a'", "position, holds: missing"),
+        ("velocity = 'a'", "position: missing; holds: missing"),
         (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
-        (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (PINS.replace("60", "'fast'"), "velocity_scale = 'fast': must be a number"),
         (PINS.replace("60", "9" * 400), "velocity_scale = 9999"),
         (f"{PINS}\ntimeout = -5", "timeout = -5: must be above 0"),
         (f"{PINS}\nindex_speed = 0", "index_speed = 0: must not be 0"),

@@ -11,10 +11,9 @@ from pathlib import Path
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import filters_of
 from g12.tools.install.config.findings import PROBLEM, ConfigFinding
 from g12.tools.install.config.ini_edit import read_config_text
-from g12.tools.install.config.loaded import Config, load_config
+from g12.tools.install.config.loaded import Config, filters_of, load_config
 from g12.tools.install.rules import findings_of
 
 EXAMPLES = """\

@@ -11,11 +11,11 @@ from dataclasses import dataclass, field
 from g12.settings import INI_SECTION as SETTINGS
 from g12.settings import TOPLEVEL
 from g12.tools.install import package_copy
-from g12.tools.install.config import features, filters, screen
+from g12.tools.install.config import features, screen
 from g12.tools.install.config.features import COPY
 from g12.tools.install.config.findings import refuse, refuse_problems
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, folder_from_ini
+from g12.tools.install.config.loaded import Config, both_cases, filters_of, folder_from_ini
 from g12.tools.install.lathe import kinematics, spindle_c
 from g12.tools.install.rules import calls_abort_sub, odd_folder
 from g12.tools.translate.blocks.control import read_control
@@ -150,8 +150,9 @@ def add_filter(plan: InstallPlan, name: str) -> None:
             "CYLINDER_X = allow" if on_round else "POLAR_Z = allow",
             *([] if on_round and features.rotary_of_mill(ini.axes) else live),
         ]})  # fmt: skip
-    present = {suffix: ini.get("FILTER", suffix) for suffix in filters.suffixes_of(control)}
-    ours = {each.suffix for each in filters.filters_of(plan.config) if each.control == name}
+    suffixes = (written for suffix in control.extensions for written in both_cases(suffix))
+    present = {suffix: ini.get("FILTER", suffix) for suffix in suffixes}
+    ours = {each.suffix for each in filters_of(plan.config) if each.control == name}
     for suffix, value in present.items():
         if value and (suffix not in ours or not value.endswith(plan.options)):
             raise refuse(
@@ -163,7 +164,9 @@ def add_filter(plan: InstallPlan, name: str) -> None:
     command = f"python3 {COPY}/python/g12 translate --control {name}{plan.options}"
     command = next(filter(None, present.values()), command)
     missing = [suffix for suffix, value in present.items() if not value]
-    plan.add({"FILTER": filters.filter_lines(control, command, missing)})
+    if missing:
+        shown = f"PROGRAM_EXTENSION = .{',.'.join(missing)} Programs of {name}"
+        plan.add({"FILTER": [shown, *(f"{suffix} = {command}" for suffix in missing)]})
 
 
 def add_forms(plan: InstallPlan) -> None:

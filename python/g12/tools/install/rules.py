@@ -15,20 +15,27 @@ from g12.settings import INI_SECTION, check_section, settings_from_lines
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.features import COPY
-from g12.tools.install.config.filters import filter_findings, installed_programs
-from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
-from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
+from g12.tools.install.config.findings import ConfigFinding, note, problem
+from g12.tools.install.config.loaded import (
+    MOST_FOLDERS,
+    Config,
+    both_cases,
+    filters_of,
+    folder_from_ini,
+    installed_programs,
+    subs_named,
+)
+from g12.tools.install.lathe.hal import pins_missing, pins_taken
 from g12.tools.install.lathe.kinematics import kinematics_findings
-from g12.tools.install.lathe.pins import pins_missing, pins_taken
 from g12.tools.install.lathe.spindle_c import live_spindle_missing, spindle_c_findings
-from g12.tools.system import COMMAND
+from g12.tools.system import COMMAND, PROGRAM
 
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
 MAX_NAMED = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
 # Kinds: what keeps LinuxCNC from loading a config, with its own words for it, and these.
-LOADING = {"no-linuxcnc", "python-fails", "does-not-load"}
+LOADING = {"python-fails", "does-not-load"}
 STOPPING = {*LOADING, "taken", "no-sub", "blank-in-path", "no-python"}
 
 Rule = Callable[[Config], Iterator[ConfigFinding]]
@@ -37,12 +44,6 @@ Rule = Callable[[Config], Iterator[ConfigFinding]]
 
 
 def codes_missing(config: Config) -> Iterator[ConfigFinding]:
-    if not config.version:
-        yield problem(
-            "no-linuxcnc",
-            "there is no LinuxCNC on this computer: nothing could be loaded",
-            "run this on the machine's own computer, with LinuxCNC 2.9 or later",
-        )
     if not config.codes and not installed_programs(config):
         yield problem(
             "no-codes",
@@ -220,18 +221,24 @@ def needs(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def tools(config: Config) -> Iterator[ConfigFinding]:
-    """Find a mill without any diameter in its tool table."""
-    table, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
-    mill = config.features.keys() - set(features.ON_LATHE)
-    diameters = {0: 1.0} if config.diameters is None or database else config.diameters
-    if mill and not any(diameters.values()):
-        yield warning(
-            "no-diameters",
-            f"[EMCIO] TOOL_TABLE = {table}: no tool has a diameter: a pocket with D would come out "
-            "too large",
-            f"enter the cutters' diameters (D); the table's name is relative to {config.folder}",
-        )
+def filter_findings(config: Config) -> Iterator[ConfigFinding]:
+    """Find a filter that cannot work."""
+    for suffix, command, program, _ in filters_of(config):
+        file = folder_from_ini(config.ini, program)
+        if not file.exists():
+            yield problem(
+                "filter",
+                f"[FILTER] {suffix}: {file} is not there: no .{suffix} program opens",
+                f"write {PROGRAM} in its place, or take the line out",
+            )
+        for other in both_cases(suffix):
+            if config.ini.get("FILTER", other) != command:
+                yield problem(
+                    "filter",
+                    f"[FILTER] {suffix} is not for .{other} files: LinuxCNC opens PART.{other} "
+                    "another way, or as it is, without a word",
+                    f"have in [FILTER]: {other} = {command}, and .{other} in PROGRAM_EXTENSION",
+                )
 
 
 def changed_copy(config: Config) -> Iterator[ConfigFinding]:
@@ -255,7 +262,6 @@ CONFIG_RULES: tuple[Rule, ...] = (
     handlers_missing,
     wrong_values,
     needs,
-    tools,
     filter_findings,
     changed_copy,
     kinematics_findings,

@@ -95,14 +95,11 @@ def remaps_of(feature: str) -> tuple[Remap, ...]:
 
 def feature_of(remap: Remap) -> str | None:
     """Return the feature of a machine's REMAP line, whatever its code; None if it is no one's."""
-    models = [(feature, model) for feature in CODES for model in remaps_of(feature)]
-
-    def likeness(candidate: tuple[str, Remap]) -> tuple[int, bool]:
-        _, model = candidate
-        return len(own_names(model) & own_names(remap)), model.number == remap.number
-
-    best = max(models, key=likeness)
-    return best[0] if likeness(best)[0] else None
+    own = own_names(remap)
+    models = [(model, feature) for feature in CODES for model in remaps_of(feature)]
+    alike = [(model, feature) for model, feature in models if own & own_names(model)]
+    same_code = [feature for model, feature in alike if model.number == remap.number]
+    return next(iter([*same_code, *(feature for _, feature in alike)]), None)
 
 
 def functions_of(feature: str) -> list[str]:

@@ -3,19 +3,22 @@
 
 import json
 import os
+import re
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
-from g12.machine_ini import Remap, remap_from_value
+from g12.machine_ini import Remap, entries_of, remap_from_value
 from g12.settings import Settings
 from g12.tools.install.config.features import feature_of
 from g12.tools.install.config.ini_edit import IniLine, IniText
 from g12.tools.machine.ini import Ini, IniError, Overrides
 from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
 from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.system import PROGRAM
 
 ANSWER = "G12 CONFIG "
 # Code executed in the interpreter: it reports what the machine's Python modules defined.
@@ -30,6 +33,8 @@ print(g12_config(), flush=True)
 """
 UNKNOWN = "Unknown"  # begins LinuxCNC's error for a G code that it does not have
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
+# The commands that are filters, behind the package's program.
+CALL = re.compile(rf"(\S*{PROGRAM.name}) (?:dynapath\b|translate\s(?:.*\s)?--control (\S+))")
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
 
@@ -65,8 +70,7 @@ class Config:
 
     ``version`` is LinuxCNC's, empty if its Python modules are missing. ``python`` is None if the
     interpreter did not run. ``owned`` has the package's codes that are LinuxCNC's own.
-    ``failure`` is the interpreter's own text if it does not load the config. ``diameters`` are
-    those of the tool table, in mm by tool number.
+    ``failure`` is the interpreter's own text if it does not load the config.
     """
 
     text: IniText
@@ -76,7 +80,6 @@ class Config:
     python: Python | None = None
     owned: frozenset[str] = frozenset()
     failure: str | None = None
-    diameters: Mapping[int, float] | None = None
 
     @property
     def folder(self) -> Path:
@@ -114,7 +117,7 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
     """Return the config of an INI, loaded by LinuxCNC: as ``ini`` instead, if that is given."""
     ini, remaps, version = ini or text.ini(), remaps_in(text), linuxcnc_version()
     if not version:
-        return Config(text, ini, remaps, version, failure="no LinuxCNC")
+        return Config(text, ini, remaps, version, failure="there is none on this computer")
     failure = load_failure(ini)
     try:
         with Tracer(ini, overrides=NO_REMAPS) as tracer:
@@ -123,7 +126,7 @@ def load_config(text: IniText, ini: Ini | None = None) -> Config:
             if python.error:  # then LinuxCNC 2.9.0~pre1 may crash in the second program
                 codes = set()
             owned = frozenset(code for code in codes if is_owned(tracer, code))
-            return Config(text, ini, remaps, version, python, owned, failure, tracer.diameters)
+            return Config(text, ini, remaps, version, python, owned, failure)
     except TraceFailure as refused:
         return Config(text, ini, remaps, version, failure=failure or str(refused))
 
@@ -167,3 +170,33 @@ def subs_named(ini: Ini, name: str) -> list[Path]:
     """Return every file LinuxCNC could take for an NGC sub; it takes the first."""
     files = (folder / f"{name}.ngc" for folder in sub_folders(ini))
     return list(dict.fromkeys(file for file in files if file.is_file()))
+
+
+# Files that the screens open by another command. AXIS, gmoccapy, QtVCP and Touchy look an extension
+# up among the keys of [FILTER] as it is written: with ``nc`` alone PART.NC is opened as it is.
+
+
+class Filter(NamedTuple):
+    """A line of [FILTER] that calls the package; ``control`` is "" where it does not translate."""
+
+    suffix: str
+    command: str
+    program: str
+    control: str
+
+
+def filters_of(config: Config) -> Iterator[Filter]:
+    """Yield the lines of [FILTER] that call the package."""
+    for _, key, value in entries_of(config.ini.lines, "FILTER"):
+        call = CALL.search(value)
+        if call:
+            yield Filter(key, value, call[1], call[2] or "")
+
+
+def installed_programs(config: Config) -> list[str]:
+    """Return the controls whose programs the machine opens."""
+    return list(dict.fromkeys(each.control for each in filters_of(config) if each.control))
+
+
+def both_cases(suffix: str) -> tuple[str, str]:
+    return suffix.lower(), suffix.upper()
