@@ -118,29 +118,24 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
 ]  # fmt: skip
 
 
+IN_ORDER = [  # an INI, what else is there
+    (GOOD, {}),
+    (ON_LATHE, {}),
+    (with_lines(MILL.replace("X Y Z", "X Y Z A"), "RS274NGC", SUBS + lines_of("cylinder"))
+     + PYTHON, {}),
+    (GOOD + "[FILTER]\npy = python3\n[HAL]\nHALFILE = gone.hal\n", {}),
+    (with_lines(LATHE, "RS274NGC", SUBS + lines_of("polar-g12.3") + lines_of("polar-shapes"))
+     + PYTHON, {}),
+]  # fmt: skip
+
+
 @pytest.mark.parametrize(
-    ("text", "facts", "kind", "says"), ONE_FINDING, ids=[kind for _, _, kind, _ in ONE_FINDING]
+    ("text", "facts", "kind", "says"), [*ONE_FINDING, *((*row, "", "") for row in IN_ORDER)]
 )
 def test_one_thing_that_is_wrong_is_one_finding(found, text, facts, kind, says):
     findings = found(text, **facts)
     assert kinds(findings) == kind.split()
-    assert says in f"{findings[0].text}\n{findings[0].cure}"
-
-
-@pytest.mark.parametrize(
-    ("text", "facts"),
-    [
-        (GOOD, {}),
-        (ON_LATHE, {}),
-        (with_lines(MILL.replace("X Y Z", "X Y Z A"), "RS274NGC", SUBS + lines_of("cylinder"))
-         + PYTHON, {}),
-        (GOOD + "[FILTER]\npy = python3\n[HAL]\nHALFILE = gone.hal\n", {}),
-        (with_lines(LATHE, "RS274NGC", SUBS + lines_of("polar-g12.3") + lines_of("polar-shapes"))
-         + PYTHON, {}),
-    ],
-)  # fmt: skip
-def test_what_is_in_order_is_no_finding(found, text, facts):
-    assert found(text, **facts) == []
+    assert says in "".join(f"{finding.text}\n{finding.cure}" for finding in findings)
 
 
 def test_only_the_first_ten_folders_count(found, tmp_path):
@@ -309,22 +304,16 @@ def hal_findings(tmp_path, monkeypatch):
     return find
 
 
-def test_pins_that_a_module_makes_or_may_make_are_not_missing(hal_findings):
-    assert hal_findings("".join(f"setp {pin} 1\n" for pin in MADE)) == []
-
-
-@pytest.mark.parametrize("pin", MISSING)
 @pytest.mark.parametrize("name", ["motion.hal", "LIB:motion.hal"])
+@pytest.mark.parametrize("pin", MISSING)
 def test_a_pin_that_no_module_makes_is_named(hal_findings, pin, name):
     (finding,) = hal_findings(f"net a own.x => \\\n  {pin} # it\n", name)
     line = f"motion.hal:8: net a own.x => {pin}"
     assert finding.text == f"{line}: there is no pin {pin}: LinuxCNC does not start"
 
 
-@pytest.mark.parametrize(
-    "line",
-    ["setp {}", "setp {} 1", "unlinkp {}", "linkpp own.x {}", "linksp s {}", "linkps {} s"],
-)
+@pytest.mark.parametrize("line", ["setp {}", "unlinkp {}", "linkpp own.x {}", "linksp s {}",
+                                  "linkps {} s"])  # fmt: skip
 def test_each_command_that_names_a_pin_is_read(hal_findings, line):
     (finding,) = hal_findings(f"{line.format('x-pid.comand')}\n")
     assert "there is no pin x-pid.comand" in finding.text
@@ -332,8 +321,9 @@ def test_each_command_that_names_a_pin_is_read(hal_findings, line):
 
 @pytest.mark.parametrize(
     "line",
-    ["net joint.0.nothing own.x", "addf x-pid.nothing t", "alias pin own.x x-pid.nothing\n"
-     "setp x-pid.nothing 1", "setp x-pid.$n 1", "net x-pid.nothing <= motion.enable",
+    ["".join(f"setp {pin} 1\n" for pin in MADE), "net joint.0.nothing own.x",
+     "addf x-pid.nothing t", "alias pin own.x x-pid.nothing\nsetp x-pid.nothing 1",
+     "setp x-pid.$n 1", "net x-pid.nothing <= motion.enable",
      "net a own.x\nunlinkp own.x\nnet b own.x", "net a own.x =>\ndelsig a\nnet b own.x",
      "linkps own.x a\nlinksp a own.x"],
 )  # fmt: skip
@@ -355,13 +345,10 @@ def test_what_is_in_order_in_hal_files(hal_findings, line):
     ],
 )
 def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
-    write_config(tmp_path)
-    (tmp_path / "mill.ini.expanded").write_text(MILL)
-    (tmp_path / "odd.ini").write_text(f"{MILL}\0")
+    write_config(tmp_path, **{"mill.ini_expanded": MILL}, odd_ini=f"{MILL}\0")
     assert check.main([str(tmp_path / name)]) == 2
     error = capsys.readouterr().err
-    assert error.startswith("g12 check: ")
-    assert says in error
+    assert error.startswith("g12 check: ") and says in error
     assert error.count("\n") == 1
 
 

@@ -90,8 +90,9 @@ class Pins(NamedTuple):
 
 def read_pins(path: Path) -> Pins:
     """Return the data of a file of pins; refuse unknown and missing entries."""
+    existing(path)
     try:
-        entries = tomllib.loads(existing(path).read_text(encoding="utf-8"))
+        entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: {error}") from None
     known = [*DRIVE, *map(str.lower, NUMBERS)]
