@@ -4,7 +4,6 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -179,17 +178,6 @@ def test_the_users_own_python_stays_in_charge_and_the_pocket_is_that_of_the_sim(
         assert len(ends) > 5 and ends == [move.end for move in sim.moves]
         if own and "class" not in "".join(files.values()):
             assert trace_text(["M400", "M2"], ini).error is None
-
-
-def test_a_lost_copy_comes_back(tmp_path, capsys):
-    ini = write_config(tmp_path, MILL + OWN, **remap("x = 1\n"))
-    assert installed(ini, "haas") == 0
-    whole = content_of(tmp_path)
-    for lost in ("", "python/g12/cycles/haas.py"):
-        path = tmp_path / "g12" / lost
-        path.unlink() if lost else shutil.rmtree(path)
-        assert installed(ini, "haas") == 0
-        assert content_of(tmp_path) == whole
 
 
 G13 = "REMAP = g13 modalgroup=1 ngc=mine\n"

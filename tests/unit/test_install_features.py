@@ -29,7 +29,6 @@ from support.small_configs import (
     content_of,
     files_of_package,
     package_of,
-    planned,
     put_in,
     restored,
     with_lines,
@@ -148,11 +147,13 @@ def test_other_screens_show_the_face_already(tmp_path, screen):
     [
         (MILL, ["haas", "forms"], "[DISPLAY] DISPLAY is missing"),
         (AXIS, ["cycles-page"], "no code here has a form"),
+        (TURNING, ["polar-kinematics"], "there is no G12.1 here"),
+        (TURNING, ["spindle-c"], "install cannot know the inputs of your spindle's drive"),
         (with_lines(PROBE_BASIC, "DISPLAY", "USER_TABS_PATH = own/\n"), ["haas", "cycles-page"],
          "USER_TABS_PATH = own/ is yours"),
     ],
 )  # fmt: skip
-def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why):
+def test_refused_for_what_is_missing(tmp_path, text, names, why):
     assert why in refused(write_config(tmp_path, text), *names)[0].text
 
 
@@ -317,11 +318,6 @@ def test_an_unusual_lathe_keeps_its_kinematics(tmp_path, usual, unusual, says):
     assert any(says in finding.text for finding in findings)
 
 
-def test_without_g12_1_the_kinematics_say_how(tmp_path):
-    (finding,) = refused(lathe_in(tmp_path), "polar-kinematics")
-    assert "--with polar polar-kinematics" in finding.cure
-
-
 def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     ini = lathe_in(tmp_path)
     put_in(ini, "spindle-c", pins=pins_of(tmp_path))
@@ -358,11 +354,6 @@ def test_a_spindle_is_refused_for_what_the_machine_has(tmp_path, old, new, said)
     ini = lathe_in(tmp_path, TURNING.replace(old, new), TURNING_HAL.replace(old, new))
     findings = refused(ini, "spindle-c", pins=pins_of(tmp_path))
     assert said in "".join(finding.text for finding in findings)
-
-
-def test_install_asks_for_the_pins(tmp_path):
-    (finding,) = refused(lathe_in(tmp_path), "spindle-c")
-    assert finding.kind == "pins" and "--pins spindle.toml" in finding.cure
 
 
 def without_c():
@@ -423,8 +414,3 @@ def test_only_what_is_missing_is_told(tmp_path):
 def test_a_file_of_pins_that_says_something_else(tmp_path, text, said):
     with pytest.raises(UsageError, match=said):
         pins_of(tmp_path, text)
-
-
-def test_each_feature_has_a_first_step(tmp_path):
-    assert all(map(features.first_step, features.FEATURE_NAMES))
-    assert planned(write_config(tmp_path), "haas").codes == ["haas"]
