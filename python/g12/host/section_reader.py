@@ -312,7 +312,7 @@ class SectionReader:
         feed = self.rules.rapid_feed
         if feed is None:
             raise self.location.refuse(
-                f"G0 is refused (it is still active): {block_rules.REASON_OF_G[block_rules.G0]}"
+                f"G0 is refused (it is still active): {block_rules.RAPID}"
             )
         return feed
 
