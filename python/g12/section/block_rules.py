@@ -5,7 +5,7 @@ Codes are the parser's: a G code times ten, by modal group.
 """
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -161,9 +161,7 @@ def check_block(
         )
 
 
-def _check_g(
-    code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation
-) -> None:
+def _check_g(code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation) -> None:
     if code in TAKEN_G or code in known.planes or (code == G0 and rapid_allowed):
         return
     reason = REFUSED_G.get(code, ONLY_CUTS).format(known)
