@@ -201,10 +201,10 @@ def codes_with_word(code: str, remaps: Collection[Remap], handler: str, word: st
 def _section_codes(
     on: list[str], off: list[str], off_code: str, remaps: Collection[Remap], word: str = ""
 ) -> SectionCodes:
-    numbers = [frozenset(code_number(code)[1] for code in codes) for codes in (on, off)]
+    begin, end = (frozenset(code_number(code)[1] for code in codes) for codes in (on, off))
     m_codes = [remap for remap in remaps if remap.number[0] == "M"]
     remapped = {remap.number[1] // 10: "ngc" in remap.keywords for remap in m_codes}
-    return SectionCodes(*numbers, off_code, remapped, word)
+    return SectionCodes(begin, end, off_code, remapped, word)
 
 
 def _codes_with(handler: str, remaps: Collection[Remap]) -> list[str]:
