@@ -96,23 +96,19 @@ class Tracer:
         parameters: Parameters = None,
         timeout: float = 60.0,
         alone: bool = False,
-        watch_offsets: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
         machine units) or a var file; without them all are 0.  ``timeout`` is in seconds.
-        ``alone`` discards the state of the machine's Python modules after the program. With
-        ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
-        G92, that have changed since the previous message; ``Trace.tables`` has those at messages.
+        ``alone`` discards the state of the machine's Python modules after the program.
         """
         request = {
             "program": str(Path(program).absolute()),
             "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
             "alone": alone,
-            "watch_offsets": watch_offsets,
         }
         if not self._process:
             self._start()

@@ -113,6 +113,7 @@ class Recorders:
             "linuxcnc": self._linuxcnc,
             "units": name_of_unit(ini.mm),
         }
+        facts = {fact: " ".join(text.split()) for fact, text in facts.items()}  # each one line
         options: dict[str, Any] = {"parameters": job.parameters, "timeout": job.terms.timeout}
         try:
             with opened_program(program, ini) as opened:
