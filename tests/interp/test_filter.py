@@ -15,7 +15,7 @@ from g12.tools.machine.ini import read_ini
 from g12.tools.system import PYTHON
 from support.foreign_programs import FOREIGN
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
-from support.small_configs import package_of, put_in, write_config
+from support.small_configs import put_in, write_config
 
 POCKET = """\
 %
@@ -41,9 +41,6 @@ def without_progress(errors):
 
 
 TRANSLATE = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
-
-
-small_package = package_of({"python/g12/__init__.py": b""})
 
 
 @pytest.fixture(scope="module")
