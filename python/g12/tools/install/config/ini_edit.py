@@ -171,7 +171,10 @@ class IniText:
         present[row:row] = new
 
     def replace(self, section: str, key: str, value: str, words: str) -> None:
-        """Replace the first value of a key by a block, in which the user's lines are comments."""
+        """Replace the first value of a key by a block, in which the user's lines are comments.
+
+        A second line of that key would be read by nobody, but LinuxCNC's check_config refuses it.
+        """
         (line, _), *_ = self.entries(section, key)
         lines = self.files[line.file]
         extent = slice(line.row, self._after(line.file, line.row))
