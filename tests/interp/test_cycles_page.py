@@ -204,7 +204,7 @@ def test_the_page_opens_and_draws_in_both_toolkits(toolkit, tmp_path):
     script, picture = ROOT / f"tests/support/{toolkit}_page.py", tmp_path / "page.png"
     screen = ["xvfb-run", "-a"] if toolkit == "gtk" else []
     command = [*screen, "/usr/bin/python3", script, SIM / "mill_mm_headless.ini", picture]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert picture.stat().st_size > 10_000
 

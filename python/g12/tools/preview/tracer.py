@@ -18,13 +18,13 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from g12.cut_report import SectionCut
 from g12.lengths import is_inch
 from g12.machine_ini import AXIS_LETTERS
+from g12.tools.channel import Channel
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.machine.tables import measured_tools, var_file
 from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
@@ -117,7 +117,7 @@ class Tracer:
         if not self._process:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it has died and cannot answer
-            self._connection.send(request)
+            self._channel.send(request)
         answer = self._answer(timeout)
         return _trace(answer, self.ini.mm)
 
@@ -155,8 +155,8 @@ class Tracer:
                 stdout=output,
                 stderr=output,
             )
-        self._connection = Connection(here.detach())
-        self._connection.send(self._machine)
+        self._channel = Channel(here)
+        self._channel.send(self._machine)
         answer = self._answer(60.0)
         error, _ = answer["error"] or ("", 0)
         if error or REFUSED_REMAP.search(answer["printed"]):
@@ -169,12 +169,12 @@ class Tracer:
         if self._process:
             self._process.kill()
             self._process.wait()
-            self._connection.close()
+            self._channel.close()
             self._process = None
 
     def _answer(self, timeout: float) -> dict:
         try:
-            answer = self._connection.recv() if self._connection.poll(timeout) else None
+            answer = self._channel.receive() if self._channel.is_ready(timeout) else None
         except (EOFError, ConnectionError):
             answer = {"failure": "the interpreter died"}
         if answer is None:
@@ -251,23 +251,29 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def _table_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> ToolTable:
+def _table_in_mm(sizes: Sequence[Sequence], mm: float) -> ToolTable:
     """Return the tool table of the worker's sizes, which are in machine units."""
-    return ToolTable(*({tool: size[at] * mm for tool, size in sizes.items()} for at in range(3)))
+    return ToolTable(*({tool: size[at] * mm for tool, *size in sizes} for at in range(3)))
 
 
 def _trace(answer: dict, mm: float) -> Trace:
     sizes = [*answer["tables"], (len(answer["moves"]), answer["tool_sizes"])]
     return Trace(
-        moves=[Move._make(move) for move in answer["moves"]],
+        moves=[Move._make(map(_frozen, move)) for move in answer["moves"]],
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
-        **{key: answer[key] for key in ("state", "printed", "position", "globals")},
+        position=tuple(answer["position"]),
+        **{key: answer[key] for key in ("state", "printed", "globals")},
         tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
         files=tuple(answer["files"]),
         cuts=[_reported_cut(len(answer["moves"]), *cut) for cut in answer["cuts"]],
     )
+
+
+def _frozen(value: Any) -> Any:
+    """Return a value of JSON; a position is a tuple."""
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _reported_cut(
