@@ -15,7 +15,6 @@ from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS
-from g12.tools.translate.rules.milled_surfaces import WOUND
 
 ON_MILL = {"G7": "G8", "G18": "G17"}  # at the start, in place of a lathe's
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
@@ -58,7 +57,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
 
 def _round_part_of_mill(control: Control, ini: Ini) -> Control:
     """Return a control for programs round a part with a mill's rotary axis, if the INI has one."""
-    turn = next((letter for letter in WOUND if letter in ini.axes), "")
+    turn = next((letter for letter in "AB" if letter in ini.axes), "")
     if control.onto != "round" or not turn or "Y" not in ini.axes:
         return control
     sense = -1.0 if ini.settings.rotary_sense == "reversed" else 1.0

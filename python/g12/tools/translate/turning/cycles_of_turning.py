@@ -37,13 +37,12 @@ from g12.tools.translate.turning.moves import (
     Pecking,
     Thread,
     all_passes,
-    facing_pass,
     finishing_cut,
     lines_of_moves,
     pecks,
     pitch_along,
+    single_pass,
     thread_pass,
-    turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
 
@@ -231,7 +230,7 @@ def pecking(draft: Draft, meaning: str) -> None:
 def _single_pass(draft: Draft, meaning: str) -> None:
     """G90 and G94 of system A."""
     start, end, taper = _pass_words(draft, meaning)
-    moves = (turning_pass if meaning == "turning pass" else facing_pass)(start, end, taper)
+    moves = single_pass(start, end, taper, meaning == "facing pass")
     _write_moves(draft, moves, start, turning_cycle=meaning)
 
 
