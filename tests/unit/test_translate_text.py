@@ -293,7 +293,7 @@ LAST = [  # control, text, how the sentence about its last line begins
       for text in (" C0\nG1 X40. C30. F9.", "\nG1 Z4. C30. F9.", " C0\nG1 U#100 H1. F9.")),
     (HAAS, "#1=#2\n#2=#33", "#33 means something else"),
     (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable: LinuxCNC has none: give each argument"),
-    (HAAS, "G10 L10 P1 R2.", "G10 L10: set the tool's length and diameter in the table"),
+    (HAAS, "G10 L10 P1 R2.", "G10 needs L2 or L20; set a tool's values in the tool table"),
     (HAAS, "G91 G10 L2 P1 X1.", "G10 under G91 adds to the offset"),
     (HAAS, "M29 S99", "M29: rigid tapping: take it out for a floating holder, or write"),
     (LATHE, "G98 C0\nG12.1\nG1 X40. C1. F9.\nX39. C2. W-1.", "W-1. beside other axes in a section"),

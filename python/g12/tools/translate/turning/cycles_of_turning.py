@@ -227,10 +227,14 @@ def pecking(draft: Draft, meaning: str) -> None:
     _write_moves(draft, pecks(start, given), start)
 
 
-def _single_pass(draft: Draft, meaning: str) -> None:
-    """G90 and G94 of system A."""
+def _modal_pass(draft: Draft, meaning: str) -> None:
+    """G90, G94 and G92 of system A."""
     start, end, taper = _pass_words(draft, meaning)
-    moves = single_pass(start, end, taper, meaning == "facing pass")
+    if meaning == "thread pass":
+        thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft))
+        moves = thread_pass(start, thread)
+    else:
+        moves = single_pass(start, end, taper, meaning == "facing pass")
     _write_moves(draft, moves, start, turning_cycle=meaning)
 
 
@@ -266,13 +270,6 @@ def _other_meaning(code: str, meaning: str) -> str:
         f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it is a mode, "
         "the control is another of fanuc-lathe, fanuc-lathe-b and fanuc-lathe-c; else take it out"
     )
-
-
-def _one_thread_pass(draft: Draft, meaning: str) -> None:
-    """G92 of system A."""
-    start, end, taper = _pass_words(draft, meaning)
-    thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft))
-    _write_moves(draft, thread_pass(start, thread), start, turning_cycle=meaning)
 
 
 def _lead_of(draft: Draft) -> float:
@@ -368,9 +365,9 @@ CYCLES: dict[str, Callable[[Draft, str], None]] = {
     "finishing": finishing,
     "pecking along Z": pecking,
     "pecking along X": pecking,
-    "turning pass": _single_pass,
-    "facing pass": _single_pass,
-    "thread pass": _one_thread_pass,
+    "turning pass": _modal_pass,
+    "facing pass": _modal_pass,
+    "thread pass": _modal_pass,
     "threading": threading,
     "thread": _thread_move,
 }
