@@ -25,11 +25,8 @@ exit code: 0 good, warnings and notes included, 1 a problem, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    parser = Parser(
-        prog="g12 check",
-        description="Check whether and how the package is set up in a machine config.",
-        epilog=EXAMPLES,
-    )
+    text = "Check whether and how the package is set up in a machine config."
+    parser = Parser("g12 check", text, EXAMPLES)
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--json", action="store_true", help="the report as JSON")
     return parser
