@@ -200,10 +200,6 @@ class IniText:
                 cure = "put it back, or take out what install wrote there"
                 text = f"a marker of install without its other one: {cure}"
                 raise IniError(f"{first.location}: {text}")
-            if last.text == END_MARK:
-                cure = f"by itself first: python3 g12/python/g12 uninstall {self.path}"
-                text = f"an earlier version wrote this: take it out {cure}"
-                raise IniError(f"{last.location}: {text}")
         return blocks
 
     def words(self) -> list[str]:
