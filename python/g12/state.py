@@ -52,6 +52,7 @@ class State(NamedTuple):
     speeds: tuple[float, ...] = (0.0,)
     diameter: bool = False  # G7
     surface_speed: bool = False  # G96
+    travel: Mapping[str, Sequence[float]] | None = None  # limits of X, Y, Z; none in a preview
 
     @property
     def millimetre(self) -> float:
@@ -83,12 +84,6 @@ class State(NamedTuple):
     def smallest_ring(self) -> float:
         """The smallest radius of a circle, and of a difference of two."""
         return self.length(SMALLEST_RING_MM)
-
-    def absolute(self, word: float | None, present: float) -> float:
-        """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
-        if word is None:
-            return present
-        return present + word if self.incremental else word
 
     def tool_size(self, length: float) -> str:
         """Return a tool's radius or diameter for a message: ``3.175``.

@@ -8,9 +8,19 @@ stay there.
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
+from g12.cycles.plan import CyclePlan, checked_plan, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLEARED, CycleExtent, Words, check_count, check_fits, steps_between
+from g12.request import (
+    CLEARED,
+    Cutter,
+    CycleExtent,
+    Words,
+    check_block,
+    check_count,
+    check_fits,
+    sized_cutter,
+    steps_between,
+)
 from g12.state import XY
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
@@ -56,7 +66,8 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
             XY, centre, wall, first_wall, stepover or 0.0, -1.0, (hole.z,), cutter.used
         )
 
-    return cutter.plan(numbers, CycleExtent(XY, centre, last, (hole.start, hole.z)), cut)
+    extent = CycleExtent(XY, centre, last, (hole.start, hole.z))
+    return checked_plan(words, numbers, extent, cut, cutter)
 
 
 def open_radius(words: Words, wall: float) -> float:

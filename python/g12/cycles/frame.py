@@ -10,24 +10,18 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
-from g12.cycles.plan import (
-    CLEARANCE_MM,
-    Cutter,
-    CyclePlan,
-    Hole,
-    PocketEntry,
-    check_block,
-    hole_of,
-    sized_cutter,
-)
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, checked_plan, hole_of
 from g12.errors import number
 from g12.request import (
     CLEARED,
     CLOCKWISE,
     COUNTERCLOCKWISE,
+    Cutter,
     CycleExtent,
     Words,
+    check_block,
     check_count,
+    sized_cutter,
     steps_between,
 )
 from g12.state import XY
@@ -95,7 +89,8 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
             (hole.x, hole.y), lengths, frame.corner, frame.side, middle, floors, cutter.used
         )
 
-    return cutter.plan(numbers, extent_of(hole, frame, cutter, lead), cut)
+    extent = extent_of(hole, frame, cutter, lead)
+    return checked_plan(words, numbers, extent, cut, cutter)
 
 
 def frame_of(words: Words) -> Frame:

@@ -10,18 +10,19 @@ from math import ceil, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.plan import (
-    CLEARANCE_MM,
-    Cutter,
-    CyclePlan,
-    Hole,
-    check_block,
-    hole_of,
-    sized_cutter,
-    turns_of,
-)
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, checked_plan, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, Words, check_count, steps_between
+from g12.request import (
+    CLOCKWISE,
+    COUNTERCLOCKWISE,
+    Cutter,
+    CycleExtent,
+    Words,
+    check_block,
+    check_count,
+    sized_cutter,
+    steps_between,
+)
 from g12.state import XY
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
@@ -87,7 +88,7 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
     def cut() -> ThreadCut:
         return ThreadCut((hole.x, hole.y), *thread, hole.top, (hole.z,), cutter.used)
 
-    return cutter.plan(numbers, extent, cut)
+    return checked_plan(words, numbers, extent, cut, cutter)
 
 
 def thread_of(words: Words) -> Thread:

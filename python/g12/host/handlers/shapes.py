@@ -23,11 +23,11 @@ from g12.host.handlers.sections import (
     section_machine,
     start_of_section,
 )
-from g12.host.interp import Interp
+from g12.host.interp import Interp, kept
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
-from g12.host.state import feed_spindle
+from g12.host.state import feed_spindle, read_state
 from g12.polar.polar_section import POLE_SHARE, Polar
 from g12.section.effects import SectionStart, code_of_handler
 from g12.section.line import BlockLocation
@@ -63,7 +63,8 @@ def polar_shape(self, **words):
         raise Refusal(FACE_ON, name)
     section = Polar(start_of_shape(self, name), section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
-    entries = ShapeEntries(name, names, locals_at(self, level), cycles.snapshot(self))
+    state = cycles.with_tools(self, read_state(self), kept(self, cycles.CommandedValues))
+    entries = ShapeEntries(name, names, locals_at(self, level), state)
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
