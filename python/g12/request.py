@@ -195,19 +195,21 @@ def cutter_of(words: Words, tool: Tool, by: str, source: str) -> Cutter:
 
 def chosen_cutter(words: Words) -> Cutter:
     """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
-    context, tool = words.context, commanded_tool(words)
-    if tool is not None:
-        commanded = cutter_of(words, tool, BY_D, f"D{tool.number}")
-        return check_sound(words, commanded)._replace(is_modal=True)
-    kept = functools.partial(kept_cutter, words)
-    if context.last_cutter is not None:
-        cutter = cutter_of(words, context.last_cutter, BY_LAST_D, "the D last commanded")
-        return cutter._replace(kept=kept(context.last_cutter))
-    tool = context.spindle_tool
+    context, tool, by = words.context, commanded_tool(words), BY_D
+    if tool is None:
+        tool, by = context.last_cutter, BY_LAST_D
+    if tool is None:
+        tool, by = context.spindle_tool, LOADED
     if tool is None:
         raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    loaded = cutter_of(words, tool, LOADED, f"T{tool.number} in the spindle")
-    return check_sound(words, loaded)._replace(kept=kept(tool))
+    source = {
+        BY_D: f"D{tool.number}",
+        BY_LAST_D: "the D last commanded",
+        LOADED: f"T{tool.number} in the spindle",
+    }[by]
+    kept = None if by == BY_D else kept_cutter(words, tool)
+    cutter = cutter_of(words, tool, by, source)._replace(kept=kept, is_modal=by == BY_D)
+    return cutter if by == BY_LAST_D else check_sound(words, cutter)
 
 
 def sized_cutter(words: Words) -> Cutter:
@@ -348,7 +350,7 @@ def check_travel(words: Words, extent: CycleExtent) -> None:
     ]
     beyond = beyond_travel(state, state.travel, ranges)
     if beyond:
-        raise words.refuse(beyond.rule)
+        raise Refusal(beyond.rule, words.code)
 
 
 def half_widths(state: State, extent: CycleExtent) -> list[float]:

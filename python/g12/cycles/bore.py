@@ -8,7 +8,7 @@ stay there.
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import CyclePlan, checked_plan, hole_of, turns_of
+from g12.cycles.plan import CyclePlan, hole_of, turns_of
 from g12.errors import number
 from g12.request import (
     CLEARED,
@@ -18,6 +18,7 @@ from g12.request import (
     check_block,
     check_count,
     check_fits,
+    check_travel,
     sized_cutter,
     steps_between,
 )
@@ -67,7 +68,8 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
         )
 
     extent = CycleExtent(XY, centre, last, (hole.start, hole.z))
-    return checked_plan(words, numbers, extent, cut, cutter)
+    check_travel(words, extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def open_radius(words: Words, wall: float) -> float:

@@ -32,7 +32,7 @@ not too small; the deepest rough level below W; not too many circles; L not too 
 from typing import NamedTuple
 
 from g12.cut_report import LOADED, EventCut, UsedCutter
-from g12.cycles.plan import CyclePlan, EventPlanes, checked_plan
+from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import number
 from g12.request import (
     CLOCKWISE,
@@ -43,6 +43,7 @@ from g12.request import (
     check_block,
     check_count,
     check_fits,
+    check_travel,
     loaded_tool,
     steps_between,
 )
@@ -195,10 +196,9 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
     heights = first_plane, second_plane, final
-    return checked_plan(
-        words,
+    check_travel(words, CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
+    return CyclePlan(
         position | roughing | depths | side | feeds,
-        CycleExtent(XY, (circle.x, circle.y, final), largest, heights),
         lambda: cut_of_event(entries, circle, tool, depths),
         None,
         uncut_material(words, roughing["roughing_width"], tool),

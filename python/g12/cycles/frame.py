@@ -10,7 +10,7 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
-from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, checked_plan, hole_of
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, hole_of
 from g12.errors import number
 from g12.request import (
     CLEARED,
@@ -21,6 +21,7 @@ from g12.request import (
     Words,
     check_block,
     check_count,
+    check_travel,
     sized_cutter,
     steps_between,
 )
@@ -90,7 +91,8 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         )
 
     extent = extent_of(hole, frame, cutter, lead)
-    return checked_plan(words, numbers, extent, cut, cutter)
+    check_travel(words, extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def frame_of(words: Words) -> Frame:

@@ -25,7 +25,7 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 from typing import NamedTuple
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import STRAIGHT_DOWN, CyclePlan, PocketEntry, checked_plan, pocket_descent
+from g12.cycles.plan import STRAIGHT_DOWN, CyclePlan, PocketEntry, pocket_descent
 from g12.errors import number
 from g12.request import (
     CLEARED,
@@ -35,6 +35,7 @@ from g12.request import (
     check_block,
     check_count,
     check_fits,
+    check_travel,
     chosen_cutter,
     steps_between,
 )
@@ -71,7 +72,14 @@ def plan_pocket(
         raise words.refuse_word("I", first, f"must be less than K{number(outermost)}")
 
     pocket = Pocket(first, outermost or first, stepover or 0.0)
+    growth = pocket.stepover / 2 if clearing == "spiral" else pocket.stepover  # of a link
+    links = growth and steps_between(first, pocket.finished, growth, context.rounding)
+    cause = f"{words.written('Q', pocket.stepover)} makes" if links else "L makes"
+    check_count(words, round(links + 1) * levels, cause)
     z_step = depth or 0.0 if context.incremental else 0.0
+    last_level = z + z_step * (levels - 1)
+    extent = CycleExtent(XY, (x, y, z), pocket.finished - cutter.radius, (z, last_level))
+    check_travel(words, extent)
     heights = context.z - z, -z_step
     first_radius = first - cutter.radius
     numbers = {
@@ -83,11 +91,9 @@ def plan_pocket(
         "levels": levels,
         "first_radius": first_radius,
         "rings": clearing != "spiral",
-        **links_outward(words, pocket, clearing, levels),
         **pocket_descent(words, entry, first_radius, cutter.radius, heights),
+        **links_outward(pocket, growth, links),
     }
-    last_level = z + z_step * (levels - 1)
-    extent = CycleExtent(XY, (x, y, z), pocket.finished - cutter.radius, (z, last_level))
     message = upward(words, depth, z) or uncut_material(words, pocket, cutter, entry)
 
     def cut() -> PocketCut:
@@ -102,19 +108,14 @@ def plan_pocket(
             cutter=cutter.used,
         )
 
-    return checked_plan(words, numbers, extent, cut, cutter, message)
+    return CyclePlan(numbers, cut, cutter, message)
 
 
-def links_outward(words: Words, pocket: Pocket, clearing: str, levels: int) -> dict[str, float]:
+def links_outward(pocket: Pocket, growth: float, links: float) -> dict[str, float]:
     """Return the locals of the links: stepovers, or half turns of the spiral."""
-    growth, width = pocket.stepover, pocket.finished - pocket.first
-    if not growth:
-        check_count(words, levels, "L makes")
+    if not links:
         return {"links": 0, "step": 0.0, "shorter": 0.0}
-    if clearing == "spiral":
-        growth /= 2
-    links = steps_between(0.0, width, growth, words.context.rounding)
-    check_count(words, (links + 1) * levels, f"{words.written('Q', pocket.stepover)} makes")
+    width = pocket.finished - pocket.first
     step, last_step = min(growth, width), width - growth * (links - 1)
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
 

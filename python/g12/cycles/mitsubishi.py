@@ -14,8 +14,16 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 """
 
 from g12.cut_report import BY_D, PocketCut
-from g12.cycles.plan import CyclePlan, checked_plan
-from g12.request import CycleExtent, Words, check_block, check_fits, commanded_tool, cutter_of
+from g12.cycles.plan import CyclePlan
+from g12.request import (
+    CycleExtent,
+    Words,
+    check_block,
+    check_fits,
+    check_travel,
+    commanded_tool,
+    cutter_of,
+)
 from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
@@ -39,10 +47,11 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
     }
     extent = CycleExtent(context.plane, context.xyz, radius)
+    check_travel(words, extent)
 
     def cut() -> PocketCut:
         level = getattr(context, AXIS_ACROSS[context.plane])
         inner = radius - cutter.radius
         return PocketCut(context.plane, context.xyz, wall, wall, 0.0, inner, (level,), cutter.used)
 
-    return checked_plan(words, numbers, extent, cut, cutter)
+    return CyclePlan(numbers, cut, cutter)

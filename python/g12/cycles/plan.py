@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from g12.cut_report import PlannedCut
 from g12.errors import number
-from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, CycleExtent, Words, check_travel
+from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, Words
 
 
 class EventPlanes(NamedTuple):
@@ -37,22 +37,8 @@ class CyclePlan(NamedTuple):
     locals: dict[str, float]
     cut: Callable[[], PlannedCut]
     cutter: Cutter | None
-    message: str | None
-    planes: EventPlanes
-
-
-def checked_plan(
-    words: Words,
-    numbers: dict[str, float],
-    extent: CycleExtent,
-    cut: Callable[[], PlannedCut],
-    cutter: Cutter | None,
-    message: str | None = None,
-    planes: EventPlanes = NO_PLANES,
-) -> CyclePlan:
-    """Return the plan of a block; refuse one that leaves the travel."""
-    check_travel(words, extent)
-    return CyclePlan(numbers, cut, cutter, message, planes)
+    message: str | None = None
+    planes: EventPlanes = NO_PLANES
 
 
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next

@@ -10,7 +10,7 @@ from math import ceil, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, checked_plan, hole_of, turns_of
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, hole_of, turns_of
 from g12.errors import number
 from g12.request import (
     CLOCKWISE,
@@ -20,6 +20,7 @@ from g12.request import (
     Words,
     check_block,
     check_count,
+    check_travel,
     sized_cutter,
     steps_between,
 )
@@ -84,11 +85,12 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
         widest = (widest + high) * (1 - 2 * ratio)
     highest = max(runs["begin"], runs["last"] + runs["rise"] + 2 * runs["lead"])
     extent = CycleExtent(XY, (hole.x, hole.y, hole.z), widest, (hole.start, hole.z, highest))
+    check_travel(words, extent)
 
     def cut() -> ThreadCut:
         return ThreadCut((hole.x, hole.y), *thread, hole.top, (hole.z,), cutter.used)
 
-    return checked_plan(words, numbers, extent, cut, cutter)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def thread_of(words: Words) -> Thread:

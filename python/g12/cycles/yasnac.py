@@ -27,7 +27,7 @@ from math import copysign
 from typing import NamedTuple
 
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut
-from g12.cycles.plan import CyclePlan, checked_plan
+from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
 from g12.request import (
     CycleExtent,
@@ -36,6 +36,7 @@ from g12.request import (
     check_count,
     check_fits,
     check_sound,
+    check_travel,
     commanded_tool,
     cutter_of,
     steps_between,
@@ -125,7 +126,8 @@ def plan_circle(words: Words) -> CyclePlan:
         )
 
     extent = CycleExtent(XY, context.xyz, abs(radii.last))
-    return checked_plan(words, numbers, extent, cut, cutter)
+    check_travel(words, extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def approach_of(radii: OffsetRadii, letter: str, traverse: float) -> float:

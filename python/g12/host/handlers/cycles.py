@@ -47,7 +47,7 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
         raise words.refuse(plan.message.removeprefix(f"{words.code}: "))
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     borrowed.begin(interp)
-    remember(interp, plan)
+    remember(interp, plan, kept(interp, CommandedValues))
     if plan.message:
         messages.message(plan.message)
     messages.begin_cut(interp, words, plan.cut)
@@ -320,22 +320,22 @@ class CommandedValues:
         return any(name == "D" for name, _ in self._first)
 
 
-def remember(interp: Interp, plan: CyclePlan) -> None:
+def remember(interp: Interp, plan: CyclePlan, commanded: CommandedValues) -> None:
     """Note what a plan commands for later blocks; show, once a program, how its D differs."""
-    commanded, unit = kept(interp, CommandedValues), millimetres_per_unit(interp)
-    cutter = plan.cutter
-    if cutter and cutter.other:
-        messages.message_once(interp, interp.tool_table[0].toolno, cutter.other)
-    if cutter and cutter.kept:
-        messages.message_once(interp, cutter.kept, cutter.kept)
-    if cutter and cutter.is_modal:
-        interp.cutter_comp_radius = cutter.radius
-        commanded.radius, commanded.tool_number = cutter.radius * unit, cutter.used.number
-        commanded.note("D", place_of_block(interp))
+    place, unit, cutter = place_of_block(interp), millimetres_per_unit(interp), plan.cutter
     for name, plane in plan.planes._asdict().items():
         if plane is not None:
             commanded.planes[name] = plane * unit
-            commanded.note(name, place_of_block(interp))
+            commanded.note(name, place)
+    if not cutter:
+        return
+    if cutter.is_modal:
+        interp.cutter_comp_radius = cutter.radius
+        commanded.radius, commanded.tool_number = cutter.radius * unit, cutter.used.number
+        commanded.note("D", place)
+    for key, text in ((interp.tool_table[0].toolno, cutter.other), (cutter.kept, cutter.kept)):
+        if text:
+            messages.message_once(interp, key, text)
 
 
 def event_planes(interp: Interp) -> EventPlanes:
