@@ -8,7 +8,6 @@ of rings, levels and turns are decided here once, never rounded again in NGC.
 Lengths are in program units.
 """
 
-import functools
 import math
 from collections.abc import Collection
 from math import hypot
@@ -17,7 +16,17 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, UsedCutter
 from g12.errors import Refusal, number
 from g12.lengths import LARGEST
-from g12.state import LINEAR_AXES, XY, XZ, YZ, SpacePoint, State, Tool, beyond_travel
+from g12.state import (
+    LINEAR_AXES,
+    XY,
+    XZ,
+    YZ,
+    SpacePoint,
+    State,
+    Tool,
+    beyond_travel,
+    refused_mode,
+)
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
 
@@ -135,25 +144,22 @@ MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the
 def check_block(words: Words, known: str, planes: Collection[str] = (XY,)) -> None:
     """Refuse the modes in which no circle can be cut, and a word that the dialect does not have.
 
-    In this order: another plane, G93, G95 without a spindle speed, G41/G42, a feed of 0; the words;
-    a tool that is still offset from the programmed point, unless X or Y moves it.
+    In this order: another plane, the modes that all codes refuse (a tool that is still offset may
+    be moved by X or Y), G95 without a spindle speed, a feed of 0; the words.
     """
     context = words.context
     if context.plane not in planes:
         *others, last = planes
         needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
         raise words.refuse(f"needs {needed}, but {context.plane} is active")
-    if context.inverse_time:
-        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
+    wrong = refused_mode(context, moves_first="X" in words or "Y" in words)
+    if wrong:
+        raise words.refuse(wrong)
     if context.per_revolution and context.speed == 0:
         raise words.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
-    if context.compensated:
-        raise words.refuse("brings its own cutter compensation: program G40 first")
     if not context.feed > 0:
         raise words.refuse(f"F{number(context.feed)} must be greater than 0 (no feed commanded?)")
     words.check_known(known)
-    if context.offset_pending and "X" not in words and "Y" not in words:
-        raise words.refuse("the tool is still offset: after G40 move in X or Y first")
 
 
 class Cutter(NamedTuple):

@@ -114,6 +114,25 @@ class State(NamedTuple):
         return x, y, z
 
 
+# By the name of the state's field, the modes in which no code of the package can begin.
+REFUSED_MODES = {
+    "inverse_time": "needs G94 or G95, not G93",
+    "compensated": "needs G40: compensation is switched on inside",
+    "offset_pending": "needs a move after G40: the tool is still beside the programmed point",
+}
+
+
+def refused_mode(state: State, *, moves_first: bool = False) -> str:
+    """Return the rule that the first refused mode breaks, "" if none is in force.
+
+    ``moves_first``: the block itself moves to where the tool is not offset.
+    """
+    broken = [name for name in REFUSED_MODES if getattr(state, name)]
+    if moves_first:
+        broken = [name for name in broken if name != "offset_pending"]
+    return REFUSED_MODES[broken[0]] if broken else ""
+
+
 class Beyond(NamedTuple):
     """An axis that would leave its travel, and the rule for a message."""
 

@@ -125,12 +125,11 @@ def test_a_bad_block_is_refused_by_name(name, words, rule):
 
 VALID = {"haas": "I.75 Z-1", "yasnac": "I50", "mitsubishi": "I50 D2", "pocket": ""}
 DIAMETER = "T8 in the spindle needs a diameter above 0 in the tool table, not"
-OFFSET = "the tool is still offset: after G40 move in X or Y first"
+OFFSET = "needs a move after G40: the tool is still beside the programmed point"
 BAD_MODES = [
     *((name, *row) for name in VALID for row in [
-        (dict(inverse_time=True),
-         "needs feed per minute or revolution (G94, G95), but G93 is active"),
-        (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
+        (dict(inverse_time=True), "needs G94 or G95, not G93"),
+        (dict(compensated=True), "needs G40: compensation is switched on inside"),
         (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
         (dict(per_revolution=True),
          "needs a spindle speed for feed per revolution (G95), but S is 0"),
