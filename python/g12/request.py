@@ -29,6 +29,48 @@ from g12.state import (
 )
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
+CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
+LEFT_OUT = -9999.0  # an entry of a call that is left out
+WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
+COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceiling
+MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+
+
+class Cutter(NamedTuple):
+    """The cutter of a block, its name in messages, and what the operator hears of it.
+
+    ``other``: it is not the loaded tool. ``kept``: the program does not show it. ``is_modal``: it
+    counts in later blocks without D.
+    """
+
+    used: UsedCutter
+    source: str
+    other: str | None
+    kept: str | None = None
+    is_modal: bool = False
+
+    @property
+    def radius(self) -> float:
+        return self.used.radius
+
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
+
+
+class CycleExtent(NamedTuple):
+    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
+
+    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
+    whose centres are as far as ``corners`` from its own.
+    """
+
+    plane: str
+    centre: SpacePoint
+    radius: float
+    heights: tuple[float, ...] = ()
+    corners: tuple[float, float] = (0.0, 0.0)
 
 
 class Words:
@@ -132,108 +174,159 @@ class Words:
         x, y, context = self.take("X"), self.take("Y"), self.context
         return self.absolute(x, context.x), self.absolute(y, context.y)
 
+    def check_block(self, known: str, planes: Collection[str] = (XY,)) -> None:
+        """Refuse the modes in which no circle can be cut, and a word that the dialect lacks.
 
-CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
-CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
-LEFT_OUT = -9999.0  # an entry of a call that is left out
-WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
-COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceiling
-MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+        In this order: another plane, the modes that all codes refuse (a tool that is still offset
+        may be moved by X or Y), G95 without a spindle speed, a feed of 0; the words.
+        """
+        context = self.context
+        if context.plane not in planes:
+            *others, last = planes
+            needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
+            raise self.refuse(f"needs {needed}, but {context.plane} is active")
+        wrong = refused_mode(context, moves_first="X" in self or "Y" in self)
+        if wrong:
+            raise self.refuse(wrong)
+        if context.per_revolution and context.speed == 0:
+            raise self.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
+        if not context.feed > 0:
+            raise self.refuse(
+                f"F{number(context.feed)} must be greater than 0 (no feed commanded?)"
+            )
+        self.check_known(known)
 
+    def commanded_tool(self) -> Tool | None:
+        """Return the tool that D names, None without D; D0 is a cutter without size."""
+        if "D" not in self:
+            return None
+        tool_number = self.take_whole("D", least=0)
+        if tool_number == 0:
+            return Tool(0, 0.0)
+        tool = self.context.tool_in_table(tool_number)
+        if tool is None:
+            raise self.refuse(f"D{tool_number} is not in the tool table")
+        return tool
 
-def check_block(words: Words, known: str, planes: Collection[str] = (XY,)) -> None:
-    """Refuse the modes in which no circle can be cut, and a word that the dialect does not have.
-
-    In this order: another plane, the modes that all codes refuse (a tool that is still offset may
-    be moved by X or Y), G95 without a spindle speed, a feed of 0; the words.
-    """
-    context = words.context
-    if context.plane not in planes:
-        *others, last = planes
-        needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
-        raise words.refuse(f"needs {needed}, but {context.plane} is active")
-    wrong = refused_mode(context, moves_first="X" in words or "Y" in words)
-    if wrong:
-        raise words.refuse(wrong)
-    if context.per_revolution and context.speed == 0:
-        raise words.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
-    if not context.feed > 0:
-        raise words.refuse(f"F{number(context.feed)} must be greater than 0 (no feed commanded?)")
-    words.check_known(known)
-
-
-class Cutter(NamedTuple):
-    """The cutter of a block, its name in messages, and what the operator hears of it.
-
-    ``other``: it is not the loaded tool. ``kept``: the program does not show it. ``is_modal``: it
-    counts in later blocks without D.
-    """
-
-    used: UsedCutter
-    source: str
-    other: str | None
-    kept: str | None = None
-    is_modal: bool = False
-
-    @property
-    def radius(self) -> float:
-        return self.used.radius
-
-
-def commanded_tool(words: Words) -> Tool | None:
-    """Return the tool that D names, None without D; D0 is a cutter without size."""
-    if "D" not in words:
-        return None
-    tool_number = words.take_whole("D", least=0)
-    if tool_number == 0:
-        return Tool(0, 0.0)
-    tool = words.context.tool_in_table(tool_number)
-    if tool is None:
-        raise words.refuse(f"D{tool_number} is not in the tool table")
-    return tool
-
-
-def cutter_of(words: Words, tool: Tool, by: str, source: str) -> Cutter:
-    return Cutter(
-        UsedCutter(tool.radius, by, tool.number), source, other_cutter(words, tool, source)
-    )
-
-
-def chosen_cutter(words: Words) -> Cutter:
-    """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
-    context, tool, by = words.context, commanded_tool(words), BY_D
-    if tool is None:
-        tool, by = context.last_cutter, BY_LAST_D
-    if tool is None:
-        tool, by = context.spindle_tool, LOADED
-    if tool is None:
-        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    source = {
-        BY_D: f"D{tool.number}",
-        BY_LAST_D: "the D last commanded",
-        LOADED: f"T{tool.number} in the spindle",
-    }[by]
-    kept = None if by == BY_D else kept_cutter(words, tool)
-    cutter = cutter_of(words, tool, by, source)._replace(kept=kept, is_modal=by == BY_D)
-    return cutter if by == BY_LAST_D else check_sound(words, cutter)
-
-
-def sized_cutter(words: Words) -> Cutter:
-    """Return the cutter of the block, which must have a diameter."""
-    cutter = chosen_cutter(words)
-    if not cutter.radius:
-        raise words.refuse(f"{cutter.source} has no diameter: it sets the path")
-    return cutter
-
-
-def check_sound(words: Words, cutter: Cutter) -> Cutter:
-    """Return the cutter; refuse a negative diameter."""
-    if cutter.radius < 0:
-        negative = number(2 * cutter.radius)
-        raise words.refuse(
-            f"{cutter.source} has the negative diameter {negative} in the tool table"
+    def cutter_of(self, tool: Tool, by: str, source: str) -> Cutter:
+        return Cutter(
+            UsedCutter(tool.radius, by, tool.number), source, self.other_cutter(tool, source)
         )
-    return cutter
+
+    def chosen_cutter(self) -> Cutter:
+        """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
+        context, tool, by = self.context, self.commanded_tool(), BY_D
+        if tool is None:
+            tool, by = context.last_cutter, BY_LAST_D
+        if tool is None:
+            tool, by = context.spindle_tool, LOADED
+        if tool is None:
+            raise self.refuse("D is missing, none was commanded before and no tool is loaded")
+        source = {
+            BY_D: f"D{tool.number}",
+            BY_LAST_D: "the D last commanded",
+            LOADED: f"T{tool.number} in the spindle",
+        }[by]
+        kept = None if by == BY_D else self.kept_cutter(tool)
+        cutter = self.cutter_of(tool, by, source)._replace(kept=kept, is_modal=by == BY_D)
+        return cutter if by == BY_LAST_D else self.check_sound(cutter)
+
+    def sized_cutter(self) -> Cutter:
+        """Return the cutter of the block, which must have a diameter."""
+        cutter = self.chosen_cutter()
+        if not cutter.radius:
+            raise self.refuse(f"{cutter.source} has no diameter: it sets the path")
+        return cutter
+
+    def check_sound(self, cutter: Cutter) -> Cutter:
+        """Return the cutter; refuse a negative diameter."""
+        if cutter.radius < 0:
+            negative = number(2 * cutter.radius)
+            raise self.refuse(
+                f"{cutter.source} has the negative diameter {negative} in the tool table"
+            )
+        return cutter
+
+    def other_cutter(self, tool: Tool, source: str) -> str | None:
+        """Return the operator message of a cutter that is not the loaded tool, by more than wear.
+
+        The cycle uses the cutter: the loaded tool may be the mistake. There is no comparison
+        without a tool, or with one without a diameter.
+        """
+        context, loaded = self.context, self.context.spindle_tool
+        if not tool.radius or loaded is None or loaded.radius <= 0:
+            return None
+        if abs(tool.radius - loaded.radius) <= WEAR * loaded.radius:
+            return None
+        size, loaded_size = (context.tool_size(2 * each.radius) for each in (tool, loaded))
+        used = f"the cycle uses {source}, diameter {size}"
+        return f"{self.code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
+
+    def kept_cutter(self, cutter: Tool) -> str | None:
+        """Return the operator message where the program does not show the cutter: without D.
+
+        It may be that of an older line of the tool table, or depend on what ran before.
+        """
+        context, before = self.context, "the D of what ran before"
+        size = context.tool_size(2 * cutter.radius)
+        named = context.tool_in_table(cutter.number) if cutter.number else None
+        if named and abs(named.radius - cutter.radius) > context.rounding:
+            now = context.tool_size(2 * named.radius)
+            return (
+                f"{self.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
+                f" counts as it was commanded, with {size}. Give D{cutter.number} again"
+            )
+        if not context.d_is_earlier():
+            return None
+        counts = f"{before} counts, diameter {size}"
+        if context.last_cutter is None:
+            counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
+        return f"{self.code}: no D above this block in the program: {counts}. Give D"
+
+    def check_fits(
+        self,
+        letter: str,
+        radius: float,
+        cutter: float,
+        source: str,
+        finish: tuple[float, str] = (0.0, ""),
+    ) -> None:
+        """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
+
+        ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
+        """
+        context, sized = self.context, " in size" if radius < 0 else ""
+        room, least = abs(radius) - cutter - finish[0], number(context.smallest_ring)
+        if room >= context.smallest_ring - context.rounding:
+            return
+        if not cutter:
+            raise self.refuse_word(letter, radius, f"must be at least {least}{sized}")
+        by = f" by at least {least}" if room > context.rounding else ""
+        size = f"{context.tool_size(cutter)} ({source}){finish[1]}{by}"
+        raise self.refuse_word(
+            letter, radius, f"must be greater{sized} than the tool radius {size}"
+        )
+
+    def check_count(self, circles: int, cause: str) -> None:
+        """Refuse steps so small that the block would never end; ``cause`` names their words."""
+        if circles > MOST_CIRCLES:
+            raise self.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
+
+    def check_travel(self, extent: CycleExtent) -> None:
+        """Refuse a cycle that leaves the limits of an axis."""
+        state, (x, y, z) = self.context, extent.centre
+        if not state.travel:
+            return
+        points = [(x, y, height) for height in extent.heights or (z,)]
+        centres = zip(*map(state.point_on_machine, points))
+        widths = half_widths(state, extent)
+        ranges = [
+            (axis, min(centre) - half, max(centre) + half)
+            for axis, centre, half in zip(LINEAR_AXES, centres, widths)
+        ]
+        beyond = beyond_travel(state, state.travel, ranges)
+        if beyond:
+            raise Refusal(beyond.rule, self.code)
 
 
 def loaded_tool(words: Words) -> Tool:
@@ -249,114 +342,12 @@ def loaded_tool(words: Words) -> Tool:
     return tool
 
 
-def other_cutter(words: Words, tool: Tool, source: str) -> str | None:
-    """Return the operator message where a cutter differs from the loaded tool by more than wear.
-
-    The cycle uses the cutter: the loaded tool may be the mistake. There is no comparison without a
-    tool, or with one without a diameter.
-    """
-    context, loaded = words.context, words.context.spindle_tool
-    if not tool.radius or loaded is None or loaded.radius <= 0:
-        return None
-    if abs(tool.radius - loaded.radius) <= WEAR * loaded.radius:
-        return None
-    size, loaded_size = (context.tool_size(2 * each.radius) for each in (tool, loaded))
-    used = f"the cycle uses {source}, diameter {size}"
-    return f"{words.code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
-
-
-def kept_cutter(words: Words, cutter: Tool) -> str | None:
-    """Return the operator message of a block without D whose cutter the program does not show.
-
-    It may be that of an older line of the tool table, or depend on what ran before.
-    """
-    context, before = words.context, "the D of what ran before"
-    size = context.tool_size(2 * cutter.radius)
-    named = context.tool_in_table(cutter.number) if cutter.number else None
-    if named and abs(named.radius - cutter.radius) > context.rounding:
-        now = context.tool_size(2 * named.radius)
-        return (
-            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
-            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
-        )
-    if not context.d_is_earlier():
-        return None
-    counts = f"{before} counts, diameter {size}"
-    if context.last_cutter is None:
-        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
-    return f"{words.code}: no D above this block in the program: {counts}. Give D"
-
-
-def check_fits(
-    words: Words,
-    letter: str,
-    radius: float,
-    cutter: float,
-    source: str,
-    finish: tuple[float, str] = (0.0, ""),
-) -> None:
-    """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
-
-    ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
-    """
-    context, sized = words.context, " in size" if radius < 0 else ""
-    room, least = abs(radius) - cutter - finish[0], number(context.smallest_ring)
-    if room >= context.smallest_ring - context.rounding:
-        return
-    if not cutter:
-        raise words.refuse_word(letter, radius, f"must be at least {least}{sized}")
-    by = f" by at least {least}" if room > context.rounding else ""
-    size = f"{context.tool_size(cutter)} ({source}){finish[1]}{by}"
-    raise words.refuse_word(letter, radius, f"must be greater{sized} than the tool radius {size}")
-
-
-def check_count(words: Words, circles: int, cause: str) -> None:
-    """Refuse steps so small that the block would never end; ``cause`` names their words."""
-    if circles > MOST_CIRCLES:
-        raise words.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
-
-
 def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
     """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
 
     A remainder shorter than ``tolerance`` is rounding, not a step of its own.
     """
     return math.ceil(max(0.0, min((last - first - tolerance) / step, COUNTLESS)))
-
-
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
-
-
-class CycleExtent(NamedTuple):
-    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
-
-    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
-    whose centres are as far as ``corners`` from its own.
-    """
-
-    plane: str
-    centre: SpacePoint
-    radius: float
-    heights: tuple[float, ...] = ()
-    corners: tuple[float, float] = (0.0, 0.0)
-
-
-def check_travel(words: Words, extent: CycleExtent) -> None:
-    """Refuse a cycle that leaves the limits of an axis."""
-    state, (x, y, z) = words.context, extent.centre
-    if not state.travel:
-        return
-    points = [(x, y, height) for height in extent.heights or (z,)]
-    centres = zip(*map(state.point_on_machine, points))
-    widths = half_widths(state, extent)
-    ranges = [
-        (axis, min(centre) - half, max(centre) + half)
-        for axis, centre, half in zip(LINEAR_AXES, centres, widths)
-    ]
-    beyond = beyond_travel(state, state.travel, ranges)
-    if beyond:
-        raise Refusal(beyond.rule, words.code)
 
 
 def half_widths(state: State, extent: CycleExtent) -> list[float]:

@@ -8,14 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.lengths import LARGEST, MM_PER_INCH
-from g12.request import (
-    CycleExtent,
-    Words,
-    check_travel,
-    chosen_cutter,
-    half_widths,
-    steps_between,
-)
+from g12.request import CycleExtent, Words, half_widths, steps_between
 from g12.state import Tool
 from support.planner_context import MM, reported
 
@@ -82,7 +75,7 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
 def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, message):
     state = found._replace(last_cutter=None if last is None else Tool(0, last))
     block = Words("G12", {} if d_word is None else {"D": d_word}, state)
-    assert chosen_cutter(block).other == (message and f"G12: the cycle uses {message}")
+    assert block.chosen_cutter().other == (message and f"G12: the cycle uses {message}")
 
 
 # ---------------------------------------------------------------- travel
@@ -115,12 +108,12 @@ METRIC = MM._replace(machine_mm=MM_PER_INCH)  # the other way round
 def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, state, rule):
     extent = CycleExtent("G17", centre, radius, heights)
     block = Words("G12", {}, state._replace(travel=AXES))
-    assert reported(check_travel, block, extent) == f"G12: the {rule}"
+    assert reported(block.check_travel, extent) == f"G12: the {rule}"
 
 
 def test_one_that_just_fits_is_not():
     block = Words("G12", {}, MM._replace(travel=AXES))
-    check_travel(block, CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)))
+    block.check_travel(CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)))
 
 
 def test_offsets_rotation_and_tool_are_those_of_the_machine():

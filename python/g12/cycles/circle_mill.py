@@ -40,10 +40,6 @@ from g12.request import (
     LEFT_OUT,
     CycleExtent,
     Words,
-    check_block,
-    check_count,
-    check_fits,
-    check_travel,
     loaded_tool,
     steps_between,
 )
@@ -112,7 +108,7 @@ def plan_code(words: Words, planes: EventPlanes, pocket: bool) -> CyclePlan:
 
     ``planes`` are the reference planes as last commanded.
     """
-    check_block(words, EVENT_WORDS)
+    words.check_block(EVENT_WORDS)
     finish, bottom = finish_of_code(words)
     feed = words.context.feed
     return plan_event(EventEntries(words, CODE_LETTERS, planes, pocket, finish, bottom, feed))
@@ -123,7 +119,7 @@ def plan_call(words: Words, planes: EventPlanes) -> CyclePlan:
     finish_feed = finish_feed_of_call(words)
     feed = words.take_positive("F") or words.context.feed
     words.context = words.context._replace(feed=feed)
-    check_block(words, EVENT_ENTRIES)
+    words.check_block(EVENT_ENTRIES)
     cycle = words.take("G") or PERIMETER_CYCLE
     if cycle not in (PERIMETER_CYCLE, POCKET_CYCLE):
         raise words.refuse_word("G", cycle, "must be 0 (perimeter) or 7 (pocket)")
@@ -177,7 +173,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     tool = loaded_tool(words)
     roughing = roughing_of(entries, circle, tool, width)
     depths = depths_of(entries, depth, first_plane, peck)
-    check_count(words, round(roughing["rings"] * depths["levels"]), "J and K make")
+    words.check_count(round(roughing["rings"] * depths["levels"]), "J and K make")
     side = side_finish_of(entries, circle, tool)
     position = {
         "x": circle.x,
@@ -196,7 +192,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
     heights = first_plane, second_plane, final
-    check_travel(words, CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
+    words.check_travel(CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
     return CyclePlan(
         position | roughing | depths | side | feeds,
         lambda: cut_of_event(entries, circle, tool, depths),
@@ -279,7 +275,7 @@ def roughing_of(
     cutter = 0.0 if circle.side == ON_CIRCLE else tool.radius
     if circle.side != OUTER_SIDE:
         more = f" + {letter}{number(finish)}" if finish else ""
-        check_fits(entries.words, "R", circle.radius, cutter, f"T{tool.number}", (finish, more))
+        entries.words.check_fits("R", circle.radius, cutter, f"T{tool.number}", (finish, more))
     if entries.pocket:
         rings = rings_of(entries, radius, tool, width)
     elif width is not None:

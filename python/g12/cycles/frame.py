@@ -19,10 +19,6 @@ from g12.request import (
     Cutter,
     CycleExtent,
     Words,
-    check_block,
-    check_count,
-    check_travel,
-    sized_cutter,
     steps_between,
 )
 from g12.state import XY
@@ -49,20 +45,20 @@ class Frame(NamedTuple):
 
 def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
     """Return the frame of one block; ``entry`` are the machine's settings of a plunge."""
-    check_block(words, FRAME_WORDS)
+    words.check_block(FRAME_WORDS)
     context = words.context
     hole = hole_of(words, context.z)
     frame = frame_of(words)
     level = words.take_positive("K") or hole.depth
     stepover = words.take_positive("Q")
     plunge_feed = words.take_positive("P") or context.feed * entry.feed / 100
-    cutter = sized_cutter(words)
+    cutter = words.sized_cutter()
     if stepover:
         check_stepover(words, frame, stepover, cutter)
     check_room(words, frame, cutter)
     rings = rings_of(words, frame, stepover or cutter.radius, cutter)
     levels = max(1, steps_between(0.0, hole.depth, level, context.rounding))
-    check_count(words, round(levels * (rings["rings"] + 1)), "Q and K make")
+    words.check_count(round(levels * (rings["rings"] + 1)), "Q and K make")
     lead = min(CLEARED * cutter.radius, rings["a"], rings["b"])
     fall = hole.depth / levels
     numbers = {
@@ -91,7 +87,7 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         )
 
     extent = extent_of(hole, frame, cutter, lead)
-    check_travel(words, extent)
+    words.check_travel(extent)
     return CyclePlan(numbers, cut, cutter)
 
 
@@ -174,7 +170,7 @@ def rings_of(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> dic
 def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -> int:
     """Return the whole turns of the helix down to a level."""
     turns = max(1, ceil(height / (2 * pi * radius * tan(radians(entry.angle))) - 1e-9))
-    check_count(words, turns, "a helix down to the level makes")
+    words.check_count(turns, "a helix down to the level makes")
     return turns
 
 

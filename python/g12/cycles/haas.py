@@ -27,18 +27,7 @@ from typing import NamedTuple
 from g12.cut_report import PocketCut
 from g12.cycles.plan import STRAIGHT_DOWN, CyclePlan, PocketEntry, pocket_descent
 from g12.errors import number
-from g12.request import (
-    CLEARED,
-    Cutter,
-    CycleExtent,
-    Words,
-    check_block,
-    check_count,
-    check_fits,
-    check_travel,
-    chosen_cutter,
-    steps_between,
-)
+from g12.request import CLEARED, Cutter, CycleExtent, Words, steps_between
 from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"
@@ -58,7 +47,7 @@ def plan_pocket(
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
     context = words.context
     names_centre = "X" in words or "Y" in words
-    check_block(words, HAAS_WORDS)
+    words.check_block(HAAS_WORDS)
     first = words.require_positive("I", "the radius of the first circle")
     words.check_pair("K", "Q")
     outermost, stepover = words.take_positive("K"), words.take_positive("Q")
@@ -66,8 +55,8 @@ def plan_pocket(
     x, y = words.take_centre()
     depth = words.take("Z")
     z = words.absolute(depth, context.z)
-    cutter = chosen_cutter(words)
-    check_fits(words, "I", first, cutter.radius, cutter.source)
+    cutter = words.chosen_cutter()
+    words.check_fits("I", first, cutter.radius, cutter.source)
     if outermost and outermost <= first + context.rounding:
         raise words.refuse_word("I", first, f"must be less than K{number(outermost)}")
 
@@ -75,11 +64,11 @@ def plan_pocket(
     growth = pocket.stepover / 2 if clearing == "spiral" else pocket.stepover  # of a link
     links = growth and steps_between(first, pocket.finished, growth, context.rounding)
     cause = f"{words.written('Q', pocket.stepover)} makes" if links else "L makes"
-    check_count(words, round(links + 1) * levels, cause)
+    words.check_count(round(links + 1) * levels, cause)
     z_step = depth or 0.0 if context.incremental else 0.0
     last_level = z + z_step * (levels - 1)
     extent = CycleExtent(XY, (x, y, z), pocket.finished - cutter.radius, (z, last_level))
-    check_travel(words, extent)
+    words.check_travel(extent)
     heights = context.z - z, -z_step
     first_radius = first - cutter.radius
     numbers = {

@@ -15,15 +15,7 @@ greater than the offset. A negative diameter in the tool table enlarges the circ
 
 from g12.cut_report import BY_D, PocketCut
 from g12.cycles.plan import CyclePlan
-from g12.request import (
-    CycleExtent,
-    Words,
-    check_block,
-    check_fits,
-    check_travel,
-    commanded_tool,
-    cutter_of,
-)
+from g12.request import CycleExtent, Words
 from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
@@ -33,13 +25,13 @@ AXIS_ACROSS = {XY: "z", XZ: "y", YZ: "x"}
 
 def plan_circle(words: Words) -> CyclePlan:
     context = words.context
-    check_block(words, MITSUBISHI_WORDS, planes=tuple(FIRST_AXIS))
+    words.check_block(MITSUBISHI_WORDS, planes=tuple(FIRST_AXIS))
     commanded = words.require("I", "the radius of the circle")
-    tool = commanded_tool(words)
+    tool = words.commanded_tool()
     if tool is None:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    cutter = cutter_of(words, tool, BY_D, f"D{tool.number}")
-    check_fits(words, "I", commanded, cutter.radius, cutter.source)
+    cutter = words.cutter_of(tool, BY_D, f"D{tool.number}")
+    words.check_fits("I", commanded, cutter.radius, cutter.source)
     wall, radius = abs(commanded), abs(commanded) - cutter.radius
     numbers = {
         "plane": int(context.plane[1:]),
@@ -47,7 +39,7 @@ def plan_circle(words: Words) -> CyclePlan:
         "radius": radius,
     }
     extent = CycleExtent(context.plane, context.xyz, radius)
-    check_travel(words, extent)
+    words.check_travel(extent)
 
     def cut() -> PocketCut:
         level = getattr(context, AXIS_ACROSS[context.plane])

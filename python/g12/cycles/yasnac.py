@@ -29,18 +29,7 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request import (
-    CycleExtent,
-    Words,
-    check_block,
-    check_count,
-    check_fits,
-    check_sound,
-    check_travel,
-    commanded_tool,
-    cutter_of,
-    steps_between,
-)
+from g12.request import CycleExtent, Words, steps_between
 from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
@@ -84,7 +73,7 @@ class OffsetRadii(NamedTuple):
 
 def plan_circle(words: Words) -> CyclePlan:
     context = words.context
-    check_block(words, YASNAC_WORDS)
+    words.check_block(YASNAC_WORDS)
     finished = words.require("I", "the radius of the finished circle")
     if "R" in words and "J" in words:
         raise words.refuse("R and J are the same word: give one of them")
@@ -93,16 +82,16 @@ def plan_circle(words: Words) -> CyclePlan:
     words.check_pair("K", "Q")
     start, pitch = words.take("K"), words.take_positive("Q")
     circles = words.take_whole("L", least=1, default=1)
-    tool = commanded_tool(words)
+    tool = words.commanded_tool()
     by, tool = (NO_CUTTER, Tool(0, 0.0)) if tool is None else (BY_D, tool)
-    cutter = check_sound(words, cutter_of(words, tool, by, f"D{tool.number}"))
-    check_fits(words, "I", finished, cutter.radius, cutter.source)
+    cutter = words.check_sound(words.cutter_of(tool, by, f"D{tool.number}"))
+    words.check_fits("I", finished, cutter.radius, cutter.source)
     named = f"tool radius {context.tool_size(cutter.radius)}, {cutter.source}"
     radii = OffsetRadii(words, finished, cutter.radius, named if tool.number else "no D")
     approach = 0.0 if traverse is None else approach_of(radii, letter, traverse)
     spiral = None if start is None or pitch is None else (start, pitch)
     turns = half_turns_of(radii, spiral, approach)
-    check_count(words, round(turns["half_turns"]) + circles, "K, Q and L make")
+    words.check_count(round(turns["half_turns"]) + circles, "K, Q and L make")
     numbers = {
         "x": context.x,
         "y": context.y,
@@ -126,7 +115,7 @@ def plan_circle(words: Words) -> CyclePlan:
         )
 
     extent = CycleExtent(XY, context.xyz, abs(radii.last))
-    check_travel(words, extent)
+    words.check_travel(extent)
     return CyclePlan(numbers, cut, cutter)
 
 
