@@ -16,17 +16,7 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, UsedCutter
 from g12.errors import Refusal, number
 from g12.lengths import LARGEST
-from g12.state import (
-    LINEAR_AXES,
-    XY,
-    XZ,
-    YZ,
-    SpacePoint,
-    State,
-    Tool,
-    beyond_travel,
-    refused_mode,
-)
+from g12.state import LINEAR_AXES, XY, XZ, YZ, SpacePoint, State, Tool, beyond_travel, refused_mode
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
 CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
