@@ -198,28 +198,23 @@ class Words:
             raise self.refuse(f"D{tool_number} is not in the tool table")
         return tool
 
-    def cutter_of(self, tool: Tool, by: str, source: str) -> Cutter:
-        return Cutter(
-            UsedCutter(tool.radius, by, tool.number), source, self.other_cutter(tool, source)
-        )
-
     def chosen_cutter(self) -> Cutter:
         """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
-        context, tool, by = self.context, self.commanded_tool(), BY_D
-        if tool is None:
-            tool, by = context.last_cutter, BY_LAST_D
-        if tool is None:
+        context, tool = self.context, self.commanded_tool()
+        if tool is not None:
+            by, source = BY_D, f"D{tool.number}"
+        elif context.last_cutter is not None:
+            tool, by, source = context.last_cutter, BY_LAST_D, "the D last commanded"
+        elif context.spindle_tool is not None:
             tool, by = context.spindle_tool, LOADED
-        if tool is None:
+            source = f"T{tool.number} in the spindle"
+        else:
             raise self.refuse("D is missing, none was commanded before and no tool is loaded")
-        source = {
-            BY_D: f"D{tool.number}",
-            BY_LAST_D: "the D last commanded",
-            LOADED: f"T{tool.number} in the spindle",
-        }[by]
+        if by != BY_LAST_D:
+            self.check_sound(tool, source)
         kept = None if by == BY_D else self.kept_cutter(tool)
-        cutter = self.cutter_of(tool, by, source)._replace(kept=kept, is_modal=by == BY_D)
-        return cutter if by == BY_LAST_D else self.check_sound(cutter)
+        used = UsedCutter(tool.radius, by, tool.number)
+        return Cutter(used, source, self.other_cutter(tool, source), kept, by == BY_D)
 
     def sized_cutter(self) -> Cutter:
         """Return the cutter of the block, which must have a diameter."""
@@ -228,14 +223,11 @@ class Words:
             raise self.refuse(f"{cutter.source} has no diameter: it sets the path")
         return cutter
 
-    def check_sound(self, cutter: Cutter) -> Cutter:
-        """Return the cutter; refuse a negative diameter."""
-        if cutter.radius < 0:
-            negative = number(2 * cutter.radius)
-            raise self.refuse(
-                f"{cutter.source} has the negative diameter {negative} in the tool table"
-            )
-        return cutter
+    def check_sound(self, tool: Tool, source: str) -> None:
+        """Refuse a negative diameter. ``source`` names the tool: ``D1``."""
+        if tool.radius < 0:
+            negative = number(2 * tool.radius)
+            raise self.refuse(f"{source} has the negative diameter {negative} in the tool table")
 
     def other_cutter(self, tool: Tool, source: str) -> str | None:
         """Return the operator message of a cutter that is not the loaded tool, by more than wear.
@@ -286,9 +278,10 @@ class Words:
         ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
         """
         context, sized = self.context, " in size" if radius < 0 else ""
-        room, least = abs(radius) - cutter - finish[0], number(context.smallest_ring)
-        if room >= context.smallest_ring - context.rounding:
+        room, smallest = abs(radius) - cutter - finish[0], context.smallest_ring
+        if room >= smallest - context.rounding:
             return
+        least = number(smallest)
         if not cutter:
             raise self.refuse_word(letter, radius, f"must be at least {least}{sized}")
         by = f" by at least {least}" if room > context.rounding else ""

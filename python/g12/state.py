@@ -127,10 +127,10 @@ def refused_mode(state: State, *, moves_first: bool = False) -> str:
 
     ``moves_first``: the block itself moves to where the tool is not offset.
     """
-    broken = [name for name in REFUSED_MODES if getattr(state, name)]
-    if moves_first:
-        broken = [name for name in broken if name != "offset_pending"]
-    return REFUSED_MODES[broken[0]] if broken else ""
+    for name, rule in REFUSED_MODES.items():
+        if getattr(state, name) and not (moves_first and name == "offset_pending"):
+            return rule
+    return ""
 
 
 class Beyond(NamedTuple):

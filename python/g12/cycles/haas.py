@@ -130,18 +130,15 @@ def uncut_material(words: Words, pocket: Pocket, cutter: Cutter, entry: PocketEn
     first, finished, stepover = pocket
     if not stepover or not cutter.radius:
         return None
-    diameter, rounding = words.context.tool_size(2 * cutter.radius), words.context.rounding
+    rounding, cut_by_entry = words.context.rounding, 3 + CLEARED * entry.helix  # in tool radii
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
-        return (
-            f"{words.code}: Q{number(stepover)} is greater than the tool diameter {diameter}:"
-            " material is left between the rings"
-        )
-    # The entry cuts up to the tool radius plus the helix, the first ring from I - 2 tool radii on.
-    most = 3 + CLEARED * entry.helix
-    if first > most * cutter.radius + rounding:
-        remains = "a ring is left about" if entry.helix else "a core is left in"
-        return (
-            f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
-            f" {diameter}: {remains} the centre"
-        )
-    return None
+        wide, where = f"Q{number(stepover)} is greater than", "material is left between the rings"
+    elif first > cut_by_entry * cutter.radius + rounding:
+        # the entry cuts up to the tool radius plus the helix, the first ring from I - 2 of them on
+        wide = f"I{number(first)} is greater than {number(cut_by_entry / 2)} x"
+        where = "a ring is left about" if entry.helix else "a core is left in"
+        where += " the centre"
+    else:
+        return None
+    diameter = words.context.tool_size(2 * cutter.radius)
+    return f"{words.code}: {wide} the tool diameter {diameter}: {where}"

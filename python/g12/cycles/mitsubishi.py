@@ -13,9 +13,9 @@ required; D required, whole, from 0, in the tool table; I, whose sign is ignored
 greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
-from g12.cut_report import BY_D, PocketCut
+from g12.cut_report import BY_D, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
-from g12.request import CycleExtent, Words
+from g12.request import Cutter, CycleExtent, Words
 from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
@@ -30,7 +30,9 @@ def plan_circle(words: Words) -> CyclePlan:
     tool = words.commanded_tool()
     if tool is None:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    cutter = words.cutter_of(tool, BY_D, f"D{tool.number}")
+    source = f"D{tool.number}"
+    used = UsedCutter(tool.radius, BY_D, tool.number)
+    cutter = Cutter(used, source, words.other_cutter(tool, source))
     words.check_fits("I", commanded, cutter.radius, cutter.source)
     wall, radius = abs(commanded), abs(commanded) - cutter.radius
     numbers = {

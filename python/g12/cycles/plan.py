@@ -69,13 +69,13 @@ class Descent(NamedTuple):
 class Helix(NamedTuple):
     """Helices of one radius, whose ``last`` half turns have a decreasing slope."""
 
-    radius: float = 0.0
-    slope: float = 0.0
-    last: int = 0
+    radius: float
+    slope: float
+    last: int
 
     def descent(self, height: float) -> Descent:
         """Return the descent by a height, at most as steep as the slope, in whole turns."""
-        if not self.radius or height <= 0.0:
+        if height <= 0.0:
             return Descent()
         rest = 0.5 * self.last
         turns = max(1, ceil(height / (pi * self.radius * self.slope) - rest))
@@ -85,8 +85,6 @@ class Helix(NamedTuple):
 
 def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
-    if not entry.helix:
-        return Helix()
     slope = tan(radians(entry.angle))
     radius = min(first, CLEARED * cutter) if cutter else first
     return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
@@ -100,18 +98,23 @@ def pocket_descent(
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.
     """
-    helix, feed = helix_of(entry, first, cutter), words.context.feed
-    check_helix(words, helix, heights[0], cutter)
-    to_first, further = map(helix.descent, heights)
+    feed = words.context.feed
     numbers = {
-        "restart": heights[1] != 0 and not further.turns,
-        "turns": to_first.turns,
+        "restart": heights[1] != 0,
+        "turns": 0,
         "feed": feed,
         "plunge_feed": feed * (entry.feed / 100.0),
     }
+    if not entry.helix:
+        return numbers
+    helix = helix_of(entry, first, cutter)
+    check_helix(words, helix, heights[0], cutter)
+    to_first, further = map(helix.descent, heights)
+    numbers["restart"] = heights[1] != 0 and not further.turns
     if not to_first.turns:
         return numbers
     return numbers | {
+        "turns": to_first.turns,
         "fall": to_first.fall,
         "next_turns": further.turns,
         "next_fall": further.fall,

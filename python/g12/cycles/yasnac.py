@@ -26,10 +26,10 @@ I - d; each of them apart by an arc that can be cut; not too many circles.
 from math import copysign
 from typing import NamedTuple
 
-from g12.cut_report import BY_D, NO_CUTTER, PocketCut
+from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request import CycleExtent, Words, steps_between
+from g12.request import Cutter, CycleExtent, Words, steps_between
 from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
@@ -84,10 +84,13 @@ def plan_circle(words: Words) -> CyclePlan:
     circles = words.take_whole("L", least=1, default=1)
     tool = words.commanded_tool()
     by, tool = (NO_CUTTER, Tool(0, 0.0)) if tool is None else (BY_D, tool)
-    cutter = words.check_sound(words.cutter_of(tool, by, f"D{tool.number}"))
-    words.check_fits("I", finished, cutter.radius, cutter.source)
-    named = f"tool radius {context.tool_size(cutter.radius)}, {cutter.source}"
-    radii = OffsetRadii(words, finished, cutter.radius, named if tool.number else "no D")
+    source = f"D{tool.number}"
+    words.check_sound(tool, source)
+    words.check_fits("I", finished, tool.radius, source)
+    used = UsedCutter(tool.radius, by, tool.number)
+    cutter = Cutter(used, source, words.other_cutter(tool, source))
+    named = f"tool radius {context.tool_size(tool.radius)}, {source}" if tool.number else "no D"
+    radii = OffsetRadii(words, finished, tool.radius, named)
     approach = 0.0 if traverse is None else approach_of(radii, letter, traverse)
     spiral = None if start is None or pitch is None else (start, pitch)
     turns = half_turns_of(radii, spiral, approach)
