@@ -6,8 +6,6 @@ decreases, so that the toolpath has no corner where it reaches the level. One fu
 level follows. The helix ends at the angle where it began. Lengths are in program units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import atan, ceil, cos, pi, radians, sin, tan
 from typing import NamedTuple
