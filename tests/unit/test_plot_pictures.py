@@ -135,7 +135,7 @@ def test_each_tool_sweeps_with_its_own_diameter():
     assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
 
 
-@pytest.mark.parametrize(("count", "shown_at_most"), [(100, 100), (400, plan_view.BANDS)])
+@pytest.mark.parametrize(("count", "shown_at_most"), [(50, 50), (120, plan_view.BANDS)])
 def test_very_many_depths_become_bands_and_few_are_in_the_legend(count, shown_at_most):
     hand = Hand()
     for step in range(count):

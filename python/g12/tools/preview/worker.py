@@ -35,7 +35,7 @@ CURRENT = (
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
-PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # `told_clamp`
+PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # of `tracer`
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
@@ -53,8 +53,6 @@ STATE_VARIABLES = (
 )  # fmt: skip
 LENGTH_GROUP = 8  # index of G43, G43.1, G43.2 and G49 in a block's G codes
 LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes
-OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # first parameter
-OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
@@ -204,12 +202,10 @@ class Canon:
         self.events: list[tuple] = []
         self.files: set[str] = set()
         self.in_force: tuple = ()
-        self.watch_offsets = request.get("watch_offsets")
         self.reports = machine.get("reports")
         self.cuts: list[list] = []  # first move, end, line, last line, C before, comments
         self.open_cuts = 0
         self.c_commanded = ""
-        self.offsets: dict = {}
         self.tables: list[tuple[int, list]] = []
         self.pitch = ""
         self.line = 0
@@ -317,9 +313,6 @@ class Canon:
             self.c_commanded = "angle"
 
     def message(self, text: str) -> None:
-        if self.watch_offsets:
-            self._note_offsets()
-            self._note_tools()
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
@@ -403,12 +396,6 @@ class Canon:
             known, self.pitch = self.pitch, pitch
             if pitch != known:
                 self._note(pitch)
-
-    def _note_offsets(self) -> None:
-        known, self.offsets = self.offsets, work_offsets()
-        for name, values in self.offsets.items():
-            if known and values != known[name]:
-                self._note(name)
 
     def _note_tools(self) -> None:
         sizes = tool_sizes(len(self.tools))
@@ -518,14 +505,6 @@ def program_units() -> dict[str, float]:
     """Return one program unit of each of the interpreter's coordinates in mm or degrees."""
     length = 1.0 if interpreter_object().length_units == METRIC else INCH
     return {name: length if axis in LINEAR_AXES else 1.0 for axis, name in enumerate(CURRENT)}
-
-
-def work_offsets() -> dict[str, tuple]:
-    params = interpreter_object().params
-    return {
-        name: tuple(params[number] for number in range(first, first + OFFSET_LENGTH))
-        for name, first in OFFSETS.items()
-    }
 
 
 def conditions(state, length: int) -> tuple:
