@@ -605,6 +605,7 @@ REFUSED_OFTEN = [
     (LATHE, "G95\nG90 X9. Z1.", "G95: feed per revolution"),
     (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
     (FANUC, "#1=#4001", "#4001 means something else"),
+    (FANUC, "GOTO10", "GOTO10 is a jump"),
     (FANUC, "G31 Z1.", "G31: a skip function"),
     (LATHE, "G68", "G68: mirror image"),
 ]
@@ -615,6 +616,26 @@ def test_the_page_has_the_commonest_refusals(control, text, sentence):
     assert refusal(control, text)[1].startswith(sentence)
     table = PAGE.read_text(encoding="utf-8").partition("refused most often")[2].partition("##")[0]
     assert sentence in table
+
+
+CURES = [  # a control of one's own: what it is based on and says; a program of it
+    ("fanuc-mill", 'decimals = "whole"', "G21 G90|G0 X1"),
+    ("fanuc-mill", '[m_codes]\nM137 = "comment"\nM88 = "M7"', "M137\nM88"),
+    ("fanuc-mill", 'axes = "XYZA"', "G0 A90."),
+    ("fanuc-mill", '[variables]\n4001 = "#500"', "#1=#4001"),
+    ("fanuc-mill", "", "M98 P9810\nM30\nO9810\nM99"),
+    ("fanuc-mill", "", "#1=0\nWHILE[#1LT2]DO1\nIF[#1EQ1]G0 X1.\n#1=#1+1\nEND1"),
+    ("fanuc-lathe", '[tools]\npatterns = ["TTTOO"]', "T30303"),
+    ("fanuc-lathe-b", "", "G90\nG0 X40. Z1.\nG95\nG77 X9. Z1. F.1"),
+    ("fanuc-lathe", "", "T0101|G0 X50. Z5.\nG90 X9. Z1. F.1"),
+]
+
+
+@pytest.mark.parametrize(("base", "says", "text"), CURES)
+def test_the_pages_cures_of_refusals_are_true(tmp_path, base, says, text):
+    own = tmp_path / "own.toml"
+    own.write_text(f'based_on = "{base}"\n{says}\n')
+    assert lines_after(read_control(str(own)), text)
 
 
 # ---------------------------------------------------------------- hostile text
