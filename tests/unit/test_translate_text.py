@@ -243,6 +243,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
     (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
     (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
+    (HAAS, "#1=[FIX[#2] AND [1 EQ 2]]", "AND is translated between comparisons"),
     (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
     (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
     (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
