@@ -284,6 +284,23 @@ class StepMaker:
         self.position, self.letters = position, letters
         self._contour, self._least = contour, least
 
+    def slide_at(self, point: complex) -> float:
+        """Return the slide's position for a point of the plane."""
+        raise NotImplementedError
+
+    def cut(self, move: PlaneMove, stop: bool) -> None:
+        """Make the steps of a move in the plane."""
+        raise NotImplementedError
+
+    def make(self, element: PathElement, stop: bool) -> None:
+        """Make the steps of an element; ``stop``: the tool stops at its end."""
+        if isinstance(element, PlaneMove):
+            self.cut(element, stop)
+        elif isinstance(element, Plunge):
+            self.plunge(element, stop)
+        else:
+            self.steps.append(element)
+
     def plunge(self, move: Plunge, stop: bool) -> None:
         there = self.position._replace(height=move.h1)
         self._run(move.line, self.letters.height, [(*there, move.feed)], stop)
@@ -300,12 +317,14 @@ class StepMaker:
             self.steps.append(Segments(line, axes, segments, stop))
             self.position = MachinePosition(*segments[-1][:3])
 
-    def _add_remainder(self, path: Sequence[PathElement], slide: float) -> None:
+    def finish(self, path: Sequence[PathElement]) -> None:
         """Move the slides to the path's end, by the remainder of its last segments."""
         moves = [element for element in path if isinstance(element, Motion)]
         if not moves:
             return
         last, there = moves[-1], self.position
+        in_plane = [move.end for move in moves if isinstance(move, PlaneMove)]
+        slide = self.slide_at(in_plane[-1]) if in_plane else there.slide
         ends = (slide, self.letters.slide), (last.h1, self.letters.height)
         offs = zip(ends, (there.slide, there.height))
         axes = "".join(
