@@ -236,7 +236,7 @@ def test_the_page_opens_and_draws_in_both_toolkits(toolkit, tmp_path):
     command = ["/usr/bin/python3", str(script), str(SIM / "mill_mm_headless.ini"), str(picture)]
     screen = ["xvfb-run", "-a"] if toolkit == "gtk" else []
     done = subprocess.run(
-        [*screen, *command], env=environment, capture_output=True, text=True, timeout=60
+        [*screen, *command], env=environment, capture_output=True, text=True, timeout=300
     )
     assert done.returncode == 0, done.stderr
     assert picture.stat().st_size > 10_000

@@ -43,7 +43,7 @@ def run_installed(ini, feature, program):
     _, found = check_config(IniText(ini))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(ini) as machine:
-        run, unit = machine.run_text(program, timeout=60), machine.mm
+        run, unit = machine.run_text(program, timeout=300), machine.mm
     assert uninstall.main([str(ini)]) == 0
     assert tree(ini.parent) == before
     return run, unit
@@ -99,7 +99,7 @@ def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     _, found = check_config(IniText(lathe))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(lathe) as machine:
-        run = machine.run_text(ROUND, timeout=60)
+        run = machine.run_text(ROUND, timeout=300)
     assert run.error is None
     assert (run.samples.kind == 3).sum() > 1000  # an arc of LinuxCNC's own
     angle, x = np.radians(run.samples.axes["C"]), run.samples.axes["X"]
