@@ -31,6 +31,7 @@ ends of segments: X reverses there, and a segment across would move C alone, or 
 Lengths are in program units.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import ceil, degrees, hypot
@@ -271,7 +272,7 @@ def segments_with_feed(
     return segments
 
 
-class StepMaker:
+class StepMaker(ABC):
     """Makes the steps of a plan, one element of the tool centre's path after the other.
 
     ``least`` is the least move of a slide together with the rotary axis.
@@ -284,13 +285,13 @@ class StepMaker:
         self.position, self.letters = position, letters
         self._contour, self._least = contour, least
 
+    @abstractmethod
     def slide_at(self, point: complex) -> float:
         """Return the slide's position for a point of the plane."""
-        raise NotImplementedError
 
+    @abstractmethod
     def cut(self, move: PlaneMove, stop: bool) -> None:
         """Make the steps of a move in the plane."""
-        raise NotImplementedError
 
     def make(self, element: PathElement, stop: bool) -> None:
         """Make the steps of an element; ``stop``: the tool stops at its end."""
