@@ -98,6 +98,22 @@ def test_a_size_correction_to_the_other_side_has_its_leads_across_the_contour(si
         assert cut(led, side, radius) == ("", [])
 
 
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_refusal_names_the_code_of_the_program_also_with_a_negative_diameter(side):
+    contour = Contour(20.0, 0.0, 0.0)
+    contour.compensate(side, -1.0, at=1)
+    contour.straight(10.0, 0.0, at=1, feed=100.0)
+    assert refusal(contour) == f"G12.1 line 1: G{side} needs a block of the contour after its G1"
+
+
+def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
+    slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
+            *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip
+    assert cut(slot, RIGHT, 2.4) == ("", [])
+    narrow = lines((30, 20), (5, 20), (5, -10), (1, -20), (-9, -20), (0, -10), (0, 20), (-30, 20))
+    assert "cannot follow both lines 3 and 8" in cut(narrow, RIGHT, 2.6)[0]
+
+
 def extended(front, after):
     """Return the square from the middle of no side: both ends may stick out by some length."""
     first, *_, last = sides = closed(SQUARE)
@@ -256,6 +272,13 @@ def test_a_pass_may_not_go_to_both_sides_of_another(wave, radius, most, share, f
                 assert gouges(stacked(radius, *zip(heights, laps))) is found
 
 
+def test_a_crossing_that_an_inside_corner_keeps_the_tool_from_is_no_gouge():
+    """The third level crosses the first on the drawing; the tool turns back in front of it."""
+    first = [0.8 + 27.5j, -11.3 - 25.6j, -19 + 27j]
+    second, third = [first[-1], 5.4 - 1j], [5.4 - 1j, -24 + 1.8j, 12 - 14j]
+    assert refusal(stacked(2.0, (5.0, first), (1.8, second), (-2.8, third))) == ""
+
+
 WALL = [-40 - 30j, -40 + 0j, -11.5 + 0j, -11.5 + 30j]  # its corner is where the tool rounds BOSS
 
 
@@ -297,9 +320,14 @@ def waves(count, radius=20.0, wave=2.0):
     return lines(*(cmath.rect(radius + wave * math.sin(5 * angle), angle) for angle in angles))
 
 
-def test_elements_are_not_compared_each_with_each():
+def laps(count):
+    return polygon(SQUARE) * (count // 5)
+
+
+@pytest.mark.parametrize(("made", "side"), [(waves, RIGHT), (waves, LEFT), (laps, LEFT)])
+def test_elements_are_not_compared_each_with_each(made, side):
     def planned(count):
-        contour = contour_of(Drawn(waves(count), RIGHT, 3.0, waves(count)))
+        contour = contour_of(Drawn(made(count), side, 3.0, made(count)))
         return lambda: refusal(contour)
 
     assert planned(2000)() == ""
