@@ -10,7 +10,7 @@ from shapely.ops import unary_union
 from g12.tools.path.part import disc
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import TracedProgram, dialect_of
+from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
 from g12.tools.verify.remains import LEAST_GONE
 
@@ -42,10 +42,11 @@ def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     program, material, top = solids.program, solids.of(cut.surface), solids.top(cut.surface)
     place = program.tip(cut.at, cut.surface)[0]
-    tips = (program.tip(index, cut.surface) for index in program.fed(cut))
-    lowest = min((tip[:, 2].min() for tip in tips), default=math.inf)
-    if lowest > top - LEVEL or not material.sweeps_of(cut.moves):
-        yield cut.found(AIR, place, above=lowest - top, hint=MINUS if lowest > top + LEVEL else "")
+    lowest = min((each.level for each in material.sweeps_of(cut.moves)), default=math.inf)
+    if lowest > top - LEVEL:
+        tips = (program.tip(index, cut.surface) for index in program.fed(cut))
+        above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
+        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)
@@ -57,7 +58,7 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     high = sum(level > top - LEVEL for level in levels)
     if high and lowest < top - LEVEL:
         yield cut.found(AIR_LEVELS, place, n=high, of=len(levels))
-    if cut.levels and dialect_of(cut.code, solids.program.ini) != "bore":  # cuts by its helices
+    if cut.levels and program.dialects.get(cut.code) != "bore":  # cuts by its helices
         yield from _deep(cut, solids)
     if solids.bottom - cut.floor > THROUGH:
         yield cut.found(BELOW, place, below=solids.bottom - cut.floor)

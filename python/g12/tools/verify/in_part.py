@@ -116,14 +116,14 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
         per_minute = move.feed * (speed if move.feed_mode == "G95" else 1)
         values = {"feed": per_minute, "per_turn": per_minute / speed if speed else 0.0}
         fast = values["per_turn"] > PER_TURN
-        tip = program.tip(index, side)
-        if (fast or move.tool in cutters) and _plunges(index, tip, side, solids):
-            yield program.found(PLUNGE_FAST if fast else PLUNGE, index, tip[-1], **values)
+        if (fast or move.tool in cutters) and _plunges(index, side, solids):
+            place = program.tip(index, side)[-1]
+            yield program.found(PLUNGE_FAST if fast else PLUNGE, index, place, **values)
 
 
-def _plunges(index: int, tip: np.ndarray, side: float, solids: Solids) -> bool:
+def _plunges(index: int, side: float, solids: Solids) -> bool:
     """Return whether a tool goes straight down into what stands below its centre."""
-    radius = CENTRE * solids.program.cutter(index)
+    radius, tip = CENTRE * solids.program.cutter(index), solids.program.tip(index, side)
     down = straight_down(tip) and tip[-1, 2] < min(tip[0, 2], solids.top(side) - LEAST)
     if radius <= 0 or not down or not solids.program.is_known(index):
         return False

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The second question to the material: what remains inside a cut, what is gone outside of it."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -46,7 +47,8 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
     radius, level = solids.program.cutter(cut.at), cut.floor - cut.zero[2]
-    left, core = left_of(cut.goes, cut, solids), left_of(cut.core, cut, solids)
+    left = NOTHING if _is_cleared(cut, solids) else left_of(cut.goes, cut, solids)
+    core = left_of(cut.core, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
         left, core = NOTHING, left.buffer(-radius / 2)
     if left.area > LEAST_GONE:
@@ -61,9 +63,16 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(BAR, place, area=beyond.area, level=level)
 
 
+def _is_cleared(cut: Cut, solids: Solids) -> bool:
+    """Return whether a circle's own rings clear it: seen without any geometry."""
+    edges = cut.circle.inner + SLACK, cut.circle.wall - SLACK
+    level = cut.floor + JUST_ABOVE
+    return cut.is_circle and solids.of(cut.surface).has_cleared(cut.centre, edges, level)
+
+
 def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
     """Return what stands of a region at a cut's floor, without what is narrower than two slacks."""
-    if solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
+    if region.is_empty or solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
         return NOTHING  # no more than a rim, of chords and rounding
     area = solids.standing(region, cut.floor, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
@@ -102,10 +111,10 @@ def too_far(cut: Cut, solids: Solids) -> Iterator[Finding]:
     if not cut.is_circle or cut.circle.is_boss:
         return
     for sweep in solids.of(cut.surface).sweeps_of(cut.moves):
-        away = np.hypot(*(sweep.line - cut.centre).T)
-        over = float(away.max()) + sweep.radius - cut.circle.wall
+        point = sweep.farthest(cut.centre)
+        over = math.dist(point, cut.centre) + sweep.radius - cut.circle.wall
         if over > SLACK:
-            place = (*sweep.line[away.argmax()], sweep.level)
+            place = (*point, sweep.level)
             at = solids.program.words(cut.at, place, cut.surface)
             yield cut.found(WALL, place, over=over, at=at)
             return

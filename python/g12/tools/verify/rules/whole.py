@@ -48,13 +48,14 @@ def _positions(program: TracedProgram) -> tuple[np.ndarray, np.ndarray]:
 
     They are those of the moves that a work offset places.
     """
-    positions, moves = [np.empty((0, 3))], []
+    positions, moves = [], []
     for index, move in enumerate(program.moves):
         if program.is_placed or not move.by_machine:
-            own = turning_points(move)[int(index > 0) :, :3] + move.tool_offset[:3]
-            positions.append(own)
+            ends = turning_points(move) if move.kind == "arc" else (move.start, move.end)
+            own = [np.add(at[:3], move.tool_offset[:3]) for at in ends[int(index > 0) :]]
+            positions += own
             moves += [index] * len(own)
-    return np.concatenate(positions), np.array(moves, int)
+    return np.reshape(positions, (-1, 3)), np.array(moves, int)
 
 
 def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
