@@ -137,8 +137,8 @@ def _of_section(cut: Cut, program: TracedProgram) -> Deviation:
     contour, worst, lines = _Contour(cut), Deviation(), cut.contour_lines
     own = [each for each in _sideways(cut, program) if program.moves[each[0]].line in lines]
     for first in range(0, len(own), TOGETHER):
-        indices, paths = zip(*own[first : first + TOGETHER])
-        paths = [points[:: math.ceil(len(points) / SAMPLES)] for points in paths]
+        indices, whole = zip(*own[first : first + TOGETHER])
+        paths = [points[:: math.ceil(len(points) / SAMPLES)] for points in whole]
         points, moves = np.concatenate(paths), np.repeat(indices, [len(each) for each in paths])
         off = contour.off(points[:, :2])
         if off.max() > worst.size:

@@ -116,7 +116,8 @@ class Solids:
                 continue
             side = max(sides)
             material = self._materials[side]
-            for circle, own in groupby(run, lambda index: is_circle(program.moves[index]) and index):
+            circles = groupby(run, lambda index: is_circle(program.moves[index]) and index)
+            for circle, own in circles:
                 ring = circle and self._ring(circle, radius, run[-1])
                 if ring:
                     material.cut_ring(ring)
