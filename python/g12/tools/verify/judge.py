@@ -18,28 +18,26 @@ from g12.tools.progress import Report, silent
 from g12.tools.units import unit_of
 from g12.tools.verify.accept import Accepted, accepted, expectations
 from g12.tools.verify.air import judge_air
-from g12.tools.verify.in_part import judge_in_part
+from g12.tools.verify.in_part import judge_in_part, judge_rapids
 from g12.tools.verify.model.deviation import Deviation, deviation_of, judge_deviations
 from g12.tools.verify.model.finding import FINDING, Finding, once_a_line
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.rapids import judge_rapids
 from g12.tools.verify.remains import judge_remains
 from g12.tools.verify.rules import contour, feed, spindle, tool, whole  # noqa: F401  # the table
 from g12.tools.verify.rules.table import judge_rules
 
 CAUSES = {  # a finding of one code is the cause of those of others at the same cut
-    "length": {"rapid", "uncut", "air", "bar-remains"},
-    "length-higher": {"uncut", "air", "cut-before", "bar-remains"},
+    "length": {"rapid", "uncut", "air"},
+    "length-higher": {"uncut", "air", "cut-before"},
     "cutter": {"uncut", "wall", "core"},
     "d-stale": {"wall", "uncut", "cutter"},
-    "air": {"uncut", "bar-remains"},
-    "no-stock-met": {"uncut", "bar-remains"},
+    "air": {"uncut"},
+    "no-stock-met": {"uncut"},
     "surface": {"rapid"},
-    "side": {"overcut", "bar-remains"},
+    "side": {"overcut"},
     "place-unknown": {"deep-pass"},
     "no-tool": {"no-diameter"},
-    "offset-beside": {"off"},
 }
 
 

@@ -103,6 +103,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "segments": len(fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
+        "turn": AXIS_LETTERS[turn],
         "c_speed": max(_speeds_of_c(cut, program), default=0.0),
         "c_limit": limit if math.isfinite(limit) else None,
         "seconds_planned": times and times._asdict(),

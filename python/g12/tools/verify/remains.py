@@ -4,30 +4,20 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.cut_report import PolygonCut
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.model.solid import JUST_ABOVE, Solids, reachable
+from g12.tools.verify.model.solid import JUST_ABOVE, Solids
 
 SLACK = 0.02  # mm: boundaries are compared with so much less
-LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should not
+LEAST_GONE = 0.1  # mm²
 UNCUT = kind("uncut", FINDING, "{area:mm2} of material remain uncut at Z{level:mm}")
-BAR = kind(
-    "bar-remains",
-    FINDING,
-    "{area:mm2} of the bar remain at Z{level:mm} on the tool's side of the contour",
-)
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
-BOSS = kind("boss", FINDING, "nothing of its boss remains")
-MEETS = kind("meets", WARNING, "it and the cut of line {other} go into each other's walls")
 
 
 def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -38,7 +28,6 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from too_far(cut, solids)
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
-    yield from meeting([cut for cut in program.cuts if cut.is_circle and not cut.upright])
 
 
 # ------------------------------------------------------------ what should be gone
@@ -57,10 +46,6 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(UNCUT, (*middle, cut.floor), **values)
     if core.area > LEAST_GONE and not cut.is_ring:  # whose core is meant
         yield cut.found(CORE, area=core.area)
-    beyond = left_of(_beyond(cut, solids, radius), cut, solids)
-    if beyond.area > LEAST_LEFT:
-        place = (*beyond.representative_point().coords[0], cut.floor)
-        yield cut.found(BAR, place, area=beyond.area, level=level)
 
 
 def _is_cleared(cut: Cut, solids: Solids) -> bool:
@@ -76,31 +61,6 @@ def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
         return NOTHING  # no more than a rim, of chords and rounding
     area = solids.standing(region, cut.floor, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
-
-
-def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
-    """Return what of a given bar lies on the tool's side of a contour, as far as a cutter reaches.
-
-    An open contour goes on straight at its ends.
-    """
-    if cut.surface or not (solids.stock and solids.stock.diameter):
-        return NOTHING
-    bar, found = solids.of(cut.surface).shape, []
-    whole = bar.buffer(3 * radius)
-    if isinstance(cut.plan, PolygonCut):
-        found.append(bar.difference(cut.stays[0][0]))
-    for outline in cut.outlines:
-        if outline.is_closed:
-            found.append(NOTHING if outline.tool_inside else whole.difference(outline.polygon))
-            continue
-        points = outline.points
-        far = 4.0 * max(bar.bounds[2], float(np.abs(points).max()))
-        first, last = points[0] - points[1], points[-1] - points[-2]
-        ends = points[0] + far * first / abs(first), points[-1] + far * last / abs(last)
-        line = LineString([(p.real, p.imag) for p in (ends[0], *points, ends[1])])
-        beside = line.buffer(far if outline.left else -far, single_sided=True, join_style=2)
-        found.append(whole.intersection(beside))
-    return unary_union([NOTHING, *(reachable(each, radius) for each in found)]).intersection(bar)
 
 
 # ------------------------------------------------------------ what should stand
@@ -126,9 +86,6 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     What the planner compensated stays off its own contour. Its leads do not, nor do cuts round
     another island, or moves at feed that belong to no cut.
     """
-    if cut.circle.is_boss and _is_boss_gone(cut, solids):
-        yield cut.found(BOSS, (*cut.centre, cut.floor))
-        return
     if not cut.stays:
         return
     others = (each for each in program.cuts if each is not cut and each.surface == cut.surface)
@@ -146,16 +103,6 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             return
 
 
-def _is_boss_gone(cut: Cut, solids: Solids) -> bool:
-    boss, middle = cut.stays[0][0].buffer(-2 * SLACK), (cut.floor + solids.top(cut.surface)) / 2
-
-    def stands(level: float, before: float) -> bool:
-        return solids.standing(boss, level, cut.surface, before).area > LEAST_GONE
-
-    lowered = stands(middle, cut.at) and not stands(middle, np.inf)
-    return lowered or not stands(cut.floor, cut.at)
-
-
 def _cut_away(
     cut: Cut, region: BaseGeometry, program: TracedProgram, solids: Solids
 ) -> tuple[BaseGeometry, int | None]:
@@ -171,16 +118,3 @@ def _cut_away(
         kept_off = [i for i in cut.moves if program.moves[i].line not in loose]
         swept = swept.difference(solids.swept_in(swept, kept_off, cut.surface)[0])
     return swept, first if swept.area > LEAST_GONE else None
-
-
-def meeting(circles: list[Cut]) -> Iterator[Finding]:
-    """Yield pockets and bosses that go into each other's walls."""
-    heights = np.array([cut.zero[2] for cut in circles])
-    centres = np.array([complex(*cut.centre) for cut in circles])
-    walls = np.array([cut.circle.wall for cut in circles])
-    for index, cut in enumerate(circles):
-        apart, own = np.abs(centres[:index] - centres[index]), walls[index]
-        within = apart <= np.abs(walls[:index] - own) + SLACK
-        level = np.abs(heights[:index] - heights[index]) < SLACK
-        for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
-            yield cut.found(MEETS, other=circles[other].line)

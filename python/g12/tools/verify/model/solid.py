@@ -97,11 +97,6 @@ class Solids:
         low, first = min(own, default=(math.inf, 0))
         return bool(low + program.cutter(first) + ALONG >= self.z0)
 
-    @cached_property
-    def unbored(self) -> BaseGeometry:
-        """The stock on the face without its bores."""
-        return self._stock(FACE, self.stock._replace(bore=0.0) if self.stock else None)
-
     def of(self, side: float) -> Material:
         return self._materials[side]
 
@@ -192,8 +187,3 @@ def needed_bar(cut: Cut, cutter: float) -> float:
     ends = [np.abs(outline.points) for outline in cut.outlines]
     reach = (at.max() if o.is_closed else min(at[0], at[-1]) for o, at in zip(cut.outlines, ends))
     return float(max(reach, default=cut.deep_reach))
-
-
-def reachable(region: BaseGeometry, radius: float) -> BaseGeometry:
-    """Return what a round cutter can remove of a region without leaving it."""
-    return region.buffer(-radius, 32).buffer(radius, 32)

@@ -3,14 +3,14 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from g12.machine_ini import face_joints
 from g12.tools.machine.stored_positions import shift_at_start
 from g12.tools.path.part import turning_points
-from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
+from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
 
@@ -106,30 +106,3 @@ def left_rotation(program: TracedProgram) -> Values:
 def _last_line(code: re.Pattern, program: TracedProgram) -> int:
     lines = [number for number, text in enumerate(program.texts, 1) if code.search(text)]
     return lines[-1] if lines else 0
-
-
-@rule(
-    "block-delete",
-    NOT_JUDGED,
-    "the program with block delete off: lines with / are skipped",
-    program=True,
-)
-def block_delete(program: TracedProgram) -> Values:
-    return _first_line(lambda text: text.lstrip().startswith("/"), program)
-
-
-@rule(
-    "tool-table-set",
-    NOT_JUDGED,
-    "cuts with the sizes of this G10 L1: a random tool changer",
-    program=True,
-)
-def table_set(program: TracedProgram) -> Values:
-    swaps = program.ini.swaps_pockets
-    return _first_line(lambda text: swaps and "G10" in text and "L1" in text, program)
-
-
-def _first_line(applies: Callable[[str], bool], program: TracedProgram) -> Values:
-    lines = (number for number, text in enumerate(program.texts, 1) if applies(text))
-    line = next(lines, 0)
-    return {"at_line": line} if line else None
