@@ -26,7 +26,7 @@ def contained():
 
     def run(commands):
         whole = [*CONTAINER, *PLAIN, commands]
-        return subprocess.run(whole, capture_output=True, text=True, timeout=120)
+        return subprocess.run(whole, capture_output=True, text=True, timeout=600)
 
     return run
 
@@ -92,7 +92,7 @@ def test_the_tool_change_dialogue_is_covered_beside_a_configs_own_programs(conta
         dialogue = "{tmp_path}/dialogue"
         shown = ["sh", "-c", "$0/bin/own; $0/bin/hal_manualtoolchange", f"{{machine}}/."]
         isolated.launch(shown, {{machine: {{}}}}, {{"/usr/bin/hal_manualtoolchange": dialogue}})
-        assert isolated.wait(60) == 0
+        assert isolated.wait(300) == 0
         print(isolated.log())
         isolated.close()"""
     done = contained(f"PYTHONPATH={ROOT}/python {PYTHON} -c '{code}'")

@@ -56,9 +56,11 @@ def test_mdi_then_abort_then_mdi_again(mill):
     machine.mdi("G21 G17 G90 G91.1 G94 G49 G64 P0.01 F12000 G0 X0 Y0 Z5")
     before = machine.stat()
     block = MILLS[name][1]
+    machine.feed_override(0.1)  # beyond X20 for some seconds
     machine.mdi(block, wait=False)
     machine.wait_for(lambda status: status.position[0] > 20)
     machine.abort()
+    machine.feed_override(1.0)
     machine.errors()
     machine.mdi("G90 G0 X0 Y0 Z5")
     machine.mdi(block)

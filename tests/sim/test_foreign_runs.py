@@ -23,7 +23,7 @@ def test_run_opens_a_haas_program(program, capsys):
 
 
 def test_the_headless_screen_opens_a_haas_program(program):
-    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=120)
+    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=300)
     assert code == 0, log
     assert "slot.nc: done" in log
 
@@ -31,6 +31,6 @@ def test_the_headless_screen_opens_a_haas_program(program):
 def test_the_headless_screen_tells_what_the_filter_refuses(tmp_path):
     program = tmp_path / "probing.nc"
     program.write_text("O6\nG20 G90 G54 G0 X0 Y0\nG65 P9810 Z-.5 F30.\nM30\n")
-    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=120)
+    code, log = smoke(SIM / "mill_inch_headless.ini", program, timeout=300)
     assert code == 1, log
     assert f"error: {program}:3: O9810 is not in this file" in log

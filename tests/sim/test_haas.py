@@ -48,7 +48,7 @@ def test_single_steps_reach_the_end(machine, auto):
     machine.sample()
     steps = 0
     machine.step()
-    while not machine.wait_for(lambda status: status.idle or status.paused).idle:
+    while not machine.stat().idle:
         machine.step()
         steps += 1
         assert steps < 200
@@ -58,7 +58,8 @@ def test_single_steps_reach_the_end(machine, auto):
 
 
 def started(machine):
-    """Run the program until it is in the rings."""
+    """Run the program until it is in the rings, where it stays for some seconds."""
+    machine.feed_override(0.1)
     machine.open_text(PROGRAM)
     machine.sample()
     machine.start()
@@ -68,6 +69,7 @@ def started(machine):
 def test_abort_then_mdi_then_the_program_again_with_a_pause(machine, auto):
     started(machine)
     machine.abort()
+    machine.feed_override(1.0)
     machine.samples(), machine.errors()
     for block in ("G0 Z3", "G12 I5 Z1 D1 F4000", "G0 Z3", "G0 X0 Y0 Z2"):
         machine.mdi(block)
@@ -75,6 +77,7 @@ def test_abort_then_mdi_then_the_program_again_with_a_pause(machine, auto):
     started(machine)
     machine.pause()
     machine.wait_for(lambda status: status.paused)
+    machine.feed_override(1.0)
     machine.resume()
     machine.wait_idle()
     assert machine.errors() == []

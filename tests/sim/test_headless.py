@@ -89,14 +89,9 @@ def test_moves_that_bear_one_line_are_one_step(mark, stops, machine):
     seen = []
     while stops[-1] not in seen:
         machine.step()
-        time.sleep(0.05)
-        seen += [round(machine.wait_for(standing).position[0], 6)]
+        seen += [round(machine.stat().position[0], 6)]
     assert [x for x in dict.fromkeys(seen) if x] == stops
     machine.abort()
-
-
-def standing(status):
-    return status.in_position and not status.queue
 
 
 def test_a_program_without_end_times_out(machine):
@@ -178,7 +173,7 @@ def test_close_ends_what_hangs():
         time.sleep(0.05)
     started = time.monotonic()
     isolated.close()
-    assert time.monotonic() - started < (5.0 if has_namespaces() else 2 * PATIENCE + 5.0)
+    assert time.monotonic() - started < (PATIENCE if has_namespaces() else 4 * PATIENCE)
     assert not processes_of(isolated.folder)
 
 
@@ -192,7 +187,7 @@ def test_nothing_is_left_when_the_runner_is_killed():
     options = {"capture_output": True, "text": True, "env": with_package(os.environ)}
     killed = subprocess.run(command, **options)
     folder = Path(killed.stdout.strip())
-    end = time.monotonic() + 10
+    end = time.monotonic() + 120
     while folder.exists() or processes_of(folder):
         assert time.monotonic() < end
         time.sleep(0.05)

@@ -63,9 +63,11 @@ def test_the_direction_turns_no_faster_than_round_the_narrowest_arc(cut):
 
 
 def test_abort_in_the_helix_then_up_and_the_pocket_again_in_mdi(machine, cut):
+    machine.feed_override(0.2)  # some seconds to the bottom
     machine.mdi(POCKET, wait=False)
     machine.wait_for(lambda status: status.position[2] < -1)
     machine.abort()
+    machine.feed_override(1.0)
     held = machine.stat()
     assert DEPTH < held.position[2] < -0.9
     assert {"G17", "G21", "G90", "G91.1", "G94"} <= set(held.modes.gcodes)

@@ -2,7 +2,7 @@
 """Holes with C: what the real axes do, the clamp, taps, aborts in every phase."""
 
 import random
-import time
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -10,15 +10,25 @@ import pytest
 from support.clamped import with_clamp
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
-from support.polar_programs import FIRST
+from support.polar_programs import FEED, FIRST, ROUND
 from support.sim_machines import SIM, machine_scope
 
 X, Z, C = 0, 2, 5
 START = [FIRST, "T3 M6", "G0 X40 Z8 C100", "F900"]
 CLOSED, DRAG = "motion.digital-out-00", "motion.digital-out-01"
+AS_FLOATS = ["loadrt mux2 count=2"]  # a sample has no bits
+for number, pin in enumerate((CLOSED, DRAG)):
+    AS_FLOATS += [f"net clamp-{number} {pin} => mux2.{number}.sel", f"setp mux2.{number}.in1 1"]
+    AS_FLOATS += [f"addf mux2.{number} servo-thread"]
 FACE = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [1.5] [0.1] [0]"
 SIDE = "o<side_holes> call [2] [-10] [30] [270] [40] [5] [3] [1200] [-2] [0] [0]"
 SAME = 0.002  # mm, degrees: within the servo's sampling
+
+
+class ClampLathe(Machine):
+    """A lathe whose samples tell of the clamp: K closed, D with the light drag."""
+
+    recorded: ClassVar = {"K": "mux2.0.out", "D": "mux2.1.out"}
 
 
 @pytest.fixture(
@@ -27,19 +37,12 @@ SAME = 0.002  # mm, degrees: within the servo's sampling
 )
 def lathe(request, tmp_path_factory):
     overrides = with_clamp(request.param, tmp_path_factory.mktemp("clamp"), C_CLAMP_SHAPES="M12")
-    with Machine(SIM / f"{request.param}.ini", overrides=overrides) as running:
+    overrides["HAL"] = {"HALCMD": AS_FLOATS}
+    with ClampLathe(SIM / f"{request.param}.ini", overrides=overrides) as running:
         yield running
 
 
 in_segments = pytest.mark.parametrize("lathe", ["lathe_mm"], indirect=True)  # a hole is no face
-
-
-def opened(lathe, pin=CLOSED):
-    """Tell whether the clamp is open, at the latest in a second."""
-    until = time.monotonic() + 1
-    while lathe.get(pin) and time.monotonic() < until:
-        time.sleep(0.01)
-    return not lathe.get(pin)
 
 
 def beyond_the_start(samples):
@@ -71,7 +74,7 @@ def test_holes_on_the_face(lathe):
     found = bottoms(run.samples, "Z", -4)
     assert found == [pytest.approx((15, -4, c), abs=SAME) for c in (20, 140, 260)]
     assert turned_low(run.samples, "Z", 2) == 0
-    assert run.position[Z] == pytest.approx(8) and not lathe.get(CLOSED)
+    assert run.position[Z] == pytest.approx(8)
 
 
 @in_segments
@@ -98,28 +101,19 @@ def test_a_tap_follows_the_spindle(lathe, kind, code):
     assert speed == pytest.approx(300 / 60, rel=0.02)
 
 
-def phase_of(status):
-    """Return where a cycle on the face is: low in a hole, turning C to the next one, or neither."""
-    if status.actual[Z] < 1.9:
-        return "low"
-    from_a_hole = (status.actual[C] - 20 + 60) % 120 - 60
-    return "turning" if abs(from_a_hole) > 1 else None
+def of_the_clamp(samples):
+    """Return Z, whether C turns, and whether the clamp is closed or drags, after the start."""
+    skip = beyond_the_start(samples)
+    z, c, closed, drag = (samples.axes[letter][skip:] for letter in "ZCKD")
+    return z, np.abs(np.diff(c, prepend=c[:1])) > 1e-6, closed > 0, drag > 0
 
 
 @in_segments
 def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
     lathe.reset()
-    lathe.open_text([*START, FACE, "M2"])
-    lathe.start()
-    lathe.wait_for(lambda status: status.actual[X] > 40 - SAME)
-    seen = set()
-    while not (status := lathe.stat()).idle or not seen:
-        closed = bool(lathe.get(CLOSED))
-        phase = phase_of(status)
-        if phase and phase == phase_of(lathe.stat()):
-            seen.add((phase, closed))
-    assert seen == {("low", True), ("turning", False)}
-    assert not lathe.get(CLOSED)
+    z, turning, closed, _ = of_the_clamp(lathe.motion_of([*START, FACE, "M2"]))
+    assert closed[z < 1.9].all() and (z < -3.9).any()
+    assert turning.any() and not closed[turning].any() and not closed[-1]
 
 
 def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
@@ -133,7 +127,7 @@ def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
         lathe.wait_for(lambda status: status.actual[axis] < least or status.idle)  # noqa: B023
         lathe.abort()
         lathe.errors()
-        assert opened(lathe)
+        lathe.wait_for(lambda _: not lathe.get(CLOSED))
         lathe.mdi("G90 G0 X50 Z20")
         assert lathe.stat().position[X] == pytest.approx(50) and not lathe.errors()
     run = lathe.run_text([*START, FACE, "M2"])
@@ -145,13 +139,11 @@ SLOT = "o<polar_slot> call [6] [30] [1] [-9999] [-9999] [6000] [-9999] [0]"
 
 def test_a_shape_is_cut_with_a_light_drag(lathe):
     lathe.reset()
-    assert not lathe.get(DRAG)
-    lathe.open_text([*START, SLOT, "G0 C0", "M2"])
-    lathe.start()
-    lathe.wait_for(lambda status: status.actual[Z] < 0)
-    assert lathe.get(DRAG) and not lathe.get(CLOSED)
-    lathe.wait_for(lambda status: status.actual[Z] > 2)
-    assert opened(lathe, DRAG) and not lathe.errors()
+    samples = lathe.motion_of([*START, SLOT, "G0 C0", "M2"])
+    z, _, closed, drag = of_the_clamp(samples)
+    cutting = (z < 0) & np.isin(samples.kind[-len(z) :], (FEED, ROUND))
+    assert drag[cutting].all() and (z[cutting] < -0.9).any() and not closed[cutting].any()
+    assert not drag[0] and not drag[-1]
 
 
 def test_an_abort_takes_the_drag_back(lathe):
@@ -162,7 +154,7 @@ def test_an_abort_takes_the_drag_back(lathe):
         lathe.wait_for(lambda status: status.actual[Z] < depth)  # noqa: B023
         lathe.abort()
         lathe.errors()
-        assert opened(lathe, DRAG) and opened(lathe)
+        lathe.wait_for(lambda _: not lathe.get(DRAG) and not lathe.get(CLOSED))
         lathe.mdi("G90 G0 Z20")
     run = lathe.run_text([*START, SLOT, "M2"])
     assert run.error is None

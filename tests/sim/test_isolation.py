@@ -36,7 +36,7 @@ def exit_code_of_nothing():
     isolated = Isolated()
     try:
         isolated.launch(["true"], {})
-        return isolated.wait(60), isolated.log()
+        return isolated.wait(300), isolated.log()
     finally:
         isolated.close()
 

@@ -39,7 +39,7 @@ def sample(ini):
 def test_every_machine_runs_its_sample_to_the_end(ini):
     with Machine(ini) as machine:
         machine.feed_override(10.0)
-        result = machine.run(sample(ini), timeout=120)
+        result = machine.run(sample(ini), timeout=300)
         assert result.error is None
         assert result.seconds > 0.5
 
@@ -48,7 +48,7 @@ def test_every_machine_runs_its_sample_to_the_end(ini):
 def test_linuxcnc_runs_a_program_without_a_screen_and_exits_with_0(ini, tmp_path):
     program = tmp_path / "quick.ngc"
     program.write_text(QUICK)
-    code, log = smoke(ini, program, timeout=60)
+    code, log = smoke(ini, program, timeout=300)
     assert code == 0, log
     assert "message: hello" in log
     assert f"{program}: done" in log
@@ -57,7 +57,7 @@ def test_linuxcnc_runs_a_program_without_a_screen_and_exits_with_0(ini, tmp_path
 def test_linuxcnc_exits_with_1_if_the_program_has_an_error(tmp_path):
     program = tmp_path / "bad.ngc"
     program.write_text("G21\nG1 X2 Q\nM2\n")
-    code, log = smoke(HEADLESS[0], program, timeout=60)
+    code, log = smoke(HEADLESS[0], program, timeout=300)
     assert code == 1
     assert "error: No characters found in reading real value" in log
     assert f"{program}: FAILED" in log
@@ -66,7 +66,7 @@ def test_linuxcnc_exits_with_1_if_the_program_has_an_error(tmp_path):
 def test_linuxcnc_runs_the_sample_if_no_program_is_named(tmp_path):
     machines = copy_of_machines(tmp_path)
     (machines / "samples" / "mill_mitsubishi_mm.ngc").write_text(QUICK)
-    code, log = smoke(machines / "mill_mitsubishi_mm_headless.ini", timeout=120)
+    code, log = smoke(machines / "mill_mitsubishi_mm_headless.ini", timeout=300)
     assert code == 0, log
     assert "samples/mill_mitsubishi_mm.ngc: done" in log
 

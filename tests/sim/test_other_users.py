@@ -39,7 +39,7 @@ def computer():
 
     def run(commands):
         whole = [*SYSTEM, "sh", "-c", SET_UP + commands]
-        return subprocess.run(whole, capture_output=True, text=True, timeout=120)
+        return subprocess.run(whole, capture_output=True, text=True, timeout=600)
 
     return run
 
@@ -47,7 +47,7 @@ def computer():
 @pytest.mark.parametrize("caller", CALLERS)
 @pytest.mark.parametrize("container", ["", PLAIN], ids=["namespaces", "container"])
 def test_another_user_gets_at_nothing_of_a_run(computer, container, caller):
-    done = computer(f"{ATTACK} timeout 60 {container} {CALLERS[caller]} {RUN}; {LOOT}")
+    done = computer(f"{ATTACK} timeout 300 {container} {CALLERS[caller]} {RUN}; {LOOT}")
     assert re.fullmatch(r"ends at X1 Y0 Z0 .*\n.* s in motion\n", done.stdout), done.stderr
     assert ("without namespaces" in done.stderr) == bool(container)
 
@@ -62,6 +62,6 @@ def test_runs_of_a_container_wait_for_those_of_the_same_user(computer):
 def test_a_queue_of_another_user_is_not_used(computer, plant):
     planted = f"{OTHER} {plant} /tmp/g12-turns-0"
     home = "/tmp/.g12-turns"  # HOME is /tmp in RUN
-    done = computer(f"{planted}; timeout 60 {PLAIN} {RUN}; stat -c %u%a {home}")
+    done = computer(f"{planted}; timeout 300 {PLAIN} {RUN}; stat -c %u%a {home}")
     assert "s in motion" in done.stdout and done.stdout.endswith("\n0700\n"), done.stderr
     assert "Traceback" not in done.stderr

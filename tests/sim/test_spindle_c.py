@@ -89,7 +89,7 @@ def test_threads_and_flats_are_the_same_after_ten_changes(lathe):
     thread = ["S400 M3", "G0 X20 Z5", f"G33 Z-8 K{PITCH}", "G0 X25", "M5"]
     part = [*turned, *thread, *FLATS]
     program = [*FIRST, *TEN_CHANGES[:3], *part, *TEN_CHANGES, *part, "M2"]
-    samples = lathe.motion_of(program, timeout=120)
+    samples = lathe.motion_of(program)
     threads = [number for number, block in enumerate(program, 1) if "G33" in block]
     (before, start), (after, start_after) = (pitch_and_start(samples, at) for at in threads)
     assert before == pytest.approx(PITCH, rel=0.005)
@@ -106,7 +106,7 @@ def test_everything_in_one_program(lathe):
     thread = ["G0 X22 Z4", "G76 P1.5 Z-8 I-1 J0.4 R1.5 K0.92 Q29.5 H0", "M5", "G94"]
     tap = ["G0 X0 Z5", "S200 M3", "G33.1 Z-1 K1", "M5"]
     program = [*FIRST, *faced, *thread, *FLATS, *tap, *FLATS, "M2"]
-    samples = lathe.motion_of(program, timeout=120)
+    samples = lathe.motion_of(program)
     tapped = samples.line == program.index("G33.1 Z-1 K1") + 1
     turns, z = samples.axes["T"][tapped], samples.axes["Z"][tapped]
     down = np.arange(len(z)) < z.argmin()
@@ -156,9 +156,9 @@ def test_m3_turns_nothing_while_it_is_c(lathe, word):
     as_c(lathe)
     lathe.open_text([*FIRST, f"S300 {word}", "G1 X30 F3000", "M2"])
     lathe.start()
-    time.sleep(1.5)
-    refusal = "M3 or M4 while the spindle is C: it does not turn. M5 and C off first"
-    assert [error.text for error in lathe.errors()] == [refusal]
+    lathe.wait_for_error("M3 or M4 while the spindle is C: it does not turn. M5 and C off first")
+    time.sleep(0.5)
+    assert lathe.errors() == []
     assert abs(lathe.get("spindle-rps")) < 0.001
     assert lathe.get("axis.x.pos-cmd") == pytest.approx(40)
     lathe.abort()
@@ -229,7 +229,7 @@ def test_holes_with_the_live_tool(lathe):
     side = "o<side_holes> call [2] [-10] [30] [-9999] [40] [4] [2] [1200] [-2] [0] [0]"
     tap = "o<face_hole_at> call [10] [0] [3] [2] [1] [0] [0] [1]"
     start = ["M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "G0 X40", side, "G0 Z5"]
-    samples = lathe.motion_of([*FIRST, "T1 M6", *start, tap, "M5 $1", "M255", "M2"], timeout=60)
+    samples = lathe.motion_of([*FIRST, "T1 M6", *start, tap, "M5 $1", "M255", "M2"])
     line, axes = samples.line, samples.axes
     low = axes["Z"] < -3.998
     angles = 360 * axes["T"][low & (axes["X"] > 14.9) & (axes["X"] < 15.1)]

@@ -6,7 +6,7 @@ import time
 from support.operated_machine import UnhomedMachine
 from support.sim_machines import SIM
 
-SECONDS = 10.0
+SECONDS = 60.0
 
 
 def first_error(machine):

@@ -22,11 +22,13 @@ def step():
     if not view.page.sketch.cut:
         return True
     view.widgets["i"].set_text("5,5")
-    GLib.timeout_add(500, add)
+    GLib.timeout_add(100, add)
     return False
 
 
 def add():
+    if view.page.texts["i"] != "5,5" or not view.page.sketch.cut:
+        return True
     view._add()
     assert len(view.steps.get_children()) == 1
     GLib.timeout_add(200, save)
@@ -43,5 +45,5 @@ def save():
 
 
 GLib.timeout_add(100, step)
-GLib.timeout_add(20_000, Gtk.main_quit)
+GLib.timeout_add(240_000, Gtk.main_quit)
 Gtk.main()

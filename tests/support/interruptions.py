@@ -191,14 +191,13 @@ class Interrupted:
         machine.start(3 if how == "run_from" and kind != "section" else 0)
         if how == "refusal":
             machine.wait_for(lambda now: now.interp == "idle" and now.idle, timeout=60)
-            time.sleep(0.1)
         else:
             time.sleep(chance.uniform(0, LONGEST))
             self.interrupt(how)
         machine.wait_idle()
-        time.sleep(0.2)  # LinuxCNC drops what an abort still has to do when the mode changes
+        machine.settle()
         if "kinematics" in self.name:
-            machine.wait_for(lambda _: not machine.get("polar-xzc.face"), timeout=3)
+            machine.wait_for(lambda _: not machine.get("polar-xzc.face"))
         said = [error.text for error in machine.errors()]
         if how == "refusal":
             assert all("Traceback" not in text and "pycall" not in text for text in said), said

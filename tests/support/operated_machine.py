@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
@@ -28,6 +28,12 @@ class Machine(machine.Machine):
 
     screen_module = "support.operated_screen"
     screen_folders = (*machine.Machine.screen_folders, str(ROOT / "tests"))
+    recorded: ClassVar[dict[str, str]] = {}  # pins in the samples beside the axes, by letters
+
+    def _start(self) -> None:
+        self._pins |= self.recorded
+        self.axes = "".join(self._pins)
+        super()._start()
 
     def __getattr__(self, name) -> Callable[..., Any]:
         """Return the request of a method of the screen or its panel."""
@@ -58,7 +64,7 @@ class Machine(machine.Machine):
             time.sleep(0.005)
         return status
 
-    def wait_for_error(self, text, timeout=5.0) -> None:
+    def wait_for_error(self, text, timeout=60.0) -> None:
         """Wait for an operator error that contains ``text``.
 
         Those of motion and of the kinematics may arrive when the block has already ended.
@@ -107,7 +113,7 @@ class Machine(machine.Machine):
         """Go back to how the machine came up: modes, G54, no tool, override, axes at 0, silence."""
         self.abort()
         self.feed_override(1.0)
-        zero = " ".join(f"{axis}0" for axis in self.axes)
+        zero = " ".join(f"{axis}0" for axis in self.axes if axis not in self.recorded)
         turn = " R0" if {"X", "Y"} <= set(self.axes) else ""
         modes_at_start = f"{start_block(self.mm)} G40 G49 G8 G91.1 G97"
         up = ["G53 G0 Z0"] if "Z" in self.axes else []

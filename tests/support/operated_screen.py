@@ -9,7 +9,9 @@ from g12.tools.headless.operator_panel import GRACE, TASK_MODES, Panel
 from g12.tools.headless.recording_screen import RecordingScreen, modes_of, signals_by_pin
 
 AXIS_JOG = 0  # of an axis, not of a joint
-PATIENCE = 5.0  # s, for milltask to come up
+PATIENCE = 60.0  # s, for milltask to come up
+CYCLES = 20  # of milltask: more than an abort has queued
+STEP_CYCLES = 4  # of it, within which a step begins to move
 INTERPRETER = {
     linuxcnc.INTERP_IDLE: "idle",
     linuxcnc.INTERP_READING: "reading",
@@ -53,8 +55,23 @@ class OperatedPanel(Panel):
         self._do(self._command.auto, linuxcnc.AUTO_RUN, line)
 
     def step(self):
+        """Make one step; the machine stands again afterwards.
+
+        A second step while it moves would make LinuxCNC pass over the stop of the first.
+        """
         self._mode(linuxcnc.MODE_AUTO)
         self._do(self._command.auto, linuxcnc.AUTO_STEP)
+        self.settle(STEP_CYCLES)
+        while hal.get_value("motion.current-vel"):
+            self.settle(STEP_CYCLES)
+
+    def settle(self, cycles=CYCLES):
+        """Wait until milltask has executed what it has queued: one command a cycle.
+
+        Every answer is a cycle of it, however busy the computer is.
+        """
+        for _ in range(cycles):
+            self._do(self._command.debug, self.poll().debug)
 
     def pause(self):
         self._do(self._command.auto, linuxcnc.AUTO_PAUSE)
@@ -63,9 +80,14 @@ class OperatedPanel(Panel):
         self._do(self._command.auto, linuxcnc.AUTO_RESUME)
 
     def abort(self, wait=True):
+        """Abort; with ``wait`` until what the abort has queued is done, too.
+
+        A change of the mode before that would drop it.
+        """
         self._do(self._command.abort)
         if wait:
-            self.wait_idle(GRACE)
+            self.wait_idle(PATIENCE)
+            self.settle()
 
     def block_delete(self, on):
         """Let blocks that begin with / be skipped."""

@@ -24,7 +24,7 @@ from g12.tools.cycles_page import gtk_view  # noqa: E402
 from g12.tools.headless.errors import MachineError  # noqa: E402
 from g12.tools.headless.recording_screen import RecordingScreen  # noqa: E402
 
-PATIENCE, START = 40.0, 3.0  # s, at most
+PATIENCE, START = 180.0, 10.0  # s, at most
 PINS = [f"axis.{axis}.pos-cmd" for axis in "xyz"]
 COMMON = {"tool": "5", "feed, mm/min": "6000", "retract height, mm": "2"}
 POCKET = {**COMMON, "depth, Z, mm": "-1", "levels": "1", "first radius I, mm": "8",

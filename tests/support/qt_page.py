@@ -25,7 +25,7 @@ view.show()
 
 
 def wait(until):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 240
     while not until() and time.monotonic() < end:
         app.processEvents()
         time.sleep(0.01)

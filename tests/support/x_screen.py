@@ -10,7 +10,7 @@ import pytest
 
 from g12.tools.headless.namespaces import Isolated
 
-XVFB_START = 60.0  # s for a screen to come up
+XVFB_START = 240.0  # s, at most, for a screen to come up and for a session at it
 INCOMPLETE = "Namespace GtkSource not available"
 
 

@@ -245,8 +245,14 @@ def restore_left(interp: Interp) -> None:
     """Restore all that an interrupted borrower left."""
     stack = _stack(interp)
     if stack:
-        restore(interp, stack[0])
+        _restore_interrupted(interp, stack[0])
         stack.clear()
+
+
+def _restore_interrupted(interp: Interp, saved: Saved) -> None:
+    restore(interp, saved)
+    if saved.accelerations:  # the face has M52 on
+        command_adaptive(interp, saved)
 
 
 def after_abort(interp: Interp, now: float) -> None:
@@ -262,9 +268,7 @@ def after_abort(interp: Interp, now: float) -> None:
         borrowed.stack.clear()
     at, saved = borrowed.aborted
     if saved and now - at < ABORTED_AGAIN:
-        restore(interp, saved)
-        if saved.accelerations:  # the face has M52 on
-            command_adaptive(interp, saved)
+        _restore_interrupted(interp, saved)
     if not interp.cutter_comp_side:  # under compensation LinuxCNC refuses it, and no code borrows
         interp.execute(modes_in_force(interp).path_block)
     if interp.feed_rate:

@@ -185,16 +185,15 @@ def _tool_side(contour: Sequence[ContourMove]) -> int:
     return 1 if start - min(ends) >= max(ends) - start else -1
 
 
-def turning_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
-    """Return G90 of system A: along Z; ``taper`` the radius at the start less the end's."""
-    begin = complex(start.real, end.imag + taper)
-    return [rapid_to(begin), feed_to(end), feed_to(complex(end.real, start.imag)), rapid_to(start)]
+def single_pass(start: complex, end: complex, taper: float, along_x: bool) -> list[CycleMove]:
+    """Return G90 of system A, along Z, or G94, along X: in, along, out, back.
 
-
-def facing_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
-    """Return G94 of system A: along X; ``taper`` is Z at the start less that at the end."""
-    begin = complex(end.real + taper, start.imag)
-    return [rapid_to(begin), feed_to(end), feed_to(complex(start.real, end.imag)), rapid_to(start)]
+    ``taper`` is the radius (of G94: Z) at the start less that at the end.
+    """
+    begin, out = complex(start.real, end.imag + taper), complex(end.real, start.imag)
+    if along_x:
+        begin, out = complex(end.real + taper, start.imag), complex(start.real, end.imag)
+    return [rapid_to(begin), feed_to(end), feed_to(out), rapid_to(start)]
 
 
 class Pecking(NamedTuple):
@@ -297,10 +296,7 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
         moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
-    last = moves[-1].end
-    clear = side * max(side * start.imag, side * last.imag)
-    back = (complex(last.real, clear), complex(start.real, clear), start)
-    return [*moves, *map(rapid_to, back)]
+    return [*moves, *return_by(start, moves[-1].end, side)]
 
 
 def pitch_along(path: complex, lead: float) -> float:
