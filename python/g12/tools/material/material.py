@@ -107,10 +107,13 @@ class Ring:
         return np.array(self.centre) + self.around * along
 
 
+Removed = Sweep | Ring
+
+
 class Material:
     def __init__(self, shape: BaseGeometry, top: float, period: float = 0.0) -> None:
         self.shape, self.top, self._period = shape, top, period
-        self._sweeps: list[Sweep | Ring] = []
+        self._sweeps: list[Removed] = []
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3), after those before."""
@@ -136,7 +139,7 @@ class Material:
         rows = [(*sweep.bounds, sweep.level, sweep.move) for sweep in self._sweeps]
         return np.ascontiguousarray(np.array(rows, float).reshape(-1, 6).T)
 
-    def sweeps_of(self, moves: range) -> list[Sweep | Ring]:
+    def sweeps_of(self, moves: range) -> list[Removed]:
         """Return what a range of moves removes, if that stands."""
         move = self._table[5]
         first, last = np.searchsorted(move, (moves.start, moves.stop))
@@ -146,7 +149,7 @@ class Material:
         """Return whether a range of moves removes anything that stands before them."""
         return any(self._removes(each, moves.start) for each in self.sweeps_of(moves))
 
-    def _removes(self, sweep: Sweep | Ring, before: int) -> bool:
+    def _removes(self, sweep: Removed, before: int) -> bool:
         near, _ = self._near(sweep.bounds, sweep.level + SAME_LEVEL, before)
         if not near and self._whole.contains(box(*sweep.bounds)):
             return True
@@ -197,7 +200,7 @@ class Material:
 
     def _near(
         self, bounds: Sequence[float], level: float, before: float
-    ) -> tuple[list[Sweep | Ring], list[Sweep | Ring]]:
+    ) -> tuple[list[Removed], list[Removed]]:
         """Return the sweeps before a move that may meet bounds, and those that may cover them."""
         low_x, low_y, high_x, high_y = bounds
         x0, y0, x1, y1, levels, move = self._table
