@@ -35,8 +35,7 @@ def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     program, material, top = solids.program, solids.of(cut.surface), solids.top(cut.surface)
     place = program.tip(cut.at, cut.surface)[0]
-    lowest = min((each.level for each in material.sweeps_of(cut.moves)), default=math.inf)
-    if lowest > top - LEVEL:
+    if not material.sweeps_of(cut.moves):
         tips = (program.tip(index, cut.surface) for index in program.fed(cut))
         above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
         yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL else "")

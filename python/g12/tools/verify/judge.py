@@ -28,14 +28,14 @@ from g12.tools.verify.rules import contour, feed, spindle, tool, whole  # noqa: 
 from g12.tools.verify.rules.table import judge_rules
 
 CAUSES = {  # a finding of one code is the cause of those of others at the same cut
-    "length": {"rapid", "uncut", "air"},
-    "length-higher": {"uncut", "air", "cut-before"},
+    "length": {"rapid", "uncut", "air", "bar-remains"},
+    "length-higher": {"uncut", "air", "cut-before", "bar-remains"},
     "cutter": {"uncut", "wall", "core"},
     "d-stale": {"wall", "uncut", "cutter"},
-    "air": {"uncut"},
-    "no-stock-met": {"uncut"},
+    "air": {"uncut", "bar-remains"},
+    "no-stock-met": {"uncut", "bar-remains"},
     "surface": {"rapid"},
-    "side": {"overcut"},
+    "side": {"overcut", "bar-remains"},
     "place-unknown": {"deep-pass"},
     "no-tool": {"no-diameter"},
 }

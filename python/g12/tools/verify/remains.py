@@ -4,17 +4,25 @@
 import math
 from collections.abc import Iterator
 
+import numpy as np
+from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from g12.cut_report import PolygonCut
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.model.solid import JUST_ABOVE, Solids
+from g12.tools.verify.model.solid import JUST_ABOVE, Solids, reachable
 
 SLACK = 0.02  # mm: boundaries are compared with so much less
-LEAST_GONE = 0.1  # mm²
+LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should not
 UNCUT = kind("uncut", FINDING, "{area:mm2} of material remain uncut at Z{level:mm}")
+BAR = kind(
+    "bar-remains",
+    FINDING,
+    "{area:mm2} of the bar remain at Z{level:mm} on the tool's side of the contour",
+)
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
@@ -46,6 +54,10 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(UNCUT, (*middle, cut.floor), **values)
     if core.area > LEAST_GONE and not cut.is_ring:  # whose core is meant
         yield cut.found(CORE, area=core.area)
+    beyond = left_of(_beyond(cut, solids, radius), cut, solids)
+    if beyond.area > LEAST_LEFT:
+        place = (*beyond.representative_point().coords[0], cut.floor)
+        yield cut.found(BAR, place, area=beyond.area, level=level)
 
 
 def _is_cleared(cut: Cut, solids: Solids) -> bool:
@@ -61,6 +73,31 @@ def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
         return NOTHING  # no more than a rim, of chords and rounding
     area = solids.standing(region, cut.floor, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
+
+
+def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
+    """Return what of a given bar lies on the tool's side of a contour, as far as a cutter reaches.
+
+    An open contour goes on straight at its ends.
+    """
+    if cut.surface or not (solids.stock and solids.stock.diameter):
+        return NOTHING
+    bar, found = solids.of(cut.surface).shape, []
+    whole = bar.buffer(3 * radius)
+    if isinstance(cut.plan, PolygonCut):
+        found.append(bar.difference(cut.stays[0][0]))
+    for outline in cut.outlines:
+        if outline.is_closed:
+            found.append(NOTHING if outline.tool_inside else whole.difference(outline.polygon))
+            continue
+        points = outline.points
+        far = 4.0 * max(bar.bounds[2], float(np.abs(points).max()))
+        first, last = points[0] - points[1], points[-1] - points[-2]
+        ends = points[0] + far * first / abs(first), points[-1] + far * last / abs(last)
+        line = LineString([(p.real, p.imag) for p in (ends[0], *points, ends[1])])
+        beside = line.buffer(far if outline.left else -far, single_sided=True, join_style=2)
+        found.append(whole.intersection(beside))
+    return unary_union([NOTHING, *(reachable(each, radius) for each in found)]).intersection(bar)
 
 
 # ------------------------------------------------------------ what should stand

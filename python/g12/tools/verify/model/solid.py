@@ -187,3 +187,8 @@ def needed_bar(cut: Cut, cutter: float) -> float:
     ends = [np.abs(outline.points) for outline in cut.outlines]
     reach = (at.max() if o.is_closed else min(at[0], at[-1]) for o, at in zip(cut.outlines, ends))
     return float(max(reach, default=cut.deep_reach))
+
+
+def reachable(region: BaseGeometry, radius: float) -> BaseGeometry:
+    """Return what a round cutter can remove of a region without leaving it."""
+    return region.buffer(-radius, 32).buffer(radius, 32)
