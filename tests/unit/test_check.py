@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `check` finds in a config, each finding once; without LinuxCNC."""
 
-import json
-
 import pytest
 
 from g12.tools.commands import check
@@ -352,12 +350,10 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.count("\n") == 1
 
 
-def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
+def test_the_report_says_what_is_there_and_what_is_wrong(tmp_path):
     config = config_of(write_config(tmp_path, GOOD + FILTER))
-    said = check.report_of(config, findings_of(config))
-    assert json.loads(json.dumps(said)) == said
-    assert said["codes"][0] == {"code": "G12", "feature": "haas", "line": "mill.ini:6"}
-    lines = "\n".join(check.lines_of(said))
-    assert said["findings"] and "  .nc    programs of haas-mill\n" in lines
-    for finding in said["findings"]:
-        assert finding["text"] in lines and finding["cure"] in lines
+    said = list(check.report_of(config, findings_of(config)))
+    meaning = "G12/G13 circular pocket, Haas words (mill.ini:6)"
+    assert said[1] == f"  G12    haas         {meaning}"
+    assert "  .nc    programs of haas-mill" in said
+    assert any(line.startswith("problem [filter]: ") for line in said)

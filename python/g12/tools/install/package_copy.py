@@ -16,30 +16,21 @@ from g12.tools.install.config.features import ROOT
 from g12.tools.machine.files import free_name, take_owner
 
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
-PAGE_FILES = (  # the pages that a machinist reads at the machine; they link only to each other
-    "ngc/*.md",
+FILES = (  # the code, and the pages that a machinist reads at the machine
+    "LICENSE",
+    "ngc/*.*",
     "ngc/pictures/*.png",
-    "configs/README.md",
-    "configs/spindle_c.md",
+    "configs/*.md",
+    "configs/include/*.*",
+    "configs/include/probe_basic/**/*.py",
     "configs/kinematics/README.md",
+    "configs/kinematics/polar_*",
     "python/README.md",
+    "python/**/*.py",
     "python/g12/tools/regress/README.md",
     "python/g12/tools/translate/README.md",
-)
-CODE_FILES = (
-    "ngc/*.ngc",
-    "ngc/*.png",
-    "configs/include/*.inc",
-    "configs/include/spindle_c*",
-    "configs/include/*.ui",
-    "configs/include/axis_face.py",
-    "configs/include/probe_basic/**/*.py",
-    "configs/kinematics/polar_*",
-    "python/*.py",
-    "python/g12/**/*.py",
     "python/g12/tools/translate/controls/*.toml",
 )
-FILES = ("LICENSE", *CODE_FILES, *PAGE_FILES)
 EDITED_SUFFIX = ".edited"
 MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)", re.MULTILINE)
 BESIDE, ASIDE = ".g12-new", ".g12-old"  # the new copy; the old one, where two cannot be exchanged
