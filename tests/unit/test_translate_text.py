@@ -497,6 +497,17 @@ def test_the_live_tool_is_a_spindle_of_the_machine(machine_of, name, text, expec
     assert "say [G12] LIVE_SPINDLE" in refusal(machine_of(name, TWO), text)[1]
 
 
+@pytest.mark.parametrize(
+    ("name", "clamp"),
+    [("colchester-lathe", "M89 M90"), ("dmg-mori-lathe", "M68 M69"), ("mazak-lathe", "M210 M212")],
+)
+def test_a_hole_is_drilled_with_c_clamped_by_its_builders_codes(name, clamp):
+    close, release = clamp.split()
+    head = "G21 G97 S500 M3\nG0 X60. Z10. C0"
+    written = lines_after(control_of(name), f"{head}|G83 X40. Z-5. F50. {close}\nG80")
+    assert [line.split()[0] for line in written if line[:1] == "M"] == [close, release, "M30"]
+
+
 def test_p_names_a_spindle_beside_m3_only():
     assert "M98 P12" in lines_after(control_of("doosan-lathe"), "M98 P12\nM30\nO12\nM99")
 
