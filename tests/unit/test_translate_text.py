@@ -243,6 +243,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
     (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
     (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
+    (HAAS, "#1=[FIX[#2] AND [1 EQ 2]]", "AND is translated between comparisons"),
     (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
     (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
     (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
@@ -605,6 +606,7 @@ REFUSED_OFTEN = [
     (LATHE, "G95\nG90 X9. Z1.", "G95: feed per revolution"),
     (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
     (FANUC, "#1=#4001", "#4001 means something else"),
+    (FANUC, "GOTO10", "GOTO10 is a jump"),
     (FANUC, "G31 Z1.", "G31: a skip function"),
     (LATHE, "G68", "G68: mirror image"),
 ]
@@ -615,6 +617,26 @@ def test_the_page_has_the_commonest_refusals(control, text, sentence):
     assert refusal(control, text)[1].startswith(sentence)
     table = PAGE.read_text(encoding="utf-8").partition("refused most often")[2].partition("##")[0]
     assert sentence in table
+
+
+CURES = [  # a control of one's own: what it is based on and says; a program of it
+    ("fanuc-mill", 'decimals = "whole"', "G21 G90|G0 X1"),
+    ("fanuc-mill", '[m_codes]\nM137 = "comment"\nM88 = "M7"', "M137\nM88"),
+    ("fanuc-mill", 'axes = "XYZA"', "G0 A90."),
+    ("fanuc-mill", '[variables]\n4001 = "#500"', "#1=#4001"),
+    ("fanuc-mill", "", "M98 P9810\nM30\nO9810\nM99"),
+    ("fanuc-mill", "", "#1=0\nWHILE[#1LT2]DO1\nIF[#1EQ1]G0 X1.\n#1=#1+1\nEND1"),
+    ("fanuc-lathe", '[tools]\npatterns = ["TTTOO"]', "T30303"),
+    ("fanuc-lathe-b", "", "G90\nG0 X40. Z1.\nG95\nG77 X9. Z1. F.1"),
+    ("fanuc-lathe", "", "T0101|G0 X50. Z5.\nG90 X9. Z1. F.1"),
+]
+
+
+@pytest.mark.parametrize(("base", "says", "text"), CURES)
+def test_the_pages_cures_of_refusals_are_true(tmp_path, base, says, text):
+    own = tmp_path / "own.toml"
+    own.write_text(f'based_on = "{base}"\n{says}\n')
+    assert lines_after(read_control(str(own)), text)
 
 
 # ---------------------------------------------------------------- hostile text
