@@ -17,6 +17,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE, ModalState
 from g12.tools.translate.blocks.positions import SHIFTING, known_position, value_text
 from g12.tools.translate.rules.codes import MACHINES_OWN
+from g12.tools.translate.rules.decimals import UNIT
 from g12.tools.translate.rules.milled_surfaces import (
     DrilledHole,
     is_plain_number,
@@ -25,7 +26,6 @@ from g12.tools.translate.rules.milled_surfaces import (
 )
 from g12.tools.translate.rules.polar import feed_of_rapids
 
-SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
 OTHER_PLANES = frozenset(("G18", "G19"))
 NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
 OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
@@ -201,11 +201,11 @@ def _safe_height(draft: Draft) -> float:
     if safe is not None:
         return safe
     units = draft.sure("units", "how high a rapid must be depends on the units")
-    if units not in SAFE:
+    if units not in UNIT:
         raise NotTranslated(
             "how high a rapid must be depends on the units: say G20 or G21 (--units)"
         )
-    return draft.control.value("mill", *SAFE[units])
+    return draft.control.value("mill", f"safe_{UNIT[units]}")
 
 
 def _waiting_point(draft: Draft) -> dict[str, str]:

@@ -24,7 +24,14 @@ ARC_CODES = ("G2", "G3")
 SAME = 1e-7  # points and lengths that are nearer are the same
 ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
 DIGITS = 1e-6  # a word is written where its value changes by that
-MOST_THREAD_PASSES = 1000
+MOST_CUTS = 5000  # of one cycle
+
+
+def limited(count: float, cuts: str) -> int:
+    """Return the number of a cycle's cuts, or refuse one that only a wrong word can have."""
+    if count > MOST_CUTS:
+        raise NotTranslated(f"{count:.0f} {cuts} in one cycle: at most {MOST_CUTS}, go in deeper")
+    return int(count)
 
 
 class ContourBlock(NamedTuple):
@@ -172,9 +179,6 @@ def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
-MOST_CYCLE_PASSES = 5000
-
-
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
     return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
 
@@ -215,8 +219,7 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     if not depth:
         raise NotTranslated("the cycle cuts nothing: it ends at the tool's position")
     peck = given.peck or abs(depth)
-    if abs(depth) / peck > MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
+    limited(abs(depth) / peck, "pecks")
     point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
     away, moves = copysign(1.0, -depth), []
     for number, aside in enumerate(offsets):
@@ -242,9 +245,7 @@ def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
         return depth, [0.0]
     if not given.step:
         raise NotTranslated("the cycle has no step to the next peck")
-    count = int(abs(width) / given.step - SAME)
-    if count > MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{count} steps: the step is too small")
+    count = limited(abs(width) / given.step - SAME, "steps")
     steps = [copysign(given.step * number, width) for number in range(count + 1)]
     return depth, [*steps, width]
 
@@ -317,10 +318,7 @@ def _depths(infeed: Infeed) -> list[float]:
         if depth > full - SAME:
             break
         found.append(depth)
-        if number > MOST_THREAD_PASSES:
-            raise NotTranslated(
-                f"more than {MOST_THREAD_PASSES} passes: the first depth is too small"
-            )
+        limited(number, "passes")
     finishing = infeed.finishing if infeed.allowance > SAME else infeed.finishing - 1
     return [*found, full, *[infeed.height] * max(finishing, 0)]
 
