@@ -6,13 +6,8 @@ IMPORTLINTER_VERSION := 2.17
 LINTERS := build/venv/ruff-$(RUFF_VERSION)-mypy-$(MYPY_VERSION)-import-linter-$(IMPORTLINTER_VERSION)
 MINUTES := 10
 SEED := $(shell date +%s)
-# What make soak tries: its own, and the properties of the normal tests.
-SOAKED := tests/soak/soak_*.py tests/interp/test_cycles.py tests/interp/test_bore_thread_frame.py \
-	tests/unit/test_cylinder.py tests/unit/test_polar_plan.py \
-	tests/unit/test_compensation_offset.py tests/unit/test_compensation_simplify.py -k "any or keeps or soak_ or short_moves"
 JOBS := $(shell nproc)
 WORKERS := $(shell expr 3 \* $$(nproc)) # many wait for real motion, which needs a core in time
-SOAKERS := $(shell expr 4 \* $$(nproc)) # nearly all wait
 
 # RIP=DIR uses the LinuxCNC that was built to run in place in DIR, instead of an installed one.
 IN_PLACE := $(if $(RIP),$(RIP)/scripts/rip-environment)
@@ -60,9 +55,8 @@ bench: setup kinematics
 
 soak: setup
 	@echo "soak: for $(MINUTES) minutes on two cores, seed $(SEED)"
-	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) sh -c 'PYTHONPATH=tests:$$PYTHONPATH \
-		$(PYTHON) -m pytest -p soak.more_examples --hypothesis-seed=$(SEED) -n $(SOAKERS) \
-		--durations=20 $(SOAKED)'
+	@SOAK_MINUTES=$(MINUTES) SOAK_SEED=$(SEED) $(IN_PLACE) \
+		sh -c 'PYTHONPATH=python:tests:$$PYTHONPATH $(PYTHON) -m soak'
 
 deb:
 	@sh .ci/deb

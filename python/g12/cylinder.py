@@ -40,7 +40,6 @@ from g12.moves.steps import (
     SectionPlan,
     Split,
     StepMaker,
-    Stretch,
     spaced,
 )
 from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
@@ -287,8 +286,7 @@ def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:
     bulging = sqrt(radius / (8.0 * BULGE * deviation))
     segments = max(bulging, LEAST_DENSITY)
     density = (segments, (bulging / segments) ** 2)
-    stretch = Stretch(0.0, abs(arc.sweep), [], lambda _: 0.0)
-    angles, shares = spaced(stretch, lambda _: density)
+    angles, shares = spaced(abs(arc.sweep), lambda _: density)
     outward = (arc.start - arc.centre) / radius
     points = [
         arc.centre + (radius + deviation * share) * outward * cmath.rect(1.0, turn * angle)

@@ -6,6 +6,7 @@ import os
 import statistics
 import tempfile
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 
 from bench import Figure, used
@@ -78,21 +79,18 @@ def expanded():
     for index in range(POCKETS):
         x, y = index % 40, index // 40
         yield f"G0 Z.1\nG0 X{x} Y{y}"
-        for move in moves:
-            yield plain_block(move, x, y)
+        yield from map(partial(plain_block, unit=MM_PER_INCH, shift=(x, y)), moves)
 
 
-def plain_block(move, x, y):
-    """Return a move as a block of plain G-code, shifted by (x, y) inches."""
-    end = [value / MM_PER_INCH for value in move.end[:3]]
-    if move.kind == "arc":
-        i, j = ((move.centre[axis] - move.start[axis]) / MM_PER_INCH for axis in (0, 1))
-        whole = math.dist(move.start[:2], move.end[:2]) < cut_geometry.SAME_POINT
-        target = "" if whole else f"X{end[0] + x:.6f} Y{end[1] + y:.6f} "
-        return f"G3 {target}I{i:.6f} J{j:.6f}"
-    if move.end[2] != move.start[2]:
-        return f"G1 Z{end[2]:.6f}"
-    return f"G1 X{end[0] + x:.6f} Y{end[1] + y:.6f}"
+def plain_block(move, axes="XYZ", unit=1.0, shift=(0.0, 0.0)):
+    """Return a move as a block of plain G-code, lengths in a unit of mm, shifted in X and Y."""
+    places = {"X": shift[0], "Y": shift[1]}
+    ends = zip("XYZABC", (*(value / unit for value in move.end[:3]), *move.end[3:6]))
+    end = " ".join(f"{axis}{at + places.get(axis, 0):.6f}" for axis, at in ends if axis in axes)
+    if move.kind != "arc":
+        return f"{'G0' if move.kind == 'rapid' else 'G1'} {end}"
+    i, j = ((move.centre[axis] - move.start[axis]) / unit for axis in (0, 1))
+    return f"{'G3' if move.turns > 0 else 'G2'} {end} I{i:.6f} J{j:.6f} P{abs(move.turns)}"
 
 
 def length_ratio(tracer):

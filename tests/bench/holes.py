@@ -4,7 +4,7 @@
 import tempfile
 
 from bench import Figure
-from bench.haas import against_plain
+from bench.haas import against_plain, plain_block
 from bench.verify import LATHE, verified
 from g12.tools.preview.tracer import Tracer
 from support.sim_machines import SIM
@@ -13,7 +13,6 @@ INI = SIM / "lathe_mm.ini"
 CALLS, HOLES = 20, 360
 FIRST = ["G21 G18 G8 G40 G90 G94 G61", "T1 M6", "S2000 M3", "G0 X40 Z10 C0", "F120"]
 CALL = f"o<face_holes> call [{HOLES}] [30] [0] [-9999] [8] [2] [120] [3] [0] [0]"
-X, Z, C = 0, 2, 5
 
 
 def figures():
@@ -28,14 +27,12 @@ def figures():
 def interpreting():
     """Compare calls with the same moves as plain G-code."""
     what = f"holes: interpreting {CALLS * HOLES:,} holes in three pecks, against the same moves"
-    calls, plain = ([*FIRST, *lines * CALLS, "M2"] for lines in ([CALL], list(moves_of_a_call())))
+    calls, plain = ([*FIRST, *lines * CALLS, "M2"] for lines in ([CALL], moves_of_a_call()))
     return against_plain(what, 3.0, INI, "T1 P1 D6", calls, plain)
 
 
 def moves_of_a_call():
-    """Yield the moves of a call as plain G-code."""
+    """Return the moves of a call as plain G-code."""
     with Tracer(INI, tools={1: 6.0}) as tracer:
         moves = tracer.trace_text([*FIRST, CALL, "M2"]).moves
-    for move in moves[1:]:
-        code = "G0" if move.kind == "rapid" else "G1"
-        yield f"{code} X{move.end[X]:.6f} Z{move.end[Z]:.6f} C{move.end[C]:.6f}"
+    return [plain_block(move, axes="XZC") for move in moves[1:]]

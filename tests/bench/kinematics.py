@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.1 with kinematics beside G12.1 with segments, and what a post-processor makes of it."""
+"""G12.1 with kinematics beside G12.1 with segments."""
 
 import cmath
 import math
@@ -12,8 +12,6 @@ from bench.polar import (
     SAMPLES,
     at_feed,
     contour_of,
-    distance_of,
-    equal_angles,
     seconds_at,
     seconds_in,
 )
@@ -72,8 +70,7 @@ def hexagon(face, segments, feed):
     ideal = sum(segment.length for segment in around) / feed * 60
     ours, others = (seconds_at(lathe, "hexagon", feed) / ideal for lathe in (face, segments))
     what = f"polar with kinematics: hexagon against the ideal at F{feed}"
-    how = f"with segments {others:.3f}, {posted(segments, around, feed)}"
-    return Figure(what, ours, FEEDS[feed], how)
+    return Figure(what, ours, FEEDS[feed], f"with segments {others:.3f}")
 
 
 def circle(face, segments, feed):
@@ -81,8 +78,7 @@ def circle(face, segments, feed):
     shortest = least(CIRCLE, feed)
     ours, others = (circle_seconds(lathe, feed) / shortest for lathe in (face, segments))
     what = f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time"
-    how = f"with segments {others:.3f}, {posted(segments, CIRCLE, feed)}"
-    return Figure(what, ours, OF_LEAST[feed], how)
+    return Figure(what, ours, OF_LEAST[feed], f"with segments {others:.3f}")
 
 
 def circle_seconds(lathe, feed):
@@ -163,24 +159,6 @@ def manual(face, segments, name):
     assert [run.error for run in runs] == [None, None]
     ours, others = (run.seconds for run in runs)
     return beside(name, ours, others, f"{ours:.2f} s and {others:.2f} s")
-
-
-def posted(lathe, segments, feed):
-    """Tell the time of what posts do: equal angles of C within the tolerance, F as programmed.
-
-    In G94 LinuxCNC takes F for X alone, so the speed on the part is another one.
-    """
-    points = np.concatenate([equal_angles(segment) for segment in segments])
-    start = segments[0].start
-    blocks, c = [], math.degrees(np.angle(start))
-    head = ["G21 G18 G8 G90 G94 G64 P0.0025", f"G0 X{abs(start):.6f} Z2 C{c:.6f}", f"F{feed}"]
-    for x, angle in zip(points[:, 0], np.degrees(np.unwrap(points[:, 1]))):
-        blocks.append(f"G1 X{x:.3f} C{angle:.3f}")  # the decimals of a post
-    run = lathe.run_text([*head, *blocks, "M2"])
-    seconds = seconds_in(run, range(4, 4 + len(blocks)))
-    ideal = sum(segment.length for segment in segments) / feed * 60
-    off = distance_of(run, segments)
-    return f"a post's {len(blocks)} blocks {seconds / ideal:.3f} ({off:.3f} mm off)"
 
 
 def deviation_on_face(face):

@@ -6,6 +6,7 @@ import time
 from pathlib import Path
 
 from bench import Figure
+from bench.haas import plain_block
 from g12.cycles.bore import plan_bore
 from g12.cycles.frame import plan_frame
 from g12.cycles.plan import STRAIGHT_DOWN
@@ -35,7 +36,7 @@ PLANNERS = {
 def figures():
     """Yield two rows for each code."""
     for name, block in BLOCKS.items():
-        by_code, by_hand = motion_time([block]), motion_time(list(written_out(block)))
+        by_code, by_hand = motion_time([block]), motion_time(written_out(block))
         what = f"{name}: motion time of {block}, against the same toolpath written by hand"
         yield Figure(what, by_code / by_hand, 1.01, f"{by_code:.2f} s against {by_hand:.2f} s")
         yield Figure(f"{name}: planning a block", planning(name, block), 2.0, "the mean", " ms")
@@ -52,17 +53,10 @@ def motion_time(lines):
 
 
 def written_out(block):
-    """Yield the moves of a block as plain G-code."""
+    """Return the moves of a block as plain G-code."""
     with Tracer(INI, tools=TOOLS) as tracer:
         moves = tracer.trace_text([*FIRST, block, "M2"]).moves[1:]
-    for move in moves:
-        end = " ".join(f"{axis}{value:.6f}" for axis, value in zip("XYZ", move.end))
-        if move.kind == "arc":
-            i, j = (move.centre[axis] - move.start[axis] for axis in (0, 1))
-            code = "G3" if move.turns > 0 else "G2"
-            yield f"{code} {end} I{i:.6f} J{j:.6f} P{abs(move.turns)}"
-        else:
-            yield f"{'G0' if move.kind == 'rapid' else 'G1'} {end}"
+    return [plain_block(move) for move in moves]
 
 
 def planning(name, block):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12.1: real deviation, section times, interpreting time."""
+"""G12.1 and G7.1: real deviation, section times, interpreting time."""
 
 import math
 
@@ -28,19 +28,33 @@ def figures():
     yield interpreting()
     with Machine(SIM / "lathe_mm.ini") as lathe:
         for name in MILLIMETRES:
-            yield real_deviation("polar", name, proof_of(lathe, name), TOLERANCE)
+            yield real_deviation("polar", name, proof_of(lathe, SAMPLES / f"{name}.ngc"), TOLERANCE)
         yield against_ideal(lathe, "hexagon", 250)
         yield against_equal_angles(lathe)
+        for program in sorted((PROGRAMS / "cylinder").glob("*.ngc")):
+            yield from on_cylinder(lathe, program)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
         for name in INCHES:
-            yield real_deviation("polar", name, proof_of(lathe, name), 0.0002 * MM_PER_INCH)
+            yield real_deviation(
+                "polar", name, proof_of(lathe, SAMPLES / f"{name}.ngc"), 0.0002 * MM_PER_INCH
+            )
         yield against_ideal(lathe, "manual_b", 250 / MM_PER_INCH)
 
 
-def proof_of(lathe, name):
+def on_cylinder(lathe, program):
+    """Yield the rows of a sample on the cylinder, run once at its own feed of F250."""
+    proof = proof_of(lathe, program)
+    yield real_deviation("cylinder", program.stem, proof, TOLERANCE)
+    (section,) = proof.sections
+    seconds, ideal = (section.values[name] for name in ("seconds", "seconds_programmed"))
+    what = f"cylinder: section time against the ideal at F250, {program.stem}"
+    yield Figure(what, seconds / ideal, 1.05, f"{seconds:.2f} s")
+
+
+def proof_of(lathe, program):
     """Return the proof of a sample's motion on a machine as it came up."""
     lathe.reset()
-    return lathe.proof_of_run((SAMPLES / f"{name}.ngc").read_text())
+    return lathe.proof_of_run(program.read_text())
 
 
 def real_deviation(code, name, proof, tolerance):

@@ -125,6 +125,12 @@ def test_comments_and_line_numbers_are_no_change(pocket):
     assert pocket.check() == (0, ["2 programs: 2 as recorded"])
 
 
+def test_a_name_may_have_a_line_break(shop):
+    shop.write("a\nb.ngc", PLAIN)
+    shop.record()
+    assert shop.check() == (0, ["1 program: 1 as recorded"])
+
+
 def test_programs_named_one_by_one(shop):
     one, other = (shop.write(f"{name}.ngc", PLAIN) for name in "ab")
     new = ["a.ngc: new, 5 moves", "1 program: 1 new"]

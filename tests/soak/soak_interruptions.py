@@ -14,11 +14,11 @@ KINEMATICS = pytest.param("lathe_mm_kinematics", marks=needs_kinematics)
 
 
 @pytest.mark.parametrize("name", ["mill_mm", "mill_a_mm", "lathe_mm", KINEMATICS])
-def test_interruptions(name, request):
+def test_interruptions(name):
     ini, overrides = machine_of(name)
     with Machine(ini, overrides=overrides) as machine:
         interrupted = Interrupted(machine, name)
-        for number in tries(request, f"interruptions on {name}"):
+        for number in tries(f"interruptions on {name}"):
             seed = f"{SEED} {name} {number}"
             try:
                 interrupted.once(random.Random(seed), HOWS[number % len(HOWS)])

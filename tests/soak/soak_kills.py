@@ -38,19 +38,19 @@ def seconds_of(*words, **options):
 
 
 @pytest.mark.parametrize(("feature", "command"), CASES)
-def test_installs(tmp_path, request, feature, command):
+def test_installs(tmp_path, feature, command):
     installs, chance = KilledInstalls(tmp_path, feature, command), random.Random(SEED)
-    tried = tries(request, f"kills of {command}, {feature}, completed by it")
+    tried = tries(f"kills of {command}, {feature}, completed by it")
     for _, point in zip(tried, installs.sample(chance, sys.maxsize)):
         installs.kill(point)
 
 
-def test_recordings(tmp_path, request):
+def test_recordings(tmp_path):
     chance = random.Random(SEED)
     shutil.copytree(PROGRAMS / "haas", tmp_path / "nc", ignore=shutil.ignore_patterns("regress"))
     words = ("regress", "record", "nc", "--ini", SIM / "mill_inch.ini", "-d", "kept")
     lasts = seconds_of(*words, cwd=tmp_path)
-    for number in tries(request, "kill -9 of regress record, mended by it"):
+    for number in tries("kill -9 of regress record, mended by it"):
         seed = f"kill {number} of seed {SEED}"
         if number % 2:
             shutil.rmtree(tmp_path / "kept", ignore_errors=True)

@@ -7,8 +7,8 @@ from soak import SEED, tries
 from support.spindle_lathe import INTERRUPTS, SPINDLE_LATHE, SpindleLathe, interrupted
 
 
-def test_interrupts(request):
+def test_interrupts():
     chance = random.Random(SEED)
     with SpindleLathe(SPINDLE_LATHE) as lathe:
-        for _ in tries(request, "spindle and C, interrupted, and the next program"):
+        for _ in tries("spindle and C, interrupted, and the next program"):
             interrupted(lathe, chance.choice(INTERRUPTS), chance)

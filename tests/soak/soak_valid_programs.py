@@ -5,12 +5,10 @@ import json
 import random
 import re
 
-import pytest
-
 from g12.tools.commands import main
 from interp.test_valid_cuts import check_cuts
 from interp.test_valid_programs import check_as_its_words_ask
-from soak import LANES, SEED, tries
+from soak import SEED, tries
 from support.sim_machines import ROOT, copy_of_machines
 from support.valid_programs import MACHINES, machine_of, valid_program
 
@@ -25,31 +23,28 @@ def with_offset_pin(text):
     return text.replace(last, f"{last}\nHALFILE = {KINEMATICS}/polar_tool_offset.hal")
 
 
-def kinds(lane):
+def kinds():
     """Yield kinds of programs, all of them before one comes again."""
-    chance = random.Random(f"{SEED} {lane}")
+    chance = random.Random(SEED)
     while True:
         yield from chance.sample(list(MACHINES), len(MACHINES))
 
 
-@pytest.mark.parametrize("lane", LANES)
-def test_programs_as_they_are_read(lane, tmp_path, request):
-    for number, kind in zip(tries(request, "valid programs judged by verify"), kinds(lane)):
-        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {lane} {number}", SEGMENTS)
+def test_programs_as_they_are_read(tmp_path):
+    for number, kind in zip(tries("valid programs judged by verify"), kinds()):
+        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
 
 
-@pytest.mark.parametrize("lane", LANES)
-def test_cuts_as_their_words_ask(lane, tmp_path, request):
-    for number, kind in zip(tries(request, "valid programs judged by their words"), kinds(lane)):
-        check_cuts(kind, tmp_path, f"{SEED} {lane} {number}")
+def test_cuts_as_their_words_ask(tmp_path):
+    for number, kind in zip(tries("valid programs judged by their words"), kinds()):
+        check_cuts(kind, tmp_path, f"{SEED} {number}")
 
 
-@pytest.mark.parametrize("lane", LANES)
-def test_programs_as_they_run(lane, tmp_path, capsys, request):
+def test_programs_as_they_run(tmp_path, capsys):
     """With feeds ten times as high, so that it does not take an hour."""
     program, ini = tmp_path / "run.ngc", copy_of_machines(tmp_path) / "machine.ini"
-    for number, kind in zip(tries(request, "valid programs judged as they run"), kinds(lane)):
-        text = valid_program(kind, random.Random(f"{SEED} {lane} {number}"), 1)
+    for number, kind in zip(tries("valid programs judged as they run"), kinds()):
+        text = valid_program(kind, random.Random(f"{SEED} {number}"), 1)
         program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
         machine = machine_of(kind).text
         ini.write_text(with_offset_pin(machine) if OFFSET in kind else machine)

@@ -51,7 +51,7 @@ def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
     names = PlaneNames(*CYLINDER_WORDS.plane, centre=CYLINDER_WORDS.centre_name)
     start = Start(z, math.radians(c), x)
-    return Contour(math.radians(c) * RADIUS, z, x, names=names, diameter=None, start=start)
+    return Contour(math.radians(c) * RADIUS, z, x, names=names, start=start)
 
 
 def runs(contour, **changed):

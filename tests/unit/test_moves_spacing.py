@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from g12.errors import Refusal
-from g12.moves.steps import MOST_SEGMENTS_OF_MOVE, Stretch, spaced
+from g12.moves.steps import MOST_SEGMENTS_OF_MOVE, spaced
 from g12.polar.polar_section import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
@@ -15,12 +15,8 @@ from support.planned_cuts import programmed
 FINEST = PolarSettings(1e-5, 0.001, 1000.0, 3600.0, 21600.0)
 
 
-def stretch(start, end, *apsides):
-    return Stretch(start, end, list(apsides), abs)
-
-
 def test_the_most_segments_are_made():
-    places, _ = spaced(stretch(0.0, 1.0), lambda _: (MOST_SEGMENTS_OF_MOVE - 1.0, 1.0))
+    places, _ = spaced(1.0, lambda _: (MOST_SEGMENTS_OF_MOVE - 1.0, 1.0))
     assert len(places) == MOST_SEGMENTS_OF_MOVE + 1
 
 
@@ -40,11 +36,14 @@ def test_segments_are_equal_parts_of_the_density_but_for_what_the_ends_lose(star
     apsides = [0.0] if start * end < 0.0 else []
     steps = []
 
-    def density(place):
+    def density(at):
+        place = start + at
         steps.append(place)
         return fine / (1.0 + 0.2 * abs(place)), 0.1 * (5.0 + place)
 
-    places, shares = spaced(Stretch(start, end, apsides, abs), density)
+    inside = [apsis - start for apsis in apsides]
+    places, shares = spaced(end - start, density, inside, lambda at: abs(start + at))
+    places = [start + at for at in places]
     assert max(map(abs, steps)) < max(abs(start), abs(end)) + 1.0 / fine
     every = np.linspace(start, end, 4001)
     segments = np.append(0.0, np.cumsum(abs(np.diff(every)) * fine / (1.0 + 0.2 * abs(every[1:]))))

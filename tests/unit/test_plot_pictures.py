@@ -11,15 +11,16 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from shapely.geometry import Point
+from shapely.ops import unary_union
 
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import clearest_axes, window_lines
-from g12.tools.plot.face import programmed_history
+from g12.tools.plot.face import history_of
 from g12.tools.plot.marks import Marks
-from g12.tools.plot.mill import cut_through, removed_at
+from g12.tools.plot.mill import cut_through, removed_to
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import scene_of
 from g12.tools.plot.unrolled import unrolled
@@ -59,9 +60,8 @@ def groove():
     return hand.line(c=90).line(z=-10, c=180).line(c=270).rapid(x=24)
 
 
-def both(hand, ini=MILL):
-    shown = scene(hand, ini)
-    return shown, plan_view.milled_levels(shown)
+def floors_of(hand, ini=MILL):
+    return plan_view.floors_of(scene(hand, ini))
 
 
 def on_surface(shown):
@@ -94,28 +94,26 @@ def test_numbers_in_words():
 # ---------------------------------------------------------------- what is shown
 
 
-def test_levels_go_down_and_each_has_the_area_swept():
-    _, levels = both(pocket())
-    assert [level.z for level in levels] == pytest.approx([-2, -4])
-    for level in levels:
-        assert level.area.bounds == pytest.approx((37, -13, 63, 13), abs=0.02)
-        assert level.area.contains(Point(50 + 12.9, 0))
-    assert levels[0].shade != levels[1].shade
+def test_a_floor_that_remains_is_shown_and_none_that_a_deeper_one_hides():
+    floors = floors_of(pocket().pocket([5], depth=-6))
+    assert [floor.z for floor in floors] == pytest.approx([-4, -6])
+    for floor, reach in zip(floors, (13, 8)):
+        assert floor.area.bounds == pytest.approx((50 - reach, -reach, 50 + reach, reach), abs=0.02)
+    assert floors[0].shade != floors[1].shade
 
 
-def test_half_turns_of_a_helix_belong_to_the_floor_that_they_lead_to():
+def test_turns_of_a_helix_are_no_floors():
     hand = Hand().rapid(x=50).line(z=-2).arc(1, 53, 0, x=56)
     shallow = hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
     hand = shallow.rapid(z=1).rapid(x=150).line(z=-1).arc(1, 153, 0, x=156)
     hand.arc(1, 150, 0, x=144, z=-2.5).arc(1, 150, 0, x=156, z=-5).arc(1, 150, 0)
-    _, levels = both(hand)
-    assert [level.z for level in levels] == pytest.approx([-1, -2, -4, -5])
-    assert levels[2].area.bounds[2] < 100 < levels[3].area.bounds[0]
+    floors = floors_of(hand)
+    assert [floor.z for floor in floors] == pytest.approx([-1, -2, -4, -5])
+    assert floors[2].area.bounds[2] < 100 < floors[3].area.bounds[0]
     on_face = Hand().rapid(x=9, z=1)
     for step in range(1, 9):
         on_face.line(c=45.0 * step, z=1 - step / 2)
-    _, levels = both(on_face.line(c=400.0), LATHE)
-    assert [level.z for level in levels] == pytest.approx([-3])
+    assert [floor.z for floor in floors_of(on_face.line(c=720.0), LATHE)] == pytest.approx([-3])
 
 
 def drilled():
@@ -123,7 +121,7 @@ def drilled():
 
 
 def test_drilling_sweeps_holes():
-    (level,) = plan_view.milled_levels(drilled())
+    (level,) = plan_view.floors_of(drilled())
     assert level.area.bounds == pytest.approx((6, -3, 33, 3), abs=0.01)
     assert len(level.area.geoms) == 2
 
@@ -132,42 +130,44 @@ def test_each_tool_sweeps_with_its_own_diameter():
     hand = Hand().line(x=100)
     hand.tool = 2
     hand.rapid(y=50).line(x=0)
-    area = both(hand)[1][0].area
+    (_, area, _) = floors_of(hand)[0]
     assert not area.contains(Point(50, 4)) and area.contains(Point(50, 2.9))
     assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
 
 
-def test_many_depths_become_bands():
+@pytest.mark.parametrize(("count", "shown_at_most"), [(50, 50), (120, plan_view.BANDS)])
+def test_very_many_depths_become_bands_and_few_are_in_the_legend(count, shown_at_most):
     hand = Hand()
-    for step in range(100):
-        hand.line(x=100 * (step % 2), z=-step / 10)
-    shown, levels = both(hand)
-    assert len(levels) <= plan_view.BANDS
-    assert len(plan_view.few(levels)) == plan_view.MOST_SHOWN_LEVELS
-    floors = [f"swept at Z{shown.unit.text(level.z)}" for level in (levels[0], levels[-1])]
+    for step in range(count):
+        hand.rapid(y=7.0 * step, z=5).line(z=-1 - step / 10)
+    shown = scene(hand)
+    floors = plan_view.floors_of(shown)
+    assert len(floors) == shown_at_most
+    ends = [f"swept at Z{shown.unit.text(z)}" for z in (-1, -1 - (count - 1) / 10)]
     for room in (14, 9, 2):
-        said = [entry.get_label() for entry in plan_view.legend_entries(shown, levels, room)]
+        said = [entry.get_label() for entry in plan_view.legend_entries(shown, floors, room)]
         depths = [label for label in said if label.startswith("swept")]
         assert len(said) <= room or len(depths) == plan_view.LEAST_LEVELS
-        assert [depths[0], depths[-1]] == floors
+        assert [depths[0], depths[-1]] == ends
 
 
 def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
-    low, high = plan_view.bounds_of(*both(pocket().rapid(x=900)))
+    low, high = plan_view.bounds_of(scene(pocket().rapid(x=900)), floors_of(pocket()))
     assert low[0] < 37 and high[0] > 63 and high[0] < 100
     assert low[2] < -4 and high[2] > 5
-    low, high = plan_view.bounds_of(*both(pocket().rapid(x=70)))
+    low, high = plan_view.bounds_of(scene(pocket().rapid(x=70)), floors_of(pocket()))
     assert high[0] > 70 and low[0] < 37
 
 
 def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
     """It is one of radius 20 in the ZX plane about X0 Z0."""
-    shown, levels = both(Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5))
-    low, high = plan_view.bounds_of(shown, levels)
+    hand = Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5)
+    floors = floors_of(hand)
+    low, high = plan_view.bounds_of(scene(hand), floors)
     assert low[2] < -20 and high[2] > 20
-    assert [round(level.z, 3) for level in levels] == [0.0, -20.0]
-    side = removed_at(levels[-1], 30.0)
-    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=0.01)
+    assert floors[-1].z == -20.0
+    side = unary_union([removed_to(floor, 30.0) for floor in floors])
+    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=plan_view.THIN)
     assert side.contains(Point(0, -19.9)) and side.contains(Point(22.9, 5))
     assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
 
@@ -188,7 +188,7 @@ def uncut(centre):
 def drawn_in_red(shown):
     """Return how many polylines and marks a plan has in red."""
     axes = Figure().add_subplot()
-    plan_view.draw_paths(plan_view.SceneView(axes, shown), plan_view.milled_levels(shown))
+    plan_view.draw_paths(plan_view.SceneView(axes, shown))
     lines = [one for one in axes.collections if one.get_edgecolor()[0] == pytest.approx(RED)]
     return len(lines[0].get_paths()), len([one for one in axes.lines if one.get_marker() == "X"])
 
@@ -242,8 +242,8 @@ def test_a_sign_is_where_its_finding_is(hand, ini, at):
 
 def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view():
     found = uncut((50.0, 7.0))
-    level = plan_view.Level(-4.0, style.shades(1)[0], [], found.values["shape"])
-    for boxes in (cut_through(found, 0.0), removed_at(level, 0.0)):
+    floor = plan_view.Floor(-4.0, found.values["shape"], style.shade(1.0))
+    for boxes in (cut_through(found, 0.0), removed_to(floor, 0.0)):
         left, right = sorted(part.bounds for part in boxes.geoms)
         assert left == pytest.approx((20, -4, 30, 0)) and right == pytest.approx((70, -4, 80, 0))
 
@@ -271,7 +271,7 @@ def test_segments_of_one_block_are_one_element_of_the_face():
 
 def test_the_history_of_c_obeys_its_limit():
     hand = Hand(feed=100000).rapid(x=10).line(c=360).line(c=0)
-    history = programmed_history(scene(hand, LATHE))
+    history = history_of(scene(hand, LATHE))
     assert history.c_speed.max() == pytest.approx(360)
     assert history.time[-1] == pytest.approx(2.0)
     assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
@@ -279,7 +279,7 @@ def test_the_history_of_c_obeys_its_limit():
 
 def test_the_history_begins_where_the_first_rapid_ends():
     hand = Hand().rapid(x=30, z=2).line(z=-3).line(c=90)
-    history = programmed_history(scene(hand, LATHE))
+    history = history_of(scene(hand, LATHE))
     assert (history.time[0], history.x[0], history.z[0]) == (0, 30, 2)
     assert history.z[-1] == -3 and not history.rapid[1:].any()
 
@@ -349,7 +349,7 @@ def test_the_window_tells_the_override_and_the_contour():
 def test_a_cylinder_is_drawn_unrolled():
     shown = on_surface(scene(groove(), LATHE))
     flat = unrolled(shown)
-    (level,) = plan_view.milled_levels(flat)
+    (level,) = plan_view.floors_of(flat)
     assert level.z == pytest.approx(18)
     assert level.area.bounds == pytest.approx((-3, -13, 20 * np.radians(270) + 3, 5), abs=0.02)
     assert flat.path.points[-1] == pytest.approx((20 * np.radians(270), -10, 24))

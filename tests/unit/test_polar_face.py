@@ -46,7 +46,7 @@ def test_the_face_is_the_plane_turned(move, angle):
 
 def contour(*points, feed=2000.0):
     """Return a contour of lines from X30 on."""
-    drawn = Contour(30.0, 0.0, 0.0, code="G12.1", diameter=False, radius_tolerance=0.0127)
+    drawn = Contour(30.0, 0.0, 0.0, code="G12.1", radius_tolerance=0.0127)
     x, c = 30.0, 0.0
     for number, (to_x, to_c) in enumerate(points, 7):
         drawn.elements.append(planned_moves.line(x, c, to_x, to_c, number=number, feed=feed))

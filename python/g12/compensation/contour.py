@@ -10,7 +10,7 @@ is counterclockwise (G3), in radians.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from copy import copy
 from math import copysign, sqrt
 from typing import NamedTuple, NoReturn
@@ -106,11 +106,9 @@ class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
     ``first``, ``second`` and ``height`` are the programmed position, readable at any time. ``code``
-    and ``names`` are for messages. ``diameter``: the program's words for the first axis are
-    diameters, None where they cannot be. The values passed in are radii; messages use it to name
-    the reading. ``radius_tolerance`` is how far an arc's radii at start and end may differ.
-    ``beside`` is the tool's distance from the programmed start along the second axis; the first G1
-    removes it.
+    and ``names`` are for messages. ``radius_tolerance`` is how far an arc's radii at start and end
+    may differ. ``beside`` is the tool's distance from the programmed start along the second axis;
+    the first G1 removes it.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``mirrored``: the tool of a G41 is on the
     right, as its radius is below 0, and that of a G42 on the left. ``start`` is the machine's
@@ -126,14 +124,12 @@ class Contour:
         *,
         code: str = "G12.1",
         names: PlaneNames = FACE_NAMES,
-        diameter: bool | None = False,
         radius_tolerance: float = 0.0,
         start: Start | None = None,
         beside: float = 0.0,
     ) -> None:
         self.first, self.second, self.height = first, second, height
-        self.code, self.names = code, names
-        self.diameter, self.radius_tolerance = diameter, radius_tolerance
+        self.code, self.names, self.radius_tolerance = code, names, radius_tolerance
         self.elements: list[PathElement] = []
         # of the elements, within SAME_POINT
         self._end, self._level = complex(first, second + beside), height
@@ -330,12 +326,12 @@ class Contour:
         if abs(end - start) <= SAME_POINT:
             return Arc(start, centre, turn * FULL_TURN)
         from_start, from_end = abs(arm), abs(end - centre)
-        if not self._closes(from_start, from_end):
-            hint = self._hint(lambda a, b: self._closes(abs(arm), abs(b - a - arm)), end)
+        allowed = max(self.radius_tolerance, RADIUS_TOLERANCE_RATIO * from_start)
+        if abs(from_start - from_end) > allowed:
             self.refuse(
                 line,
                 f"{_name(turn)} does not close: its centre is {number(from_start)} from the start, "
-                f"{number(from_end)} from the end{hint}",
+                f"{number(from_end)} from the end",
             )
         centre = recentred(start, end, centre)
         return Arc(start, centre, sweep_between(start, end, centre, turn))
@@ -346,35 +342,15 @@ class Contour:
         half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"
         if apart <= SAME_POINT:
             self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
-        if not self._spans(half, radius):
-            hint = self._hint(lambda a, b: self._spans(0.5 * abs(b - a), radius), end)
+        if half - abs(radius) > max(0.5 * self.radius_tolerance, RADIUS_TOLERANCE_RATIO * half):
             self.refuse(
                 line,
                 f"{name} does not close: the ends are {number(apart)} apart, R must be at least "
-                f"{number(half)}{hint}",
+                f"{number(half)}",
             )
         height = copysign(sqrt(max(0.0, radius * radius - half * half)) / apart, turn * radius)
         centre = (start + end) / 2 + 1j * height * (end - start)
         return Arc(start, centre, sweep_between(start, end, centre, turn))
-
-    def _closes(self, from_start: float, from_end: float) -> bool:
-        return abs(from_start - from_end) <= max(
-            self.radius_tolerance, RADIUS_TOLERANCE_RATIO * from_start
-        )
-
-    def _spans(self, half: float, radius: float) -> bool:
-        return half - abs(radius) <= max(0.5 * self.radius_tolerance, RADIUS_TOLERANCE_RATIO * half)
-
-    def _hint(self, closes: Callable[[complex, complex], bool], end: complex) -> str:
-        """Return which other reading of the X words, if any, would close the arc."""
-        if self.diameter is None:
-            return ""
-        other, ratio = ("radius", 2.0) if self.diameter else ("diameter", 0.5)
-        for first in (self.first * ratio, self.first):
-            start = complex(first, self.second)
-            if closes(start, complex(end.real * ratio, end.imag)):
-                return f"; it would close with X read as a {other} (POLAR_X = {other})"
-        return ""
 
 
 def _name(turn: int) -> str:

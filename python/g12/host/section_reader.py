@@ -79,7 +79,6 @@ class SectionReader:
             level,
             code=kind.start.location.code,
             names=PlaneNames._make((*known.plane, known.centre_name)),
-            diameter=rules.diameter if known.turn_is_length else None,
             radius_tolerance=rules.radius_tolerance,
             start=Start(there[slide], radians(there[turn]), there[height]),
             beside=rules.beside,
@@ -311,9 +310,7 @@ class SectionReader:
     def _rapid_feed(self) -> float:
         feed = self.rules.rapid_feed
         if feed is None:
-            raise self.location.refuse(
-                f"G0 is refused (it is still active): {block_rules.REASON_OF_G[block_rules.G0]}"
-            )
+            raise self.location.refuse(f"G0 is refused (it is still active): {block_rules.RAPID}")
         return feed
 
     def _compensate(self, side: int) -> None:

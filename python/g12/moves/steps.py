@@ -32,6 +32,7 @@ Lengths are in program units.
 """
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 from math import ceil, degrees, hypot
 from typing import NamedTuple
 
@@ -51,118 +52,94 @@ class TooManySegments(Exception):
     """An element would need more segments than `MOST_SEGMENTS_OF_MOVE`."""
 
 
-class Stretch(NamedTuple):
-    """The ends of an element, as positions along it, and its apsides; those outside it are ignored.
-
-    ``nearness`` is a sort key: the smaller, the nearer a position is to the pole.
-    """
-
-    start: float
-    end: float
-    apsides: list[float]
-    nearness: Callable[[float], float]
-
-
-class _Portion(NamedTuple):
-    """The portion of an element between two of its divisions, in steps of one segment each.
-
-    ``positions`` begin at the end nearer to the pole and run past the other one. ``shares`` are the
-    shares of the deviation between two of them. ``number`` segments suffice. ``losses`` are those
-    at the ends of the portion, ``start`` is its first position.
-    """
-
-    start: float
-    positions: list[float]
-    shares: list[float]
-    number: float
-    backwards: bool
-    losses: tuple[float, float]
-
-
-def spaced(stretch: Stretch, density: Density) -> tuple[list[float], list[float]]:
-    """Return the ends of an element's segments, as positions along it, and their deviations.
+def spaced(
+    length: float,
+    density: Density,
+    apsides: Sequence[float] = (),
+    distance: Callable[[float], float] = lambda _: 0.0,
+) -> tuple[list[float], list[float]]:
+    """Return the ends of an element's segments, as positions from 0 to ``length``, and deviations.
 
     ``density`` returns for a position the segments per unit, and the share of the allowed deviation
     that they use, with the sign of the side. The deviations are returned as such shares, too.
+    ``distance`` is that of a position from the pole, ``apsides`` lie inside the element.
     Raises `TooManySegments`.
     """
-    portions = _portions(stretch, density)
-    _check_count(sum(portion.number for portion in portions))
-    ends = [(stretch.start, 0.0)]
-    for portion in portions:
-        lost = sum(portion.losses)
+    divisions = [
+        apsis
+        for apsis in apsides
+        if min(apsis, length - apsis) * density(apsis)[0] > WORTH_DIVIDING
+    ]
+    ends = [(0.0, 0.0)]
+    for start, end in pairwise((0.0, *divisions, length)):
+        backwards = distance(end) < distance(start)
+        near, far = (end, start) if backwards else (start, end)
+        portion = _stepped(near, far, density)
+        lost_near, lost_far = (0.0 if at in divisions else LOSS for at in (near, far))
+        lost = lost_near + lost_far
         segments = ceil(portion.number + lost - 1e-9)
-        length = portion.number / (segments - lost)
-        if portion.losses[0] == 0.0:
-            ends.append((portion.start, length**2 * density(portion.start)[1]))
-        ends.extend(_inner_ends(portion, segments, length))
-    positions, shares = zip(*ends, (stretch.end, 0.0))
+        used = portion.number / (segments - lost)
+        if start in divisions:
+            ends.append((start, used**2 * density(start)[1]))
+        inner = _inner_ends(portion, segments, used, lost_near)
+        ends += reversed(inner) if backwards else inner
+    if len(ends) > MOST_SEGMENTS_OF_MOVE:
+        raise TooManySegments
+    positions, shares = zip(*ends, (length, 0.0))
     return list(positions), list(shares)
 
 
-def _portions(stretch: Stretch, density: Density) -> list[_Portion]:
-    start, end = stretch.start, stretch.end
-    apsides = [
-        apsis
-        for apsis in stretch.apsides
-        if start < apsis < end
-        and min(apsis - start, end - apsis) * density(apsis)[0] > WORTH_DIVIDING
-    ]
-    divisions = [start, *apsides, end]
-    losses = [LOSS, *(0.0 for _ in apsides), LOSS]
-    return [
-        _portion(divisions[k], divisions[k + 1], (losses[k], losses[k + 1]), stretch, density)
-        for k in range(len(divisions) - 1)
-    ]
+class _Steps(NamedTuple):
+    """Steps of one segment of full length each, from one position to another and past it.
+
+    ``shares`` are the shares of the deviation between two ``positions``; ``number`` segments
+    suffice.
+    """
+
+    positions: list[float]
+    shares: list[float]
+    number: float
 
 
-def _portion(
-    a: float, b: float, losses: tuple[float, float], stretch: Stretch, density: Density
-) -> _Portion:
-    """Return the portion between two divisions, stepped from its end nearer to the pole.
+def _stepped(near: float, far: float, density: Density) -> _Steps:
+    """Return the steps of a portion from its end that is nearer to the pole.
 
     The middle of a step is predicted by the step before it. Near the pole the steps are shortest:
     from there they grow, so that none is predicted too long.
     """
-    backwards = stretch.nearness(b) < stretch.nearness(a)
-    position, far = (b, a) if backwards else (a, b)
-    unit = 1.0 if far > position else -1.0
-    positions, shares = [position], list[float]()
-    step = unit / density(position)[0]
+    position, unit = near, 1.0 if far > near else -1.0
+    positions, shares = [near], list[float]()
+    step = unit / density(near)[0]
     while not shares or (far - position) * unit > 0.0:
         segments, share = density(position + 0.5 * step)
         step = unit / segments
         position += step
         positions.append(position)
         shares.append(share)
-        _check_count(len(shares))
-    number = len(shares) - (position - far) / step
-    return _Portion(a, positions, shares, number, backwards, losses)
+        if len(shares) > MOST_SEGMENTS_OF_MOVE:
+            raise TooManySegments
+    return _Steps(positions, shares, len(shares) - (position - far) / step)
 
 
-def _check_count(segments: float) -> None:
-    if segments > MOST_SEGMENTS_OF_MOVE:
-        raise TooManySegments
+def _inner_ends(
+    portion: _Steps, segments: int, used: float, lost: float
+) -> list[tuple[float, float]]:
+    """Return the ends of the segments inside a portion, from the end nearer to the pole.
 
-
-def _inner_ends(portion: _Portion, segments: int, length: float) -> list[tuple[float, float]]:
-    """Return the ends of segments inside a portion, in the direction of motion.
-
-    ``length`` is that of each segment, in segments of full length; the deviation goes with its
-    square.
+    ``used`` is the length of each, in segments of full length; the deviation goes with its square.
+    ``lost`` are those at the nearer end.
     """
-    table, square = portion.positions, length * length
+    table, square = portion.positions, used * used
     shares = [portion.shares[0], *portion.shares, portion.shares[-1]]
-    near = portion.losses[1 if portion.backwards else 0]
     ends = []
     for k in range(1, segments):
-        steps = length * (k - near)
+        steps = used * (k - lost)
         j = int(steps)
         position = table[j] + (steps - j) * (table[j + 1] - table[j])
         middle = int(steps + 0.5)
         share = shares[middle] + (steps + 0.5 - middle) * (shares[middle + 1] - shares[middle])
         ends.append((position, square * share))
-    return ends[::-1] if portion.backwards else ends
+    return ends
 
 
 CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest

@@ -18,15 +18,19 @@ shorter.
 from __future__ import annotations
 
 from cmath import rect
-from math import copysign, pi
+from collections.abc import Callable
+from math import atan2, copysign, pi, remainder, sqrt
 from typing import NamedTuple
 
-from g12.geometry.curve import Arc, Curve, Line, angle_of
-from g12.moves.steps import BULGE, Density, Split, Stretch, spaced
-from g12.polar.pole import POLE, along_and_around, slide_at
+from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, angle_of
+from g12.moves.steps import BULGE, Density, Split, spaced
 
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius
 FEWEST = 0.5  # segments along a whole move, as a density: it is one segment
+SHORT = 0.1  # of the distance from the pole: the density along such a move is even, and
+WHOLE = 0.55  # segments are one: two ends on the path lose twice `LOSS`
+
+Seen = Callable[[float], complex]  # a path as `_seen_from_pole` returns it
 
 
 class Law(NamedTuple):
@@ -48,23 +52,28 @@ def split_move(curve: Curve, law: Law, beside: float = 0.0) -> Split:
 
     They are positions of the slide, and C, of a tool ``beside`` the X line.
     """
-    length = curve.length
-    if not beside and isinstance(curve, Line) and _is_radial(curve):
+    seen, length = _seen_from_pole(curve), curve.length
+    start = seen(0.0)
+    if isinstance(curve, Line) and not beside and abs(start.imag) <= RADIAL:
         return _radius(curve)
-    deviation = min(law.deviation, 0.5 * curve.distance(POLE))
-    if isinstance(curve, Arc) and 2.0 * abs(curve.centre) <= deviation:
-        return _circle(curve, beside)
-    stretch = Stretch(0.0, length, _apsides(curve), lambda at: abs(curve.point(at / length)))
-    lengths, shares = spaced(stretch, _density(curve, law._replace(deviation=deviation), beside))
-    slides = [
-        slide_at(_moved(curve, at / length, deviation * used), beside)
-        for at, used in zip(lengths, shares)
-    ]
-    return Split([slide for slide, _ in slides], _angles(slides), lengths)
-
-
-def _is_radial(line: Line) -> bool:
-    return abs((line.start.conjugate() * line.direction()).imag) <= RADIAL
+    apsides = _apsides(curve, start)
+    deviation = min(law.deviation, *[0.5 * abs(seen(at)) for at in (0.0, length, *apsides)])
+    density = _density(seen, length, curve.curvature, deviation, law, beside)
+    if _is_one_segment(curve, start, deviation, density, beside):
+        lengths, shares = [0.0, length], [0.0, 0.0]
+    else:
+        lengths, shares = spaced(length, density, apsides, lambda at: abs(seen(at)))
+    slides, angles = list[float](), list[float]()
+    angle, phase, bend = angle_of(curve.direction(0.0)), 0.0, curve.curvature
+    for at, share in zip(lengths, shares):
+        there, before = seen(at), phase
+        x, y = there.real, there.imag - deviation * share
+        slide = sqrt(x * x + y * y - beside * beside)
+        phase = atan2(y * slide + x * beside, x * slide - y * beside)  # of motion against slide
+        angle -= remainder(phase - before, FULL_TURN)
+        slides.append(slide)
+        angles.append(angle + bend * at)
+    return Split(slides, angles, lengths)
 
 
 def _radius(line: Line) -> Split:
@@ -74,70 +83,72 @@ def _radius(line: Line) -> Split:
     return Split([r0, r1], [angle, angle], [0.0, line.length])
 
 
-def _circle(arc: Arc, beside: float) -> Split:
-    """Return the one segment of an arc about the pole."""
-    (s0, before), (s1, after) = (slide_at(point, beside) for point in (arc.start, arc.end))
-    angle, uneven = angle_of(before), angle_of(after * (before * rect(1.0, arc.sweep)).conjugate())
-    return Split([s0, s1], [angle, angle + arc.sweep + uneven], [0.0, arc.length])
+def _seen_from_pole(curve: Curve) -> Seen:
+    """Return a function of the length along a move: its direction as seen from the pole.
 
-
-def _moved(curve: Curve, share: float, leftwards: float) -> complex:
-    return curve.point(share) + 1j * leftwards * curve.direction(share)
-
-
-def _angles(slides: list[tuple[float, complex]]) -> list[float]:
-    """Return the angles of the slide's directions, without a jump."""
-    before = slides[0][1]
-    angles = [angle_of(before)]
-    for _, direction in slides[1:]:
-        angles.append(angles[-1] + angle_of(direction * before.conjugate()))
-        before = direction
-    return angles
-
-
-def _apsides(curve: Curve) -> list[float]:
-    """Return the lengths along a move, also outside it, of its apsides about the pole."""
+    The angle is that with the radius, the absolute value is the distance from the pole.
+    """
+    direction, bend = curve.direction(0.0), curve.curvature
+    start = direction * curve.start.conjugate()
     if isinstance(curve, Line):
-        return [curve.length_to(POLE)]
+        return start.__add__
+    centre = direction * curve.centre.conjugate()
+    return lambda at: start + centre * (rect(1.0, bend * at) - 1.0)
+
+
+def _apsides(curve: Curve, start: complex) -> list[float]:
+    """Return the lengths along a move to its apsides about the pole.
+
+    ``start`` is its start as seen from the pole.
+    """
+    length = curve.length
+    if isinstance(curve, Line):
+        return [-start.real] if 0.0 < -start.real < length else []
     turn = copysign(1.0, curve.sweep)
     from_start = angle_of(curve.centre) - angle_of(curve.start - curve.centre)
     first = turn * from_start % pi
-    return [curve.radius * (first + half) for half in (0.0, pi)]
+    both = (curve.radius * (first + half) for half in (0.0, pi))
+    return [at for at in both if 0.0 < at < length]
 
 
-def _density(curve: Curve, law: Law, beside: float) -> Density:
-    """Return the segments per unit of length, and their share of the deviation (+ is left)."""
-    length, own, even = curve.length, curve.curvature, 0.5 / law.ripple
-    bulging, flat = 1.0 / (8.0 * BULGE * law.deviation), 1.0 / (18.0 * BULGE * law.deviation)
-    fewest = FEWEST / length
+def _is_one_segment(
+    curve: Curve, start: complex, deviation: float, density: Density, beside: float
+) -> bool:
+    """Return whether a move is an arc about the pole, or so short that its density is even."""
+    if isinstance(curve, Arc) and 2.0 * abs(curve.centre) <= deviation:
+        return True
+    length = curve.length
+    is_short = length < SHORT * (abs(start) - abs(beside))
+    return is_short and length * density(0.5 * length)[0] < WHOLE
+
+
+def _density(
+    seen: Seen, length: float, own: float, deviation: float, law: Law, beside: float
+) -> Density:
+    """Return the segments per unit of length, and their share of the deviation (+ is left).
+
+    ``seen`` is the path from the pole, ``own`` its curvature.
+    """
+    even, fewest = 0.5 / law.ripple, FEWEST / length
+    bulging, flat = 1.0 / (8.0 * BULGE * deviation), 1.0 / (18.0 * BULGE * deviation)
 
     def density(at: float) -> tuple[float, float]:
-        share = min(max(at / length, 0.0), 1.0)
-        slide, slide_direction = slide_at(curve.point(share), beside)
-        along, around = along_and_around(curve.direction(share), slide_direction)
-        bend, change = _curvature(slide, along, around, beside, own)
-        by_bulge = (bulging * abs(bend - own)) ** 0.5
-        growth = abs(along + beside / slide * around) / slide
-        segments = max(by_bulge, growth, (flat * abs(change)) ** (1.0 / 3.0), fewest)
-        smooth = even * growth * around * around
+        there = seen(0.0 if at < 0.0 else at if at < length else length)
+        x, y = there.real, there.imag
+        square = x * x + y * y
+        slide_square = square - beside * beside
+        slide = sqrt(slide_square)
+        along, around = (x * slide - y * beside) / square, (y * slide + x * beside) / square
+        sliding, turning, growth = x / slide, around / slide, x / slide_square
+        bulge = bulging * (turning * (1.0 + along * sliding) - own)
+        change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
+        segments = max(sqrt(abs(bulge)), abs(growth), fewest)
+        cube = abs(flat * growth * change)
+        if cube > segments * segments * segments:
+            segments = cube ** (1.0 / 3.0)
+        smooth = abs(even * growth) * around * around
         if smooth > segments:
             segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))
-        return segments, copysign((by_bulge / segments) ** 2, bend - own)
+        return segments, bulge / (segments * segments)
 
     return density
-
-
-def _curvature(
-    slide: float, along: float, around: float, beside: float, own: float
-) -> tuple[float, float]:
-    """Return the curvature of a straight move of X and C, and how it changes along the path.
-
-    The path has the curvature ``own``, the directions are as of `along_and_around`.
-    """
-    share, square = beside / slide, around * around
-    per_slide = -around * (1.0 + along * along + 2.0 * share * along * around) / slide
-    per_angle = along * (1.0 + along * along - 2.0 * square)
-    per_angle += share * around * (2.0 * along * along - square)
-    bend = around * (1.0 + along * along + share * along * around) / slide
-    change = per_slide * (along + share * around) + per_angle * (own - around / slide)
-    return bend, change / slide

@@ -5,7 +5,7 @@ Codes are the parser's: a G code times ten, by modal group.
 """
 
 import re
-from collections.abc import Collection, Iterable
+from collections.abc import Iterable
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -15,23 +15,19 @@ NO_CODE = -1
 
 
 class GGroup(IntEnum):
-    """The modal groups of the G codes, as the parser numbers them (GM_… in interp_internal.hh)."""
+    """Modal groups of the G codes, as the parser numbers them (GM_… in interp_internal.hh)."""
 
     NON_MODAL = 0
     MOTION = 1
-    PLANE = 2
     DISTANCE = 3
     IJK_DISTANCE = 4
     FEED = 5
-    UNITS = 6
     COMPENSATION = 7
     TOOL_LENGTH = 8
     RETURN_LEVEL = 10
-    WORK_OFFSET = 12
     PATH_CONTROL = 13
     SPINDLE = 14
     DIAMETER = 15
-    G92_OFFSET = 16
 
 
 class MGroup(IntEnum):
@@ -46,61 +42,37 @@ G0, G1, G2, G3, G4 = 0, 10, 20, 30, 40
 M2, M30 = 2, 30
 # LinuxCNC's names for M70 to M73
 STATE_CODES = M_SAVE, M_INVALIDATE, M_RESTORE, M_AUTORESTORE = 70, 71, 72, 73
-KNOWN_G: dict[int, Collection[int]] = {
-    GGroup.NON_MODAL: {G4},
-    GGroup.MOTION: {G0, G1, G2, G3},
-    GGroup.DISTANCE: {900, 910},
-    GGroup.IJK_DISTANCE: {911},
-    GGroup.FEED: {940, 950},
-    GGroup.COMPENSATION: {400, 410, 420},
-    GGroup.RETURN_LEVEL: {980, 990},
-    GGroup.PATH_CONTROL: {610, 611, 640},
-    GGroup.SPINDLE: {970},
-}
-REFUSED_G = {  # the others that LinuxCNC knows
-    GGroup.NON_MODAL: (100, 280, 281, 300, 301, 520, 530, 920, 921, 922, 923),
-    GGroup.MOTION: (
-        *range(50, 54),
-        *(330, 331, 382, 383, 384, 385),
-        *(700, 710, 711, 712, 720, 721, 722, 730, 740, 760),
-        *range(800, 900, 10),
-    ),
-    GGroup.PLANE: (171, 181, 190, 191),
-    GGroup.IJK_DISTANCE: (901,),
-    GGroup.FEED: (930,),
-    GGroup.UNITS: (200, 210),
-    GGroup.COMPENSATION: (411, 421),
-    GGroup.TOOL_LENGTH: (430, 431, 432, 490),
-    GGroup.WORK_OFFSET: (540, 550, 560, 570, 580, 590, 591, 592, 593),
-    GGroup.SPINDLE: (960,),
-    GGroup.DIAMETER: (70, 80),
-}
-GROUP_OF_G = {code: group for group, codes in REFUSED_G.items() for code in codes} | {
-    G0: GGroup.MOTION
-}
+TAKEN_G = frozenset(
+    (G1, G2, G3, G4, 400, 410, 420, 610, 611, 640, 900, 910, 911, 940, 950, 970, 980, 990)
+)
 FEED_CODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
 MOVING_WORDS = "XYZABCIJK"
 NO_TOOL_CHANGE = "the tool cannot change inside the section"
 OWN_RADIUS = "the radius is that of the loaded tool"
-REASON_OF_GROUP: dict[int, str] = {
-    GGroup.MOTION: "only G1, G2 and G3 move inside the section",
-    GGroup.FEED: "the feed of a section is G94 or G95 (G98 or G99)",
-    GGroup.UNITS: "the units cannot change inside the section",
-    GGroup.COMPENSATION: "the radius is that of the loaded tool: G41 or G42 without D",
-    GGroup.TOOL_LENGTH: "the tool length offset cannot change inside the section",
-    GGroup.SPINDLE: "the spindle keeps its speed inside the section (G97)",
-    GGroup.DIAMETER: "X cannot change between diameter and radius inside the section",
-}
-REASON_OF_G = {
-    G0: "a rapid leaves the contour. Is the section's end missing above? "
-    "Else use G1 with a high F, or set [G12] POLAR_G0 = feed",
-    100: "offsets cannot change inside the section",
-    280: "the reference point is not in the plane",
-    281: "the reference point is not in the plane",
-    300: "the reference point is not in the plane",
-    301: "the reference point is not in the plane",
-    530: "machine coordinates are not those of the plane",
-}
+RAPID = (
+    "a rapid leaves the contour. Is the section's end missing above? "
+    "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"
+)
+ONLY_CUTS = "only G1, G2 and G3 move inside the section"
+# The others that LinuxCNC knows; {0} are the section's words.
+REASONS_OF_G = (
+    (RAPID, (G0,)),
+    (ONLY_CUTS, (*range(50, 54), 330, 331, *range(382, 386))),
+    (ONLY_CUTS, (700, 710, 711, 712, 720, 721, 722, 730, 740, 760, *range(800, 900, 10))),
+    ("the section's plane is {0.plane_name}", (170, 171, 180, 181, 190, 191)),
+    ("{0.centre_name} are always incremental inside the section", (901,)),
+    ("the feed of a section is G94 or G95 (G98 or G99)", (930,)),
+    ("the units cannot change inside the section", (200, 210)),
+    ("the radius is that of the loaded tool: G41 or G42 without D", (411, 421)),
+    ("the tool length offset cannot change inside the section", (430, 431, 432, 490)),
+    ("the spindle keeps its speed inside the section (G97)", (960,)),
+    ("X cannot change between diameter and radius inside the section", (70, 80)),
+    ("offsets cannot change inside the section", (100,)),
+    ("the reference point is not in the plane", (280, 281, 300, 301)),
+    ("machine coordinates are not those of the plane", (530,)),
+    ("{0.origin}", (520, *range(540, 600, 10), 591, 592, 593, *range(920, 924))),
+)
+REFUSED_G = {code: reason for reason, codes in REASONS_OF_G for code in codes}
 REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE)
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
 ORIENT = 19  # M19
@@ -134,8 +106,8 @@ def check_codes(
     ``codes`` are letters, with numbers times ten.
     """
     for letter, code in codes:
-        if letter == "G" and code in GROUP_OF_G:
-            _check_g(GROUP_OF_G[code], code, known, rapid_allowed, location)
+        if letter == "G" and code in REFUSED_G:
+            _check_g(code, known, rapid_allowed, location)
         elif letter == "M":
             _check_m(code // 10, location)
 
@@ -175,9 +147,9 @@ def check_block(
     block: SectionBlock, known: SectionWords, rapid_allowed: bool, location: BlockLocation
 ) -> None:
     """Refuse codes that no section may have, each with its reason."""
-    for group, code in enumerate(block.g):
+    for code in block.g:
         if code != NO_CODE:
-            _check_g(group, code, known, rapid_allowed, location)
+            _check_g(code, known, rapid_allowed, location)
     for code in block.m:
         _check_m(code, location)
     _check_arguments(block, location)
@@ -189,23 +161,11 @@ def check_block(
         )
 
 
-def _check_g(
-    group: int, code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation
-) -> None:
-    taken = known.planes if group == GGroup.PLANE else KNOWN_G.get(group, ())
-    if code not in taken or (code == G0 and not rapid_allowed):
-        reason = REASON_OF_G.get(code) or _reason_of_group(group, known)
-        raise location.refuse(f"G{code / 10:g} is refused: {reason}")
-
-
-def _reason_of_group(group: int, known: SectionWords) -> str:
-    if group in (GGroup.NON_MODAL, GGroup.WORK_OFFSET, GGroup.G92_OFFSET):
-        return known.origin
-    if group == GGroup.PLANE:
-        return f"the section's plane is {known.plane_name}"
-    if group == GGroup.IJK_DISTANCE:
-        return f"{known.centre_name} are always incremental inside the section"
-    return REASON_OF_GROUP.get(group, "it is not known here")
+def _check_g(code: int, known: SectionWords, rapid_allowed: bool, location: BlockLocation) -> None:
+    if code in TAKEN_G or code in known.planes or (code == G0 and rapid_allowed):
+        return
+    reason = REFUSED_G.get(code, ONLY_CUTS).format(known)
+    raise location.refuse(f"G{code / 10:g} is refused: {reason}")
 
 
 def _check_m(code: int, location: BlockLocation) -> None:

@@ -186,37 +186,32 @@ def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) ->
     ``remaps`` are the REMAP lines, ``on`` and ``off`` the names of their handlers. Every code that
     is remapped to ``off`` ends a section.
     """
-    switching_on, switching_off = (_codes_with(handler, remaps) for handler in (on, off))
     partner = f"G{float(code[1:]) + 1:g}"
-    return SectionCodes(
-        frozenset(map(_number_of, (code, *switching_on))),
-        frozenset(map(_number_of, switching_off or [partner])),
-        partner if partner in switching_off else (switching_off or [partner])[0],
-        _remapped(remaps),
-    )
+    ending = _codes_with(off, remaps) or [partner]
+    named = partner if partner in ending else ending[0]
+    return _section_codes([code, *_codes_with(on, remaps)], ending, named, remaps)
 
 
 def codes_with_word(code: str, remaps: Collection[Remap], handler: str, word: str) -> SectionCodes:
     """Return the codes for a section begun by ``code``, which 0 after ``word`` ends."""
-    codes = frozenset(map(_number_of, (code, *_codes_with(handler, remaps))))
-    return SectionCodes(codes, codes, f"{code} {word}0", _remapped(remaps), word)
+    both = [code, *_codes_with(handler, remaps)]
+    return _section_codes(both, both, f"{code} {word}0", remaps, word)
+
+
+def _section_codes(
+    on: list[str], off: list[str], off_code: str, remaps: Collection[Remap], word: str = ""
+) -> SectionCodes:
+    begin, end = (frozenset(code_number(code)[1] for code in codes) for codes in (on, off))
+    m_codes = [remap for remap in remaps if remap.number[0] == "M"]
+    remapped = {remap.number[1] // 10: "ngc" in remap.keywords for remap in m_codes}
+    return SectionCodes(begin, end, off_code, remapped, word)
 
 
 def _codes_with(handler: str, remaps: Collection[Remap]) -> list[str]:
     return [remap.code for remap in remaps if remap.keywords.get("python") == handler]
 
 
-def _remapped(remaps: Collection[Remap]) -> dict[int, bool]:
-    return {
-        remap.number[1] // 10: "ngc" in remap.keywords for remap in remaps if remap.number[0] == "M"
-    }
-
-
 def code_of_handler(remaps: Collection[Remap], handler: str) -> float | None:
     """Return the number of the G code that is remapped to a handler, None if none is."""
-    found = (remap.code for remap in remaps if remap.keywords.get("python") == handler)
-    return next((_number_of(code) / 10 for code in found), None)
-
-
-def _number_of(code: str) -> int:
-    return code_number(code)[1]
+    codes = _codes_with(handler, remaps)
+    return code_number(codes[0])[1] / 10 if codes else None

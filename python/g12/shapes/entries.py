@@ -72,30 +72,23 @@ class ShapeMachine(NamedTuple):
     nearest: float = 0.0
 
 
-class Levels(NamedTuple):
-    """The Z levels of a shape, at equal steps."""
+class Descent(NamedTuple):
+    """The Z levels of a shape, at equal steps, and the way down to them.
+
+    Feeds are per minute, or per revolution under G95. ``start_z`` is Z of the tool at the start and
+    the end, ``near_z`` is where its rapid down ends.
+    """
 
     levels: int
     step_down: float
-
-    @property
-    def bottom(self) -> float:
-        """Z of the last one."""
-        return -self.levels * self.step_down
-
-
-class Feeds(NamedTuple):
-    """Feeds per minute, or per revolution under G95."""
-
     feed: float
     plunge_feed: float
-
-
-class Heights(NamedTuple):
-    """Z of the tool at the start and the end, and Z where its rapid down ends."""
-
     start_z: float
     near_z: float
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        return -self.levels * self.step_down, self.start_z
 
 
 class Extent(NamedTuple):
@@ -118,15 +111,22 @@ class ShapePlan(NamedTuple):
     cut: Callable[[], PlannedCut]
 
 
-def levels_of(entries: ShapeEntries) -> Levels:
-    """Return the levels: depth and depth_per_pass."""
+def descent_of(entries: ShapeEntries, machine: ShapeMachine) -> Descent:
+    """Return the levels and feeds of a shape, whose tool must be above the face."""
+    context = entries.context
     depth = entries.require_positive("depth", "how deep, from the face at Z0")
     most = entries.take_positive("depth_per_pass") or depth
-    levels = max(1, steps_between(0.0, depth, most, entries.context.rounding))
+    levels = max(1, steps_between(0.0, depth, most, context.rounding))
     if levels > MOST_SHAPE_PASSES:
         rule = f"makes {levels} passes of depth {number(depth)}, the most is {MOST_SHAPE_PASSES}"
         raise entries.refuse_word("depth_per_pass", most, rule)
-    return Levels(levels, depth / levels)
+    feed = feed_of(entries)
+    plunge_feed = entries.take_positive("plunge_feed") or feed * machine.plunge_share
+    if not context.z > 0:
+        rule = "a shape begins at the tool's position, which must be above the face at Z0"
+        raise entries.refuse(f"Z{number(context.z)}: {rule}")
+    near_z = min(context.z, context.length(CLEAR_MM))
+    return Descent(levels, depth / levels, feed, plunge_feed, context.z, near_z)
 
 
 def feed_of(entries: ShapeEntries) -> float:
@@ -140,28 +140,15 @@ def feed_of(entries: ShapeEntries) -> float:
     return feed
 
 
-def feeds_of(entries: ShapeEntries, machine: ShapeMachine) -> Feeds:
-    feed = feed_of(entries)
-    return Feeds(feed, entries.take_positive("plunge_feed") or feed * machine.plunge_share)
-
-
-def passes_of(entries: ShapeEntries, levels: Levels, feeds: Feeds) -> ShapePasses:
+def passes_of(entries: ShapeEntries, descent: Descent) -> ShapePasses:
     """Return what is reported of the passes of a shape."""
     tool = loaded_tool(entries)
     return ShapePasses(
-        tuple(-levels.step_down * (level + 1) for level in range(levels.levels)),
+        tuple(-descent.step_down * (level + 1) for level in range(descent.levels)),
         UsedCutter(tool.radius, LOADED, tool.number),
-        *feeds,
+        descent.feed,
+        descent.plunge_feed,
     )
-
-
-def heights_of(entries: ShapeEntries) -> Heights:
-    """Return the heights of a tool, which must be above the face."""
-    context = entries.context
-    if not context.z > 0:
-        rule = "a shape begins at the tool's position, which must be above the face at Z0"
-        raise entries.refuse(f"Z{number(context.z)}: {rule}")
-    return Heights(context.z, min(context.z, context.length(CLEAR_MM)))
 
 
 def polar_position(entries: ShapeEntries, diameters: bool) -> tuple[float, float]:

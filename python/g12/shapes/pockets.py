@@ -13,15 +13,14 @@ tangent to both.
 **A slot.** The rings run along a line through the spindle's centre. A cutter as wide as the slot
 less its allowance has a first ring of 0: it ramps down to and fro along the line, through the
 centre. Rules, in the order of the checks: a tool with a diameter in the spindle; width, length
-above 0, the slot longer than wide; depth and depth_per_pass above 0; allowance from 0; room for the
-cutter; feeds above 0; angle; the tool above the face; not too long a descent, not too many moves;
-no path through the centre where [G12] POLAR_POLE refuses it.
+above 0, the slot longer than wide; depth, depth_per_pass and feeds above 0; the tool above the
+face; allowance from 0; room for the cutter; angle; not too long a descent, not too many moves; no
+path through the centre where [G12] POLAR_POLE refuses it.
 
 **A round pocket.** The rings run about the pocket's centre, where the zero line is the one through
-that centre. Rules: a tool with a diameter in the spindle; diameter above 0; depth and
-depth_per_pass above 0; allowance from 0; room for a helix; feeds above 0; the tool above the face;
-not too long a descent, not too many moves; no ring through the spindle's centre where [G12]
-POLAR_POLE refuses it.
+that centre. Rules: a tool with a diameter in the spindle; diameter, depth, depth_per_pass and feeds
+above 0; the tool above the face; allowance from 0; room for a helix; not too long a descent, not
+too many moves; no ring through the spindle's centre where [G12] POLAR_POLE refuses it.
 
 Lengths are in program units.
 """
@@ -37,17 +36,14 @@ from g12.errors import number
 from g12.request import CLEARED, loaded_tool
 from g12.shapes.entries import (
     PASS_ENTRIES,
+    Descent,
     Extent,
-    Heights,
-    Levels,
     ShapeEntries,
     ShapeMachine,
     ShapePlan,
     check_finish,
     check_moves,
-    feeds_of,
-    heights_of,
-    levels_of,
+    descent_of,
     locals_of,
     passes_of,
     polar_position,
@@ -121,38 +117,30 @@ def ramp_of(
     entries: ShapeEntries,
     machine: ShapeMachine,
     rings: ClearingRings,
-    levels: Levels,
-    heights: Heights,
+    descent: Descent,
     length: float,
 ) -> RampDown:
     """Return the descent; ``length`` is that of a ring's straight side."""
     round_ = pi * rings.first_ring
     fall = (length + round_) * tan(radians(machine.entry_angle))
-    first, following = (
-        ceil(height / fall) if height < MOST_RAMP_HALF_TURNS * fall else MOST_RAMP_HALF_TURNS + 1
-        for height in (heights.near_z + levels.step_down, levels.step_down)
-    )
-    if first > MOST_RAMP_HALF_TURNS:
+    step_down, first_height = descent.step_down, descent.near_z + descent.step_down
+    if first_height >= MOST_RAMP_HALF_TURNS * fall:
         angle = number(machine.entry_angle)
         rule = f"a ramp of {angle} degrees needs more than {MOST_RAMP_HALF_TURNS}"
         raise entries.refuse(f"{rule} half turns of {number(length + round_)} for a pass")
-    ramp = RampDown(
-        first,
-        (heights.near_z + levels.step_down) / first,
-        following,
-        levels.step_down / following,
-        length / (length + round_),
-    )
-    moves = half_turns_in_all(rings, levels, ramp) * (2 if length else 1)
+    first, following = ceil(first_height / fall), ceil(step_down / fall)
+    share = length / (length + round_)
+    ramp = RampDown(first, first_height / first, following, step_down / following, share)
+    moves = half_turns_in_all(rings, descent.levels, ramp) * (2 if length else 1)
     check_moves(entries, moves, "depth_per_pass makes")
     return ramp
 
 
-def half_turns_in_all(rings: ClearingRings, levels: Levels, ramp: RampDown) -> int:
+def half_turns_in_all(rings: ClearingRings, levels: int, ramp: RampDown) -> int:
     """Return the number of half turns of a shape, with one back from any further rings."""
-    down = ramp.first_turns + (levels.levels - 1) * ramp.next_turns
+    down = ramp.first_turns + (levels - 1) * ramp.next_turns
     finish = rings.finish * (3 if rings.further else 4)
-    return down + levels.levels * rings.half_turns + finish
+    return down + levels * rings.half_turns + finish
 
 
 SLOT_ENTRIES = ("width", "length", "depth", *PASS_ENTRIES, "angle")
@@ -165,13 +153,11 @@ def plan_slot(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
     if not length > width:
         rule = f"must be greater than width {number(width)} (polar_pocket makes a round one)"
         raise entries.refuse_word("length", length, rule)
-    levels = levels_of(entries)
+    descent = descent_of(entries, machine)
     rings = clearing_rings(entries, "width", width, cutter)
-    feeds = feeds_of(entries, machine)
     angle = entries.angle("angle")
-    heights = heights_of(entries)
     end_distance = (length - width) / 2  # of each end's centre from the middle
-    ramp = ramp_of(entries, machine, rings, levels, heights, 2 * end_distance)
+    ramp = ramp_of(entries, machine, rings, descent, 2 * end_distance)
     if machine.pole_refused and min(rings.first_ring, end_distance) <= machine.pole:
         size = entries.context.tool_size(2 * cutter)
         raise entries.refuse(
@@ -180,17 +166,17 @@ def plan_slot(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
         )
     own = {"end_distance": end_distance, "start_angle": angle}
     # every half turn is half a turn of C, onward
-    turned = 180.0 * (half_turns_in_all(rings, levels, ramp) + 1)
+    turned = 180.0 * (half_turns_in_all(rings, descent.levels, ramp) + 1)
     to_and_fro = not rings.first_ring
     extent = Extent(
         (min(rings.first_ring, end_distance), end_distance + rings.largest),
-        (levels.bottom, heights.start_z),
+        descent.extent,
         (angle - 180.0 * to_and_fro, angle + turned),
     )
     return ShapePlan(
-        own | locals_of(rings, ramp, levels, feeds, heights),
+        own | locals_of(rings, ramp, descent),
         extent,
-        lambda: SlotCut(width, length, angle, passes_of(entries, levels, feeds)),
+        lambda: SlotCut(width, length, angle, passes_of(entries, descent)),
     )
 
 
@@ -201,34 +187,30 @@ def plan_round_pocket(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan
     cutter = loaded_tool(entries).radius
     away, angle = polar_position(entries, machine.diameters)
     diameter = entries.require_positive("diameter", "the pocket's")
-    levels = levels_of(entries)
+    descent = descent_of(entries, machine)
     rings = clearing_rings(entries, "diameter", diameter, cutter)
     if not rings.first_ring:
         least = number(2 * (cutter + entries.context.smallest_ring))
         rule = f"must leave the cutter room for a helix: at least {least} and twice the allowance"
         raise entries.refuse_word("diameter", diameter, rule)
-    feeds = feeds_of(entries, machine)
-    heights = heights_of(entries)
-    ramp = ramp_of(entries, machine, rings, levels, heights, 0.0)
+    ramp = ramp_of(entries, machine, rings, descent, 0.0)
     check_centre(entries, machine, rings, away)
     # C makes a turn with each ring about the spindle's centre, and swings to and fro with others
     round_centre = rings.largest >= away
-    turned = 180.0 * (half_turns_in_all(rings, levels, ramp) + 1)
+    turned = 180.0 * (half_turns_in_all(rings, descent.levels, ramp) + 1)
     back, onward = (180.0, turned) if round_centre else (90.0, 90.0)
     end = away + rings.first_ring / 2
     extent = Extent(
         (min(end, *(abs(away - radius) for radius in rings.radii)), away + rings.largest),
-        (levels.bottom, heights.start_z),
+        descent.extent,
         (angle - back, angle + onward),
     )
     own = {"away": away, "start_angle": angle}
     middle = rect(away, radians(angle))
     return ShapePlan(
-        own | locals_of(rings, ramp, levels, feeds, heights),
+        own | locals_of(rings, ramp, descent),
         extent,
-        lambda: RoundPocketCut(
-            (middle.real, middle.imag), diameter, passes_of(entries, levels, feeds)
-        ),
+        lambda: RoundPocketCut((middle.real, middle.imag), diameter, passes_of(entries, descent)),
     )
 
 

@@ -15,9 +15,9 @@ and flats. The moves between them and the plunges are clear of the stock.
 
 Rules, in the order of the checks: a tool with a diameter in the spindle; sides from 2;
 across_flats, stock_diameter above 0, the stock larger than the flats; corner_radius from 0, none
-with two flats, less than half of across_flats; depth, depth_per_pass above 0; allowance from 0,
-less than the material to cut, and no more than one round removes; not too many moves; feeds above
-0; angle; the tool above the face.
+with two flats, less than half of across_flats; depth, depth_per_pass and feeds above 0; the tool
+above the face; allowance from 0, less than the material to cut, and no more than one round removes;
+not too many moves; angle.
 """
 
 from __future__ import annotations
@@ -37,9 +37,7 @@ from g12.shapes.entries import (
     ShapePlan,
     check_finish,
     check_moves,
-    feeds_of,
-    heights_of,
-    levels_of,
+    descent_of,
     locals_of,
     passes_of,
     rounds_between,
@@ -110,16 +108,14 @@ class PolygonRounds(NamedTuple):
 def plan_polygon(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
     cutter = loaded_tool(entries).radius
     form, stock = form_of(entries)
-    levels = levels_of(entries)
-    rounds = rounds_of(entries, form, stock, cutter, levels.levels)
-    feeds = feeds_of(entries, machine)
+    descent = descent_of(entries, machine)
+    rounds = rounds_of(entries, form, stock, cutter, descent.levels)
     angle = fmod(entries.angle("angle") + form.half_turn, 360.0)
-    heights = heights_of(entries)
     # every round is one turn of C, backwards
-    turns = levels.levels * rounds.rounds + rounds.finish
+    turns = descent.levels * rounds.rounds + rounds.finish
     extent = Extent(
         (rounds.finish_apothem, rounds.outside),
-        (levels.bottom, heights.start_z),
+        descent.extent,
         (
             angle - 360.0 * turns - lead_angle(form, rounds, rounds.finish_apothem),
             angle + lead_angle(form, rounds, rounds.apothem),
@@ -128,7 +124,7 @@ def plan_polygon(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
     own = {name: getattr(form, name) for name in ("inner", "side", "corner", "half_turn")}
     own |= {"start_angle": angle, "flush": FLUSH}
     return ShapePlan(
-        own | locals_of(rounds, levels, feeds, heights),
+        own | locals_of(rounds, descent),
         extent,
         lambda: PolygonCut(
             form.sides,
@@ -136,7 +132,7 @@ def plan_polygon(entries: ShapeEntries, machine: ShapeMachine) -> ShapePlan:
             form.radius,
             2 * stock,
             angle - form.half_turn,
-            passes_of(entries, levels, feeds),
+            passes_of(entries, descent),
         ),
     )
 

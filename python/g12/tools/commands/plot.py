@@ -30,7 +30,6 @@ from g12.tools.plot.refused import with_refused_contour
 from g12.tools.plot.scene import Scene, scene_of, scene_of_judgement
 from g12.tools.preview.ended import ended
 from g12.tools.preview.moves import Trace, message_lines
-from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.progress import working
 from g12.tools.verify.judge import Judgement, judge_trace, traced
 from g12.tools.verify.model.finding import SEVERITIES
@@ -62,7 +61,7 @@ def main(arguments: list[str]) -> int:
     _ = ini.settings  # wrong ones are reported before a picture is written
     with opened_program(options.program, ini) as opened:
         found = moves_to_draw(opened.path, ini, options)
-        in_source = trace_in_source(found, opened)
+        in_source = found.in_source(opened)
         samples = samples_of_run(opened.path, options, found, ini)
         with working(f"drawing {options.output.name}"):
             stored = stored_values(options.var)

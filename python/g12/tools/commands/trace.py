@@ -22,7 +22,6 @@ from g12.tools.machine.filter import opened_program
 from g12.tools.machine.stored_positions import offset_at_start
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Move
-from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import trace
 
 EXAMPLES = """\
@@ -61,7 +60,7 @@ def main(arguments: list[str]) -> int:
         found = trace(opened.path, ini, tools=options.tools, parameters=options.var)
         found = explained(found, options.ini, opened.path)
     report_line_numbers("trace", opened)
-    traced = trace_in_source(found, opened)
+    traced = found.in_source(opened)
     if shifted := offset_at_start(options.var, ini):
         print(f"{0:6d} note  {shifted}")
     for move in traced.moves:

@@ -20,7 +20,7 @@ from typing import Self
 import numpy as np
 
 from g12.machine_ini import face_joints
-from g12.tools.headless.channel import Channel
+from g12.tools.channel import Channel
 from g12.tools.headless.errors import SENT, MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini

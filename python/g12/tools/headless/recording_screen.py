@@ -13,7 +13,7 @@ import time
 
 import hal
 
-from g12.tools.headless.channel import Channel
+from g12.tools.channel import Channel
 from g12.tools.headless.errors import MachineError
 from g12.tools.headless.operator_panel import Panel
 

@@ -22,9 +22,9 @@ from g12.tools.plot.plan_view import (
     bounds_of,
     draw_plan,
     first_shown,
+    floors_of,
     legend_entries,
     mark_worst,
-    milled_levels,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
@@ -55,13 +55,13 @@ class History(NamedTuple):
 
 
 def draw_face(scene: Scene) -> Figure:
-    levels = milled_levels(scene)
+    floors = floors_of(scene)
     height = HEIGHT if scene.real is None else HEIGHT + DETAIL_HEIGHT
     figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
     face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
-    frame_face(face, scene, levels)
-    draw_plan(SceneView(face, scene), levels)
-    entries = [*legend_entries(scene, levels, ROOM), TIME_IN_RAPIDS]
+    frame_face(face, scene, floors)
+    draw_plan(SceneView(face, scene), floors)
+    entries = [*legend_entries(scene, floors, ROOM), TIME_IN_RAPIDS]
     columns = 2 if scene.real is None else 1
     style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
     draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, "part")
@@ -71,8 +71,8 @@ def draw_face(scene: Scene) -> Figure:
     return figure
 
 
-def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
-    low, high = bounds_of(scene, levels)
+def frame_face(axes: Axes, scene: Scene, floors: list) -> None:
+    low, high = bounds_of(scene, floors)
     low, high = np.minimum(low[:2], 0), np.maximum(high[:2], 0)
     middle, half = (low + high) / 2, max(high - low) / 2
     style.frame(axes, middle - half, middle + half, scene.unit, ("towards C0", "towards C90"))
@@ -84,7 +84,7 @@ def frame_face(axes: Axes, scene: Scene, levels: list) -> None:
 
 def draw_history(panels: Sequence[Axes], scene: Scene, along: str) -> None:
     """Draw the axes over time, and the feed ``along`` the part or its surface."""
-    history = real_history(scene) if scene.real is not None else programmed_history(scene)
+    history = history_of(scene)
     x, z, c, c_speed, feed = panels
     colour = style.REAL if scene.real is not None else style.DEPTHS(0.5)
     drawn = {"color": colour, "linewidth": 1.0, "zorder": 3}
@@ -116,38 +116,23 @@ def panel_axes(figure: Figure, row: int) -> Axes:
     return style.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, panel)
 
 
-def programmed_history(scene: Scene) -> History:
-    """Return the axes over time with every move at its feed, as far as axis speeds allow."""
-    path = scene.path
-    seconds = np.maximum(np.diff(path.time), 1e-12)
-    turn, along, height, _ = path.part.roles
-    beside = path.positions[:, Y] * (turn == C)  # on a lathe Y is the face's
-    on_face = path.positions[:, height] + 1j * beside
-    c = spindle_angles(on_face, path.positions[:, turn], path.part.beside)
-    c_speed = np.abs(np.diff(c)) / seconds
-    feed = np.linalg.norm(np.diff(path.points, axis=0), axis=1) / seconds * 60
-    c_speed, feed = (np.insert(values, 0, values[0]) for values in (c_speed, feed))
-    slide = slide_positions(on_face, path.part.beside)
+def history_of(scene: Scene) -> History:
+    """Return the axes over time: in a run, or with every move at its feed, if the axes can."""
+    path, part = scene.real or scene.path, scene.path.part
+    turn, along, height, _ = part.roles
+    first = 0 if scene.real else scene.path.vertices(first_shown(scene)).start
+    positions, time = path.positions[first:], path.time[first:] - path.time[first]
+    beside = positions[:, Y] * (turn == C)  # on a lathe Y is the face's
+    on_face = positions[:, height] + 1j * beside
+    c = spindle_angles(on_face, positions[:, turn], part.beside)
+    slide = slide_positions(on_face, part.beside)
     x = np.where(slide.imag, np.abs(slide), slide.real)
-    rapid = rapids_at(scene, path.move)
-    first = path.vertices(first_shown(scene)).start
-    time, z = path.time - path.time[first], path.positions[:, along]
-    return History(*(column[first:] for column in (time, x, z, c, c_speed, feed, rapid)))
-
-
-def rapids_at(scene: Scene, moves: np.ndarray) -> np.ndarray:
-    """Return whether moves, by their indices (n,), are rapids."""
-    return np.array([move.kind == "rapid" for move in scene.moves])[moves]
-
-
-def real_history(scene: Scene) -> History:
-    real = scene.real
-    time = real.time - real.time[0]
-    turn, along, height, _ = scene.path.part.roles
-    c_speed = np.abs(np.gradient(real.positions[:, turn], time))
-    x, z, c = (real.positions[:, axis] for axis in (height, along, turn))
-    rapid = rapids_at(scene, real.move)
-    return History(time, x, z, c, c_speed, real.part_speed() * 60, rapid)
+    steps = np.linalg.norm(np.diff(path.points[first:], axis=0), axis=1)
+    seconds = np.maximum(np.diff(time), 1e-12)
+    speeds = np.abs(np.diff(c)) / seconds, steps / seconds * 60
+    c_speed, feed = (np.insert(values, 0, values[:1]) for values in speeds)
+    fast = np.array([move.kind == "rapid" for move in scene.moves])
+    return History(time, x, positions[:, along], c, c_speed, feed, fast[path.move[first:]])
 
 
 def draw_feed(axes: Axes, history: History, scene: Scene, drawn: dict) -> None:

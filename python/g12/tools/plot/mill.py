@@ -9,24 +9,22 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from shapely.geometry import LineString, MultiPoint, Polygon, box
+from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.plan_view import (
-    SAME_DEPTH,
-    Level,
+    Floor,
     SceneView,
     bounds_of,
     draw_paths,
     draw_plan,
     draw_stock,
-    floor,
+    floors_of,
     legend_entries,
     mark_worst,
-    milled_levels,
     top_of,
 )
 from g12.tools.plot.scene import Scene
@@ -83,9 +81,9 @@ class Layout:
 
 
 def draw_mill(scene: Scene) -> Figure:
-    levels = milled_levels(scene)
-    low, high = bounds_of(scene, levels)
-    shown = legend_entries(scene, levels)
+    floors = floors_of(scene)
+    low, high = bounds_of(scene, floors)
+    shown = legend_entries(scene, floors)
     layout = Layout(high - low, len(shown), scene.real is not None)
     figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
     plan, side = layout.axes(figure)
@@ -94,9 +92,9 @@ def draw_mill(scene: Scene) -> Figure:
     plan.set_xlabel("")
     style.caption(plan, "Plan")
     views = SceneView(plan, scene), SceneView(side, scene, XZ)
-    draw_plan(views[0], levels)
+    draw_plan(views[0], floors)
     style.frame(side, low[XZ], high[XZ], scene.unit, "XZ")
-    draw_side(views[1], levels, layout.stretch)
+    draw_side(views[1], floors, layout.stretch)
     layout.draw_legend(figure, shown)
     if scene.real is not None:
         for view in views:
@@ -105,17 +103,17 @@ def draw_mill(scene: Scene) -> Figure:
     return figure
 
 
-def draw_side(view: SceneView, levels: Sequence[Level], stretch: float) -> None:
+def draw_side(view: SceneView, floors: Sequence[Floor], stretch: float) -> None:
     """Draw the view along Y: the material removed at each Z level, projected."""
     axes, scene, _ = view
     top = top_of(scene)
     draw_stock(view, block_from_the_side(scene))
-    for order, level in enumerate(reversed(levels)):
-        removed = view.area(removed_at(level, max(top, level.z)))
-        style.fill(axes, removed, *floor(level), 1 + order / 100)
+    for order, floor in enumerate(reversed(floors)):
+        removed = view.area(removed_to(floor, max(top, floor.z)))
+        style.fill(axes, removed, floor.shade.floor, floor.edge, 1 + order / 100)
     for each in scene.marks.uncut:
         style.hatch(axes, view.area(cut_through(each, top)))
-    draw_paths(view, levels)
+    draw_paths(view)
     true = abs(stretch - 1) < 0.02
     style.caption(axes, "Side" if true else f"Side, heights drawn {plain(stretch, 2)} : 1")
 
@@ -134,17 +132,11 @@ def block_from_the_side(scene: Scene) -> BaseGeometry | None:
     return box(facts.shape.bounds[0], facts.bottom, facts.shape.bounds[2], facts.top)
 
 
-def removed_at(level: Level, top: float) -> BaseGeometry:
-    """Return the material removed at a level as seen along Y: X and Z, up to the top."""
-    if all(np.ptp(line[:, 2]) < SAME_DEPTH for line in level.lines):
-        areas = getattr(level.area, "geoms", [level.area])
-        spans = (span for area in areas for span in spans_of(area))
-        return unary_union([box(low, level.z, high, top) for low, high in spans])
-    ends = (pair for line in level.lines for pair in zip(line[:, [0, 2]], line[1:, [0, 2]]))
-    ends_of_width = np.array([[-level.radius, 0.0], [level.radius, 0.0]])
-    corners = (np.concatenate([start + ends_of_width, end + ends_of_width]) for start, end in ends)
-    above = (np.concatenate([bottom, bottom * (1, 0) + (0, top)]) for bottom in corners)
-    return unary_union([MultiPoint(points).convex_hull for points in above])
+def removed_to(floor: Floor, top: float) -> BaseGeometry:
+    """Return the material removed above a floor as seen along Y: X and Z, up to the top."""
+    areas = getattr(floor.area, "geoms", [floor.area])
+    spans = (span for area in areas for span in spans_of(area))
+    return unary_union([box(low, floor.z, high, top) for low, high in spans])
 
 
 def spans_of(area: Polygon) -> list[tuple[float, float]]:

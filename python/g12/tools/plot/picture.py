@@ -15,5 +15,4 @@ def picture_of(scene: Scene) -> Figure:
         return draw_unrolled(scene)
     if scene.path.part.turning:
         return draw_face(scene)
-    lathe = "Y" not in scene.program.ini.axes
-    return draw_turn(scene) if lathe else draw_mill(scene)
+    return draw_turn(scene) if scene.is_turned else draw_mill(scene)

@@ -15,17 +15,20 @@ from shapely.affinity import scale as scaled
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
+from g12.tools.material.material import NOTHING, Material, Sweep
 from g12.tools.path.follow import worst_of
-from g12.tools.path.part import FLAT, C, paths, swept
+from g12.tools.path.part import paths
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
+from g12.tools.verify.model.solid import pieces
 
 PICTURE_CHORD = 0.01
-SAME_DEPTH = 1e-3
+SAME_DEPTH, ONE_DEPTH = 1e-3, 0.35  # mm; the shade of a single one
+THIN = 0.02  # mm: a narrower strip of a floor is not shown
 LEAST_LEVELS = 2  # entries in a short legend
-MOST_SHOWN_LEVELS = 10  # more depths than this are shown in bands
-BANDS = 24
+MOST_SHOWN_LEVELS = 10  # in a legend
+MANY_LEVELS, BANDS = 100, 24
 MOST_ARROWS = 80
 NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
@@ -34,14 +37,16 @@ VIEW_MARGIN = 0.05  # of the view's greater side
 PLUNGE, CUTTER = 3.5, 8.0  # points
 
 
-class Level(NamedTuple):
-    """The milling at one depth: colours, paths (n, 3), swept area, largest cutter's radius."""
+class Floor(NamedTuple):
+    """A floor of the material that is left: its level, its area, its colours."""
 
     z: float
-    shade: Shade
-    lines: list[np.ndarray]
     area: BaseGeometry
-    radius: float = 0.0
+    shade: Shade
+
+    @property
+    def edge(self) -> tuple:
+        return style.tint(self.shade.line, 0.35)
 
 
 class SceneView(NamedTuple):
@@ -66,56 +71,48 @@ class SceneView(NamedTuple):
 # ------------------------------------------------------------ what is cut
 
 
-def milled_levels(scene: Scene) -> list[Level]:
-    """Return the depths milled or drilled, from the top down; with many, in bands."""
-    rises = scene.ends[:, 1, 2] - scene.ends[:, 0, 2]
-    cutting = [index for index in scene.sweeping if scene.across[index] or rises[index] < 0]
-    if not cutting:
-        return []
-    depth = floors(scene, cutting)
-    found = sorted(set(np.round(depth / SAME_DEPTH) * SAME_DEPTH), reverse=True)
-    if len(found) > MOST_SHOWN_LEVELS:
-        found = list(np.linspace(depth.max(), depth.min(), BANDS))
-    nearest = np.abs(np.subtract.outer(depth, found)).argmin(axis=1)
-    groups = [np.array(cutting)[nearest == level] for level in range(len(found))]
-    return [
-        Level(z, shade, across(scene, group), *swept_by(scene, group))
-        for z, shade, group in zip(found, style.shades(len(found)), groups)
-        if len(group)
-    ]
+def floors_of(scene: Scene) -> list[Floor]:
+    """Return the floors that are milled or drilled, from the top down."""
+    return [Floor(z, area, shade_at(scene, z)) for z, area in floors_left(swept_by(scene))]
 
 
-def floors(scene: Scene, cutting: Sequence[int]) -> np.ndarray:
-    """Return the depth of each move; turns of a helix count for the floor below them."""
-    found: list[float] = []
-    for index in reversed(cutting):
-        own = scene.path.points[scene.path.vertices(index), 2].min()  # an arc's may be inside
-        leads_to = found[-1] if found and is_helical(scene, index) else own
-        found.append(min(own, leads_to))
-    return np.array(found[::-1])
+def shade_at(scene: Scene, z: float) -> Shade:
+    """Return the colours of a depth, darker than those above."""
+    low, high = scene.depths
+    share = (high - z) / (high - low) if high - low > SAME_DEPTH else ONE_DEPTH
+    return style.shade(round(share, 2))
 
 
-def is_helical(scene: Scene, index: int) -> bool:
-    """Return whether a move is helical about the tool's axis, or about the spindle's on a face."""
-    move, (start, end) = scene.moves[index], scene.ends[index]
-    turns = move.end[C] != move.start[C] and not scene.marks.surface
-    return (turns or (move.kind == "arc" and move.plane == FLAT)) and end[2] < start[2] - SAME_DEPTH
+def swept_by(scene: Scene) -> list[Sweep]:
+    """Return what the cutters sweep, wherever material is."""
+    material = Material(NOTHING, scene.depths[1] + SAME_DEPTH)
+    for tool, own in groupby(scene.cutting, lambda index: scene.moves[index].tool):
+        radius = max(diameter_of(scene, tool) / 2, PICTURE_CHORD)
+        moves = [scene.moves[index] for index in own]
+        for line in paths(scene.path.part, moves, PICTURE_CHORD):
+            for piece in pieces(line):
+                material.cut(0, piece, radius)
+    return material.sweeps_of(range(1))
 
 
-def across(scene: Scene, indices: Iterable[int]) -> list[np.ndarray]:
-    """Return the paths of those of some moves that go across the tool's axis."""
-    moves = [scene.moves[index] for index in indices if scene.across[index]]
-    return paths(scene.path.part, moves, PICTURE_CHORD)
+def floors_left(sweeps: Sequence[Sweep]) -> list[tuple[float, BaseGeometry]]:
+    """Return the levels that are left of what is swept, from the top down, each with its area.
 
-
-def swept_by(scene: Scene, indices: Iterable[int]) -> tuple[BaseGeometry, float]:
-    """Return the swept area of moves, and the radius of the largest cutter."""
-    moves, areas, radii = [scene.moves[index] for index in indices], [], []
-    for tool in {move.tool for move in moves}:
-        own = [move for move in moves if move.tool == tool]
-        radii.append(max(diameter_of(scene, tool) / 2, PICTURE_CHORD))
-        areas.append(swept(paths(scene.path.part, own, PICTURE_CHORD), radii[-1]))
-    return unary_union(areas), max(radii)
+    Very many are in bands.
+    """
+    depth = np.round([sweep.level for sweep in sweeps], 3)
+    levels = np.unique(depth)
+    if len(levels) > MANY_LEVELS:
+        levels = np.linspace(levels[0], levels[-1], BANDS)
+    nearest = [np.abs(levels - each).argmin() for each in depth]
+    found, deeper = [], NOTHING
+    for at, level in enumerate(levels):
+        area = unary_union([sweeps[index].shape for index in np.flatnonzero(np.equal(nearest, at))])
+        left = area.difference(deeper).buffer(-THIN).buffer(THIN)
+        if not left.is_empty:
+            found.append((float(level), left))
+        deeper = unary_union([deeper, area])
+    return found[::-1]
 
 
 def diameter_of(scene: Scene, tool: int) -> float:
@@ -135,13 +132,13 @@ def plunges_of(scene: Scene) -> list[tuple[tuple[float, float], int]]:
 # ------------------------------------------------------------ the size of the view
 
 
-def bounds_of(scene: Scene, levels: Sequence[Level]) -> tuple[np.ndarray, np.ndarray]:
+def bounds_of(scene: Scene, floors: Sequence[Floor]) -> tuple[np.ndarray, np.ndarray]:
     """Return least and greatest X, Y, Z of the cut, with a margin; far rapids do not count."""
     shown = scene.fed or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
     uncut = (each.values["shape"] for each in scene.marks.uncut)
-    for shape in (*(level.area for level in levels), *uncut):
+    for shape in (*(floor.area for floor in floors), *uncut):
         bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
@@ -191,12 +188,13 @@ def first_shown(scene: Scene) -> int:
 # ------------------------------------------------------------ drawing
 
 
-def draw_plan(view: SceneView, levels: Sequence[Level]) -> None:
+def draw_plan(view: SceneView, floors: Sequence[Floor]) -> None:
     marks = view.scene.marks
     draw_stock(view, marks.stock.shape if marks.stock else None)
-    for order, level in enumerate(levels):
-        style.fill(view.axes, view.area(level.area), *floor(level), 1 + order / 100)
-    draw_paths(view, levels)
+    for order, floor in enumerate(floors):
+        area = view.area(floor.area)
+        style.fill(view.axes, area, floor.shade.floor, floor.edge, 1 + order / 100)
+    draw_paths(view)
     draw_plunges(view)
     draw_arrows(view)
     for each in marks.uncut:
@@ -216,21 +214,16 @@ def draw_stock(view: SceneView, shape: BaseGeometry | None) -> None:
         style.fill(view.axes, view.area(shape), "none", style.STOCK_EDGE, 2.2)
 
 
-def floor(level: Level) -> tuple[object, object]:
-    """Return the fill and the outline of a level's area."""
-    return level.shade.floor, style.tint(level.shade.line, 0.35)
-
-
-def draw_paths(view: SceneView, levels: Sequence[Level]) -> None:
+def draw_paths(view: SceneView) -> None:
     """Draw rapids, programmed path and actual motion."""
     scene, is_run = view.scene, view.scene.real is not None
     rapids = (move for move in scene.moves[first_shown(scene) :] if move.kind == "rapid")
     lines = (scene.path.part.polyline(move, PICTURE_CHORD) for move in rapids)
     style.draw_rapids(view.axes, once(view.lines(lines)))
     width = 1.1 if len(scene.moves) < MANY else 0.5
-    for path, colour in coloured_paths(scene, levels):
-        shade = style.tint(colour, 0.4) if is_run else colour
-        style.draw(view.axes, view.lines(path), shade, 2.6 if is_run else width)
+    fed, colours = fed_paths(scene)
+    shades = [style.tint(colour, 0.4) for colour in colours] if is_run else colours
+    style.draw(view.axes, view.lines(fed), shades, 2.6 if is_run else width)
     if is_run:
         draw_real(view)
     hit = view.lines(found.values["path"] for found in scene.marks.rapids)
@@ -266,13 +259,21 @@ def once(lines: Sequence[np.ndarray]) -> list[np.ndarray]:
     return list(found.values())
 
 
-def coloured_paths(scene: Scene, levels: Sequence[Level]) -> list:
-    """Return the moves at feed as polylines with the colour of their depth."""
-    part = scene.path.part
-    below = [index for index in scene.sweeping if not scene.across[index]]
-    below += [*scene.radial, *scene.turned]
-    muted = paths(part, [scene.moves[index] for index in below], PICTURE_CHORD)
-    return [(muted, style.MUTED), *((level.lines, level.shade.line) for level in levels)]
+def fed_paths(scene: Scene) -> tuple[list[np.ndarray], list]:
+    """Return the moves at feed as polylines, and their colours: those across by their depth."""
+    part, sweeping = scene.path.part, {*scene.sweeping}
+
+    def colour(index: int) -> object:
+        lowest = scene.path.points[scene.path.vertices(index), 2].min()
+        across = index in sweeping and scene.across[index]
+        return shade_at(scene, lowest).line if across else style.MUTED
+
+    lines: list[np.ndarray] = []
+    colours: list[object] = []
+    for shade, own in groupby(scene.fed, colour):
+        lines += paths(part, [scene.moves[index] for index in own], PICTURE_CHORD)
+        colours += [shade] * (len(lines) - len(colours))
+    return lines, colours
 
 
 def draw_plunges(view: SceneView) -> None:
@@ -318,7 +319,7 @@ def mark_worst(view: SceneView) -> None:
 # ------------------------------------------------------------ the legend
 
 
-def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = None) -> list:
+def legend_entries(scene: Scene, floors: Sequence[Floor], room: int | None = None) -> list:
     """Return the legend, with fewer depths where ``room`` limits its entries."""
     listed = []
     for tool in sorted({scene.moves[index].tool for index in {*scene.fed} - {*scene.turned}}):
@@ -329,8 +330,8 @@ def legend_entries(scene: Scene, levels: Sequence[Level], room: int | None = Non
     room = MOST_SHOWN_LEVELS if room is None else max(room - len(listed), LEAST_LEVELS)
     letter = scene.path.part.letters[2]
     depths = [
-        style.swatch(*floor(level), f"swept at {letter}{scene.unit.text(level.z)}")
-        for level in few(levels, min(room, MOST_SHOWN_LEVELS))
+        style.swatch(floor.shade.floor, floor.edge, f"swept at {letter}{scene.unit.text(floor.z)}")
+        for floor in few(floors, min(room, MOST_SHOWN_LEVELS))
     ]
     return [*depths, *listed]
 

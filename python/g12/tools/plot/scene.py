@@ -87,6 +87,23 @@ class Scene:
         return self.path.part.points(ends.reshape(-1, 9)).reshape(-1, 2, 3)
 
     @cached_property
+    def cutting(self) -> list[int]:
+        """The moves that sweep, but for those straight up."""
+        rises = self.ends[:, 1, 2] - self.ends[:, 0, 2]
+        return [index for index in self.sweeping if self.across[index] or rises[index] < 0]
+
+    @property
+    def is_turned(self) -> bool:
+        """Whether the picture is that of a lathe's part in Z and X."""
+        return not self.path.part.turning and "Y" not in self.program.ini.axes
+
+    @cached_property
+    def depths(self) -> tuple[float, float]:
+        """The lowest and the highest level at which a move that cuts ends."""
+        levels = self.ends[self.cutting, 1, 2]
+        return (levels.min(), levels.max()) if len(levels) and not self.is_turned else (0.0, 0.0)
+
+    @cached_property
     def across(self) -> np.ndarray:
         """Whether each move has a component across the tool's axis; a turn of C may close."""
         curved = [move.kind == "arc" or move.start[C] != move.end[C] for move in self.moves]

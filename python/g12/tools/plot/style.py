@@ -156,10 +156,9 @@ def outline_of(area: BaseGeometry) -> Outline | None:
 
 
 def draw(axes: Axes, lines: Sequence[np.ndarray], colour, width=1.1, order=3.0, **style) -> None:
-    lines = [line for line in lines if len(line) > 1]
     style = {"capstyle": "round", "joinstyle": "round", **style}
     axes.add_collection(
-        LineCollection(lines, colors=[colour], linewidths=width, zorder=order, **style),
+        LineCollection(lines, colors=colour, linewidths=width, zorder=order, **style),
         autolim=False,
     )
 
@@ -190,10 +189,9 @@ class Shade(NamedTuple):
     floor: tuple
 
 
-def shades(count: int) -> list[Shade]:
-    """Return the colours of some depths, from the shallowest to the deepest."""
-    shares = np.linspace(0.0, 1.0, count) if count > 1 else [0.35]
-    return [Shade(DEPTHS(share), FLOORS(share)) for share in shares]
+def shade(share: float) -> Shade:
+    """Return the colours of a depth, from 0 the shallowest to 1 the deepest."""
+    return Shade(DEPTHS(share), FLOORS(share))
 
 
 def hatch(axes: Axes, area: BaseGeometry) -> None:

@@ -6,14 +6,11 @@ Lengths are millimetres until they are drawn; those of the layout are inches on 
 
 import numpy as np
 from matplotlib.figure import Figure
-from shapely.geometry import GeometryCollection
 
-from g12.tools.path.part import paths
 from g12.tools.plot import style
 from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
 from g12.tools.plot.plan_view import (
-    PICTURE_CHORD,
-    Level,
+    ONE_DEPTH,
     SceneView,
     bounds_of,
     draw_arrows,
@@ -54,17 +51,10 @@ def draw_profile(view: SceneView, low: np.ndarray, high: np.ndarray) -> None:
     style.frame(view.axes, low, high, view.scene.unit, ("Z", "X (radius)"))
     view.axes.set_aspect("equal", adjustable="datalim")
     view.axes.axhline(0, **style.CENTRE_LINE)
-    draw_paths(view, [everything(view.scene)])
+    draw_paths(view)
     draw_arrows(view)
     draw_signs(view)
 
 
-def everything(scene: Scene) -> Level:
-    """Return all cuts as one level, without an area."""
-    cutting = [scene.moves[index] for index in scene.fed]
-    lines = paths(scene.path.part, cutting, PICTURE_CHORD)
-    return Level(0.0, style.shades(1)[0], lines, GeometryCollection())
-
-
 def turn_entries(scene: Scene) -> list:
-    return [style.stroke(style.shades(1)[0].line, "cut"), *motion_entries(scene)]
+    return [style.stroke(style.shade(ONE_DEPTH).line, "cut"), *motion_entries(scene)]

@@ -22,9 +22,9 @@ from g12.tools.plot.plan_view import (
     SceneView,
     bounds_of,
     draw_plan,
+    floors_of,
     legend_entries,
     mark_worst,
-    milled_levels,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.verify.model.finding import Finding
@@ -41,8 +41,8 @@ DETAIL_ROW = 1.2  # with the detail view of the largest deviation
 
 def draw_unrolled(scene: Scene) -> Figure:
     flat = unrolled(scene)
-    levels = milled_levels(flat)
-    low, high = (corner[:2] for corner in bounds_of(flat, levels))
+    floors = floors_of(flat)
+    low, high = (corner[:2] for corner in bounds_of(flat, floors))
     size = high - low
     scale = min((WIDTH - LEFT - RIGHT) / size[0], MOST / size[1])
     across, up = size[0] * scale, max(LEAST, size[1] * scale)
@@ -52,13 +52,13 @@ def draw_unrolled(scene: Scene) -> Figure:
     flat = with_bar(flat, scene.marks.stock, low, high)
     view = SceneView(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
     frame_surface(view.axes, flat, low, high, scene.x0_text)
-    draw_plan(view, levels)
+    draw_plan(view, floors)
     panels = panels_of(figure, page - TOP - up - UNDER)
     draw_history(panels, flat, "surface")
     panels[ROWS - 1].tick_params(labelbottom=True)
     panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
     column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2
-    entries = [*legend_entries(flat, levels), TIME_IN_RAPIDS]
+    entries = [*legend_entries(flat, floors), TIME_IN_RAPIDS]
     top = page - TOP - up - UNDER - 2 * (PANEL + GAP) - GAP
     style.draw_legend(figure, entries, column - 0.1, top, 1 if more else 2)
     if scene.real is not None:

@@ -2,6 +2,7 @@
 """Traces of programs that run to their end, and the error of one that does not."""
 
 import re
+from collections.abc import Container
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,9 +11,10 @@ from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Tracer
-from g12.tools.preview.unknown_codes import of_other_controls, unknown_code
 from g12.tools.system import COMMAND
-from g12.tools.translate.blocks.lexer import program_text, source_lines
+from g12.tools.translate.blocks.control import read_control, shipped_controls
+from g12.tools.translate.blocks.lexer import blocks_of, program_text, source_lines
+from g12.tools.translate.whole_program import CODES
 
 UNKNOWN_G_CODES = ("Unknown g code used", "G-code out of range")
 UNKNOWN_M_CODE = re.compile("Unknown m code used: (M[0-9]+)")
@@ -20,6 +22,8 @@ OUR_CODE = re.compile(r"G(?:1[23](?!\d)|7\.1$)")
 POLAR_CODES = ("G12.1", "G13.1")
 PYTHON_FAILED = re.compile(r"pycall\(.*\) failed")
 PACKAGE_MESSAGE = re.compile(r"^g12: (.*)$", re.MULTILINE)  # printed at its start
+CONTROLS_NAMED = 3
+COMMONEST = ("fanuc", "haas")
 NO_AXIS = re.compile(r"Bad character '([abcuvwxyz])' used")
 
 
@@ -74,3 +78,31 @@ def _unknown_g_code(text: str, code: str, machine: Ini) -> str:
     present = [remap.code for remap in remap_lines(machine.all) if OUR_CODE.match(remap.code)]
     has = " ".join(present) or "none"
     return f"{named}: of G12, G13 and G7.1 this INI has {has}; see {COMMAND} check"
+
+
+def unknown_code(block: str, remapped: Container[str]) -> str:
+    """Return the first G code of a block that LinuxCNC lacks; "" if that is not certain."""
+    words = [word for part in blocks_of(1, block) for word in part.words]
+    codes = [word.code for word in words if word.code[:1] == "G" and word.code not in remapped]
+    lacking = [code for code in codes if code not in CODES]
+    return next(iter(lacking or codes * (len(codes) == 1)), "")
+
+
+def of_other_controls(code: str, axes: str) -> str:
+    """Return the end of a sentence about a code: the controls that have it, "" if none is known."""
+    controls = (read_control(name) for name in shipped_controls())
+    having = [c for c in controls if not c.onto and _is_known(c.meanings.get(code, ""))]
+    fitting = [c for c in having if c.is_lathe == ("Y" not in axes)] or having
+    names = sorted((c.name for c in fitting), key=_rank)
+    if not names:
+        return ""
+    known = ", ".join(names[:CONTROLS_NAMED]) + " and others" * (len(names) > CONTROLS_NAMED)
+    return f", a code of {known}: {COMMAND} translate --control NAME makes a LinuxCNC program of it"
+
+
+def _is_known(meaning: str) -> bool:
+    return meaning not in ("", "same", "machine") and not meaning.startswith("refuse: ")
+
+
+def _rank(name: str) -> tuple[bool, int, str]:
+    return not name.startswith(COMMONEST), len(name), name

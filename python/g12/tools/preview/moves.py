@@ -12,12 +12,13 @@ import math
 import re
 from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 from g12.cut_report import CutReport
 from g12.machine_ini import AXIS_LETTERS
+from g12.tools.machine.filter import OpenedProgram
 
 MESSAGE = "message "  # begins the text of an event
 G92_OFF_CODE = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
@@ -222,6 +223,19 @@ class Trace:
     def radius(self, index: int) -> float:
         """Return the radius of a move's tool, 0 if it has none."""
         return self.table_at(index).diameters.get(self.moves[index].tool, 0.0) / 2
+
+    def in_source(self, opened: OpenedProgram) -> Self:
+        """Return the trace of a filtered program with the line numbers of the user's file."""
+        if not opened.is_filtered:
+            return self
+        line, error = opened.source_line, self.error
+        return replace(
+            self,
+            moves=[move._replace(block=line(move.block)) for move in self.moves],
+            events=[event._replace(line=line(event.line)) for event in self.events],
+            error=error
+            and error._replace(text=opened.in_source(error.text), line=line(error.line)),
+        )
 
     @property
     def messages(self) -> list[Message]:

@@ -18,18 +18,17 @@ import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
-from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
 
 from g12.cut_report import SectionCut
 from g12.lengths import is_inch
-from g12.machine_ini import AXIS_LETTERS
+from g12.machine_ini import AXIS_LETTERS, Remap, remap_lines
+from g12.tools.channel import Channel
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.machine.tables import measured_tools, var_file
 from g12.tools.preview.moves import Error, Event, Move, ReportedCut, ToolTable, Trace, modes
 from g12.tools.preview.reports import read_report
-from g12.tools.preview.told_clamp import with_told_clamp
 from g12.tools.system import PYTHON
 
 WORKER = Path(__file__).with_name("worker.py")
@@ -42,6 +41,8 @@ LAUNCH = (
 REFUSED_REMAP = re.compile(
     r"^(?!warning|unrecognized).*\d:REMAP = |^REMAP INI line:", re.MULTILINE | re.IGNORECASE
 )
+CLAMP_COMMENT = "g12 clamp "  # for the worker
+NGC = re.compile(r"\bngc=(\S+)")
 NO_BYTECODE = {"PYTHONDONTWRITEBYTECODE": "1"}  # nothing is written beside the INI
 
 ProgramPath = str | os.PathLike
@@ -96,28 +97,24 @@ class Tracer:
         parameters: Parameters = None,
         timeout: float = 60.0,
         alone: bool = False,
-        watch_offsets: bool = False,
     ) -> Trace:
         """Trace the file ``program``.
 
         ``setup`` holds blocks executed before it whose moves are not reported.  ``parameters``
         are numbered parameters as the var file holds them (``{5221: 10.0}`` is G54 X10 in
         machine units) or a var file; without them all are 0.  ``timeout`` is in seconds.
-        ``alone`` discards the state of the machine's Python modules after the program. With
-        ``watch_offsets`` an event before each message lists the work offsets, of G54 to G59.3 and
-        G92, that have changed since the previous message; ``Trace.tables`` has those at messages.
+        ``alone`` discards the state of the machine's Python modules after the program.
         """
         request = {
             "program": str(Path(program).absolute()),
             "parameter_file": str(write_parameters(parameters, self.folder / "trace.var")),
             "setup": list(setup),
             "alone": alone,
-            "watch_offsets": watch_offsets,
         }
         if not self._process:
             self._start()
         with contextlib.suppress(BrokenPipeError):  # it has died and cannot answer
-            self._connection.send(request)
+            self._channel.send(request)
         answer = self._answer(timeout)
         return _trace(answer, self.ini.mm)
 
@@ -155,8 +152,8 @@ class Tracer:
                 stdout=output,
                 stderr=output,
             )
-        self._connection = Connection(here.detach())
-        self._connection.send(self._machine)
+        self._channel = Channel(here)
+        self._channel.send(self._machine)
         answer = self._answer(60.0)
         error, _ = answer["error"] or ("", 0)
         if error or REFUSED_REMAP.search(answer["printed"]):
@@ -169,12 +166,12 @@ class Tracer:
         if self._process:
             self._process.kill()
             self._process.wait()
-            self._connection.close()
+            self._channel.close()
             self._process = None
 
     def _answer(self, timeout: float) -> dict:
         try:
-            answer = self._connection.recv() if self._connection.poll(timeout) else None
+            answer = self._channel.receive() if self._channel.is_ready(timeout) else None
         except (EOFError, ConnectionError):
             answer = {"failure": "the interpreter died"}
         if answer is None:
@@ -251,23 +248,52 @@ def _machine(ini: Ini, tools: Tools, folder: Path) -> dict:
     }
 
 
-def _table_in_mm(sizes: Mapping[int, Sequence[float]], mm: float) -> ToolTable:
+def with_told_clamp(ini: Ini, folder: Path) -> Ini:
+    """Return an INI whose preview shows the codes of C's clamp, which make no canonical call.
+
+    The REMAP of such a code calls a sub in ``folder``: a comment, then the machine's own sub.
+    """
+    settings, remaps = ini.settings, remap_lines(ini.all)
+    codes = {f"M{code}" for code in (*settings.c_clamp, *settings.c_clamp_shapes)}
+    if not any(remap.code in codes and "ngc" in remap.keywords for remap in remaps):
+        return ini
+    lines = [_told(each, folder) if each.code in codes else each.text for each in remaps]
+    path = ":".join(filter(None, (str(folder), ini.get("RS274NGC", "SUBROUTINE_PATH"))))
+    return ini.replaced({"RS274NGC": {"REMAP": lines, "SUBROUTINE_PATH": path}})
+
+
+def _told(remap: Remap, folder: Path) -> str:
+    own, name = remap.keywords.get("ngc"), f"g12_told_{remap.code.lower()}"
+    if not own:
+        return remap.text
+    text = f"o<{name}> sub\n({CLAMP_COMMENT}{remap.code})\no<{own}> call\no<{name}> endsub\n"
+    (folder / f"{name}.ngc").write_text(text, encoding="utf-8")
+    return NGC.sub(f"ngc={name}", remap.text)
+
+
+def _table_in_mm(sizes: Sequence[Sequence], mm: float) -> ToolTable:
     """Return the tool table of the worker's sizes, which are in machine units."""
-    return ToolTable(*({tool: size[at] * mm for tool, size in sizes.items()} for at in range(3)))
+    return ToolTable(*({tool: size[at] * mm for tool, *size in sizes} for at in range(3)))
 
 
 def _trace(answer: dict, mm: float) -> Trace:
     sizes = [*answer["tables"], (len(answer["moves"]), answer["tool_sizes"])]
     return Trace(
-        moves=[Move._make(move) for move in answer["moves"]],
+        moves=[Move._make(map(_frozen, move)) for move in answer["moves"]],
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),
-        **{key: answer[key] for key in ("state", "printed", "position", "globals")},
+        position=tuple(answer["position"]),
+        **{key: answer[key] for key in ("state", "printed", "globals")},
         tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
         files=tuple(answer["files"]),
         cuts=[_reported_cut(len(answer["moves"]), *cut) for cut in answer["cuts"]],
     )
+
+
+def _frozen(value: Any) -> Any:
+    """Return a value of JSON; a position is a tuple."""
+    return tuple(value) if isinstance(value, list) else value
 
 
 def _reported_cut(

@@ -1,23 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The process of ``trace.Tracer``: LinuxCNC's preview interpreter on a pipe.
+"""The process of ``trace.Tracer``: LinuxCNC's preview interpreter on a socket.
 
 It imports nothing of the package, because the machine's INI decides which copy of ``g12`` the
-interpreter imports. A request is a dict with ``program``, ``setup`` and ``parameter_file``; the
-answer is a dict that ``trace`` converts to a Trace.  Every program gets a new interpreter object,
+interpreter imports. A request is a line of JSON with ``program``, ``setup`` and ``parameter_file``,
+the answer one that ``trace`` converts to a Trace.  Every program gets a new interpreter object,
 as in a GUI that opens a program again.
 """
 
 import bisect
 import ctypes
+import json
 import math
 import os
 import re
 import select
 import shutil
 import signal
+import socket
 import traceback
 from collections.abc import Sequence
-from multiprocessing.connection import Connection
+from typing import IO
 
 INCH = 25.4  # mm; the preview reports inches
 FRESH, START = "G12 TRACE SET-UP", "G12 TRACE STARTS HERE"
@@ -33,7 +35,7 @@ CURRENT = (
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
-PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # `told_clamp`
+PACKAGE, CLAMP_COMMENT = "g12 ", "g12 clamp "  # of `tracer`
 MEANINGS_CHANGED = "g12: the axes mean something else now, acceleration "  # `g12.host`, a share
 PLANE_NUMBERS = {1: 17, 2: 19, 3: 18}
 UVW_PLANES = {4: "G17.1", 5: "G19.1", 6: "G18.1"}
@@ -51,8 +53,6 @@ STATE_VARIABLES = (
 )  # fmt: skip
 LENGTH_GROUP = 8  # index of G43, G43.1, G43.2 and G49 in a block's G codes
 LENGTH_CODE, SPINDLE_MODE = 9, 13  # indices of G43, G49 and of G96, G97 in the active G codes
-OFFSETS = {"G92": 5211} | {f"G10 L2 P{n}": 5201 + 20 * n for n in range(1, 10)}  # first parameter
-OFFSET_LENGTH = 10  # nine axes, and the rotation: of G92 the number after them is always the same
 PITCH_WORD = {330: "k_number", 331: "k_number", 760: "p_number"}  # of G33, G33.1, G76
 BY_MACHINE = (280, 300, 530)
 FEED_DECIMALS = 12
@@ -202,13 +202,11 @@ class Canon:
         self.events: list[tuple] = []
         self.files: set[str] = set()
         self.in_force: tuple = ()
-        self.watch_offsets = request.get("watch_offsets")
         self.reports = machine.get("reports")
         self.cuts: list[list] = []  # first move, end, line, last line, C before, comments
         self.open_cuts = 0
         self.c_commanded = ""
-        self.offsets: dict = {}
-        self.tables: list[tuple[int, dict]] = []
+        self.tables: list[tuple[int, list]] = []
         self.pitch = ""
         self.line = 0
         self.on_face = False  # on the face, where Y is the tool's
@@ -315,9 +313,6 @@ class Canon:
             self.c_commanded = "angle"
 
     def message(self, text: str) -> None:
-        if self.watch_offsets:
-            self._note_offsets()
-            self._note_tools()
         self._note(f"message {text}")
 
     def set_g5x_offset(self, _index: int, *offset: float) -> None:
@@ -401,12 +396,6 @@ class Canon:
             known, self.pitch = self.pitch, pitch
             if pitch != known:
                 self._note(pitch)
-
-    def _note_offsets(self) -> None:
-        known, self.offsets = self.offsets, work_offsets()
-        for name, values in self.offsets.items():
-            if known and values != known[name]:
-                self._note(name)
 
     def _note_tools(self) -> None:
         sizes = tool_sizes(len(self.tools))
@@ -518,14 +507,6 @@ def program_units() -> dict[str, float]:
     return {name: length if axis in LINEAR_AXES else 1.0 for axis, name in enumerate(CURRENT)}
 
 
-def work_offsets() -> dict[str, tuple]:
-    params = interpreter_object().params
-    return {
-        name: tuple(params[number] for number in range(first, first + OFFSET_LENGTH))
-        for name, first in OFFSETS.items()
-    }
-
-
 def conditions(state, length: int) -> tuple:
     """Return the conditions besides the path, as words; ``state`` is the modal state of a line.
 
@@ -577,16 +558,16 @@ def for_canon(entry) -> tuple:
     return (entry.toolno, *axes, entry.diameter, *angles)
 
 
-def tool_sizes(count: int) -> dict[int, tuple[float, float, float]]:
-    """Return tool number to diameter and offsets in Z and X, machine units, of ``count`` entries.
+def tool_sizes(count: int) -> list[tuple[int, float, float, float]]:
+    """Return number, diameter and offsets in Z and X, machine units, of the tools in the table.
 
-    The interpreter's table has the values of G10. The first entry of a tool counts.
+    It has ``count`` entries, and the values of G10. The last entry of a tool counts.
     """
     table = interpreter_object().tool_table
     entries = [table[index] for index in reversed(range(count))]
-    return {
-        e.toolno: (e.diameter, e.offset.tran.z, e.offset.tran.x) for e in entries if e.toolno > 0
-    }
+    return [
+        (e.toolno, e.diameter, e.offset.tran.z, e.offset.tran.x) for e in entries if e.toolno > 0
+    ]
 
 
 def interpreter_object():
@@ -743,20 +724,25 @@ def start(machine: dict, tools: list[tuple]) -> dict:
     return {**answer, "no_end": no_end}
 
 
-def reply(connection: Connection, machine: dict, answer: dict) -> None:
-    connection.send({**answer, "printed": printed(machine["output"])})
+def send(stream: IO[str], answer: dict) -> None:
+    stream.write(json.dumps(answer) + "\n")
+    stream.flush()
 
 
-def reply_alone(connection: Connection, machine: dict, tools: list[tuple], request: dict) -> None:
+def reply(stream: IO[str], machine: dict, answer: dict) -> None:
+    send(stream, {**answer, "printed": printed(machine["output"])})
+
+
+def reply_alone(stream: IO[str], machine: dict, tools: list[tuple], request: dict) -> None:
     """Answer from a fork of this process, which discards the state of the machine's modules."""
     copy = os.fork()
     if copy:
         _, status = os.waitpid(copy, 0)
         if status:
-            connection.send({"failure": "the interpreter died"})
+            send(stream, {"failure": "the interpreter died"})
         return
     end_with_parent()
-    reply(connection, machine, answered(machine, tools, request))
+    reply(stream, machine, answered(machine, tools, request))
     os._exit(0)
 
 
@@ -767,35 +753,33 @@ def end_with_parent() -> None:
 
 def serve(descriptor: int) -> None:
     """Answer requests until the other end closes, in a fork, which may be busy then."""
-    connection = Connection(descriptor)
-    machine = connection.recv()
+    end = socket.socket(fileno=descriptor)
+    stream = end.makefile("rw", encoding="ascii")
+    machine = json.loads(stream.readline())
     copy = os.fork()
     if not copy:
         end_with_parent()
-        answer_requests(connection, machine)
+        answer_requests(stream, machine)
         return
     poll = select.poll()
-    poll.register(connection, 0)  # also notices the death of the other end
+    poll.register(end, 0)  # also notices the death of the other end
     with open(os.pidfd_open(copy), "rb") as ended:
         poll.register(ended, select.POLLIN)
-        if connection.fileno() in dict(poll.poll()):  # closed; the fork may be busy
+        if descriptor in dict(poll.poll()):  # closed; the fork may be busy
             os.kill(copy, signal.SIGKILL)
             os.waitpid(copy, 0)
             shutil.rmtree(os.path.dirname(machine["output"]), ignore_errors=True)
 
 
-def answer_requests(connection: Connection, machine: dict) -> None:
+def answer_requests(stream: IO[str], machine: dict) -> None:
     """Load the machine and answer requests until the other end closes."""
     tools = load_tools(machine["tool_table"], machine["random"])
     answer = start(machine, tools)
     known = tuple(answer.get("globals", ()))
-    reply(connection, machine, answer)
-    while True:
-        try:
-            request = {**connection.recv(), "known_globals": known}
-        except EOFError:
-            return
+    reply(stream, machine, answer)
+    for line in stream:
+        request = {**json.loads(line), "known_globals": known}
         if request["alone"]:
-            reply_alone(connection, machine, tools, request)
+            reply_alone(stream, machine, tools, request)
         else:
-            reply(connection, machine, answered(machine, tools, request))
+            reply(stream, machine, answered(machine, tools, request))

@@ -17,7 +17,6 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import part_of
 from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
-from g12.tools.preview.source_lines import trace_in_source
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from g12.tools.progress import Report, silent
 from g12.tools.regress.differences import TOLERANCE, Difference, Tolerance, differences
@@ -113,10 +112,11 @@ class Recorders:
             "linuxcnc": self._linuxcnc,
             "units": name_of_unit(ini.mm),
         }
+        facts = {fact: " ".join(text.split()) for fact, text in facts.items()}  # each one line
         options: dict[str, Any] = {"parameters": job.parameters, "timeout": job.terms.timeout}
         try:
             with opened_program(program, ini) as opened:
-                trace = trace_in_source(tracer.trace(opened.path, alone=True, **options), opened)
+                trace = tracer.trace(opened.path, alone=True, **options).in_source(opened)
                 return text_of(recording_of(trace, opened.listed, facts))
         except ProgramError as problem:
             raise TraceFailure(str(problem)) from None

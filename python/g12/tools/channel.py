@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The connection between a runner and its screen inside LinuxCNC: lines of JSON over a socket.
+"""The connection to a process inside LinuxCNC: lines of JSON over a socket.
 
-The socket is one of a pair that the screen inherits. It has no name, so nobody else can connect to
+The socket is one of a pair that the process inherits. It has no name, so nobody else can connect to
 it or replace it.
 """
 
