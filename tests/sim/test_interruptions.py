@@ -104,6 +104,7 @@ def test_without_a_handler_g13_1_in_mdi_restores_all(lathe):
     before = lathe.stat().modes
     aborted_on_the_face(lathe, INCREMENTAL)
     lathe.mdi("G13.3")
+    assert lathe.errors() == []
     lathe.wait_for(lambda now: not now.adaptive)  # the next block reads it from motion
     lathe.mdi("M3")
     found = lathe.stat().modes
