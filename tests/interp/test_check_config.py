@@ -4,7 +4,6 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -15,7 +14,7 @@ import pytest
 from g12.tools.commands import check, install, uninstall
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, PROBLEM
-from g12.tools.install.lathe.pins import pins_missing, pins_taken
+from g12.tools.install.lathe.hal import pins_missing, pins_taken
 from g12.tools.system import COMMAND
 from support.kinematics import marked
 from support.sample_configs import SAMPLES
@@ -73,9 +72,6 @@ def remap(text):
     return {"mine__toplevel_py": "import remap\n", "mine__remap_py": text}
 
 
-NO_DIAMETER = {"mill_tbl": "T1 P1\nT2 P2 Z1\n"}
-
-
 @pytest.mark.parametrize(
     ("change", "files", "expected"),
     [
@@ -85,8 +81,6 @@ NO_DIAMETER = {"mill_tbl": "T1 P1\nT2 P2 Z1\n"}
         ((PYTHON, OWN), remap("def f(:\n"), ["python-fails"]),
         ((PYTHON, OWN), remap("x = 1\n"), ["no-import"]),
         ((PYTHON, OWN), {"mine__toplevel_py": "import os\n"}, ["no-import"]),
-        (("T1", "T1"), {"mill_tbl": "T1 P1\nt2 p2 d+.25 ;x\n"}, []),
-        (("T1", "T1"), NO_DIAMETER, ["no-diameters"]),
     ],
 )
 def test_what_is_wrong_is_found_and_linuxcnc_agrees(tmp_path, capsys, change, files, expected):
@@ -186,24 +180,13 @@ def test_the_users_own_python_stays_in_charge_and_the_pocket_is_that_of_the_sim(
             assert trace_text(["M400", "M2"], ini).error is None
 
 
-def test_a_lost_copy_comes_back(tmp_path, capsys):
-    ini = write_config(tmp_path, MILL + OWN, **remap("x = 1\n"))
-    assert installed(ini, "haas") == 0
-    whole = content_of(tmp_path)
-    for lost in ("", "python/g12/cycles/haas.py"):
-        path = tmp_path / "g12" / lost
-        path.unlink() if lost else shutil.rmtree(path)
-        assert installed(ini, "haas") == 0
-        assert content_of(tmp_path) == whole
-
-
 G13 = "REMAP = g13 modalgroup=1 ngc=mine\n"
 REFUSED = [  # an INI, other files, the feature, what is said
     (with_lines(MILL, "RS274NGC", G13), {"mine_ngc": "o<mine> sub\no<mine> endsub\n"}, ["haas"],
      "G13 is remapped here already"),
     (LATHE, {}, ["haas"], "haas needs axis Y"),
     (MILL + OWN, remap("import nowhere\n"), ["haas"], "No module named 'nowhere'"),
-    (MILL + OWN, remap("def g12_haas(self): pass\n"), ["haas"], "your own function g12_haas"),
+    (MILL + OWN, remap("def g12_haas(self): pass\n"), ["haas"], "has no g12_haas of the package"),
     (MILL + "[PYTHON]\nTOPLEVEL = gone.py\n", {}, ["haas"], "TOPLEVEL = gone.py"),
     (with_lines(MILL, "RS274NGC", "REMAP = M400 python=x\n"), {}, ["haas"], "does not load"),
     (MILL, {}, ["haas", "yasnac"], "haas and yasnac exclude each other"),

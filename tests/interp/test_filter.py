@@ -15,7 +15,7 @@ from g12.tools.machine.ini import read_ini
 from g12.tools.system import PYTHON
 from support.foreign_programs import FOREIGN
 from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
-from support.small_configs import package_of, put_in, write_config
+from support.small_configs import put_in, write_config
 
 POCKET = """\
 %
@@ -41,9 +41,6 @@ def without_progress(errors):
 
 
 TRANSLATE = f"python3 {ROOT / 'python' / 'g12'} translate --control haas-mill"
-
-
-small_package = package_of({"python/g12/__init__.py": b""})
 
 
 @pytest.fixture(scope="module")
@@ -199,19 +196,7 @@ def test_any_filter_is_applied(sim, tmp_path):
 
 def test_lines_that_a_filter_adds_say_theirs():
     rows = [b"G0", b"(a) (line 1)", b"G1 (line 7 of it)", b"", b"M2 (line 4)", b"(line 9) M2 (a)"]
-    assert lines_of_source([], rows) == (1, 1, 2, 3, 4, 9)
-
-
-POCKETS = "G20 G90 G0 X0 Y0\nT2 M6\nG0 Z.1\nG12 I.4 Z-.2 D2 F20\nG0 Z.1\nG12 I.1 Z-.2 D2 F20\nM2\n"
-
-
-@pytest.mark.parametrize(
-    "command", ["sed 's/I.4/I.5/'", "sed '3,4s/$/\\n(more)/'", "sed 1d", "sed 2,3d"]
-)
-def test_lines_behind_any_filter_are_the_users(reported, command):
-    _, _, errors = reported("trace", POCKETS, command=command)
-    assert errors.startswith("g12 trace: PROGRAM:6: G12: I0.1 must be greater than"), errors
-    assert "[FILTER]" not in errors
+    assert lines_of_source(rows) == (1, 1, 2, 3, 4, 9)
 
 
 def test_each_of_several_lines_in_a_text_is_the_users(tmp_path):

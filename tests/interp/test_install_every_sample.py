@@ -10,12 +10,11 @@ import pytest
 from g12.machine_ini import remap_from_value
 from g12.tools.commands import install, uninstall
 from g12.tools.forms.table import HANDLERS
-from g12.tools.install.checking import check_config
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import installed_programs
 from g12.tools.install.config.findings import PROBLEM, Refused
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.screen import forms_shown
+from g12.tools.install.config.loaded import installed_programs, load_config
+from g12.tools.install.rules import findings_of
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, tree
 from support.small_configs import planned
@@ -113,11 +112,12 @@ def test_the_full_set_loads_in_the_stock_interpreter(samples, name):
     path = samples / name
     before, names = tree(path.parent), full_set(read_ini(path))
     assert install.main([str(path), "--with", *names]) == 0
-    config, found = check_config(IniText(path))
+    config = load_config(IniText(path))
+    found = findings_of(config)
     assert [finding for finding in found if finding.level == PROBLEM] == []
     there = {*config.features} | {f"programs-{control}" for control in installed_programs(config)}
     assert there == {*names} - {"forms", "cycles-page"}
-    assert bool(forms_shown(config)) == ("forms" in names)
+    assert bool(config.ini.all("DISPLAY", "NGCGUI_SUBFILE")) == ("forms" in names)
     installed = tree(path.parent)
     assert install.main([str(path), "--with", names[0]]) == 0  # again: nothing
     assert tree(path.parent) == installed

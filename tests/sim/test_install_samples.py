@@ -8,9 +8,10 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from g12.tools.commands import install, uninstall
-from g12.tools.install.checking import check_config
 from g12.tools.install.config.findings import PROBLEM
 from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import load_config
+from g12.tools.install.rules import findings_of
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
 from support.sample_configs import SAMPLES, copy_samples, tree
@@ -40,7 +41,7 @@ def run_installed(ini, feature, program):
     """Install, check, run headless, uninstall; return the run and the size of a unit in mm."""
     before = tree(ini.parent)
     assert install.main([str(ini), "--with", feature]) == 0
-    _, found = check_config(IniText(ini))
+    found = findings_of(load_config(IniText(ini)))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(ini) as machine:
         run, unit = machine.run_text(program, timeout=300), machine.mm
@@ -96,7 +97,7 @@ def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     assert install.main([str(lathe), "--with", "polar", "polar-kinematics"]) == 0
     assert install.main([str(lathe), "--with", "polar-kinematics"]) == 0
     assert "installed already, nothing to do" in capsys.readouterr().out
-    _, found = check_config(IniText(lathe))
+    found = findings_of(load_config(IniText(lathe)))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(lathe) as machine:
         run = machine.run_text(ROUND, timeout=300)

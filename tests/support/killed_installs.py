@@ -10,8 +10,9 @@ from itertools import product
 from typing import NamedTuple
 
 from g12.tools.install import package_copy
-from g12.tools.install.checking import check_config
 from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import load_config
+from g12.tools.install.rules import findings_of
 from g12.tools.system import PYTHON
 from support.sim_machines import ROOT
 from support.small_configs import MILL, TURNING, TURNING_HAL, content_of, write_config
@@ -62,7 +63,7 @@ class KilledInstalls:
 
     def state(self):
         """Return the files, and what `check` says of them."""
-        return content_of(self.folder), check_config(IniText(self.ini))[1]
+        return content_of(self.folder), findings_of(load_config(IniText(self.ini)))
 
     def sample(self, chance, number):
         """Yield calls at random, every other one of those that put files in place."""
@@ -77,7 +78,8 @@ class KilledInstalls:
         inject = f"inject={point.call}:signal=KILL:when={point.number}"
         strace = ["strace", "-o", "/dev/null", "-e", f"trace={point.call}", "-e", inject]
         subprocess.run([*strace, *self.words], cwd=self.folder, capture_output=True, check=False)
-        config, findings = check_config(IniText(self.ini))
+        config = load_config(IniText(self.ini))
+        findings = findings_of(config)
         assert config.failure is None and not config.python.error
         assert findings in [said for _, said in self.states]
         self.run(*self.words)

@@ -113,15 +113,11 @@ def with_lines(text: str, section: str, lines: str) -> str:
     return text.replace(f"[{section}]\n", f"[{section}]\n{lines}")
 
 
-def config_of(
-    ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", diameters=None, **python
-) -> Config:
+def config_of(ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", **python) -> Config:
     """Return the config of an INI that no LinuxCNC has loaded."""
     text = ini if isinstance(ini, IniText) else IniText(ini)
     loaded = Python(**python)
-    return Config(
-        text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure, diameters
-    )
+    return Config(text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure)
 
 
 def content_of(folder: Path) -> dict[str, bytes]:
@@ -130,20 +126,20 @@ def content_of(folder: Path) -> dict[str, bytes]:
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
-def planned(ini: Path, *names: str, pins: Pins | None = None, numbers: str = "", **python):
+def planned(ini: Path, *names: str, pins: Pins | None = None, options: str = "", **python):
     """Return the plan of an installation in an INI that no LinuxCNC has loaded."""
     text = IniText(ini)
     earlier, pins = text.words(), pins or pins_in_ini(text.ini())
     text.take_out()
     asked = [name for name in features.FEATURE_NAMES if name in (*earlier, *names)]
-    return make_plan(config_of(text, **python), asked, pins, numbers)
+    return make_plan(config_of(text, **python), asked, pins, options)
 
 
 def put_in(ini: Path, *names: str, **options) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
     has_backups, plan = bool(IniText(ini).words()), planned(ini, *names, **options)
-    copy = ini.parent / package_copy.NAME
-    files = {} if package_copy.is_current(copy) or not plan.copied else package_copy.package_files()
+    copy = ini.parent / features.COPY
+    files = {} if package_copy.is_current(copy) else package_copy.package_files()
     return list(installation.write_all(plan.text.changes(), copy, files, has_backups))
 
 

@@ -10,14 +10,14 @@ import pytest
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import filter_findings, installed_programs
 from g12.tools.install.config.findings import Refused
-from g12.tools.install.config.screen import screen_findings
+from g12.tools.install.config.loaded import installed_programs
 from g12.tools.install.installation import question_of
 from g12.tools.install.lathe import kinematics
+from g12.tools.install.lathe.hal import pins_taken
 from g12.tools.install.lathe.kinematics import kinematics_findings
-from g12.tools.install.lathe.pins import pins_taken
 from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
+from g12.tools.install.rules import filter_findings
 from g12.tools.translate.blocks.control import read_control
 from support.small_configs import (
     FILES_OF_PAGES,
@@ -29,7 +29,6 @@ from support.small_configs import (
     content_of,
     files_of_package,
     package_of,
-    planned,
     put_in,
     restored,
     with_lines,
@@ -116,7 +115,6 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, names
         put_in(ini, *names)
         text = ini.read_text()
         assert text.count(lines) == 1 and text.count("[DISPLAY]") == 1
-        assert list(screen_findings(config_of(ini))) == []
         assert put_in(ini, names[-1]) == []
 
 
@@ -126,14 +124,15 @@ def test_of_two_rotary_axes_the_screens_is_asked_for(tmp_path):
 
 
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
+    own = "USER_COMMAND_FILE = own.py\nGEOMETRY = XZ\n"
+    lathe = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", own), "lathe.ini")
+    put_in(lathe, "polar")
+    assert lathe.read_text().count("USER_COMMAND") == lathe.read_text().count("GEOMETRY") == 1
     own = "TKPKG = Ngcgui 1.0\nNGCGUI_SUBFILE = simp.ngc\nNGCGUI_SUBFILE = form_haas_mm.ngc\n"
     ini = write_config(tmp_path, with_lines(AXIS, "DISPLAY", own))
     put_in(ini, "haas", "forms")
     text = ini.read_text()
     assert text.count("TKPKG") == text.count("form_haas_mm") == 1
-    geometry = with_lines(ON_LATHE, "DISPLAY", "GEOMETRY = XZ\n")
-    put_in(write_config(tmp_path, geometry, "lathe.ini"), "polar")
-    assert (tmp_path / "lathe.ini").read_text().count("GEOMETRY") == 1
 
 
 @pytest.mark.parametrize("screen", [ON_LATHE.replace("LATHE = 1\n", ""), QTVCP + LATHE])
@@ -143,26 +142,18 @@ def test_other_screens_show_the_face_already(tmp_path, screen):
     assert "face" not in ini.read_text()
 
 
-def test_a_file_of_the_users_own_in_the_place_of_the_face_is_named(tmp_path):
-    ini = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", "USER_COMMAND_FILE = own.py\n"),
-                       own_py="print()\n")  # fmt: skip
-    put_in(ini, "polar")
-    (said,) = screen_findings(config_of(ini))
-    assert "USER_COMMAND_FILE = own.py is yours and stays" in said.text
-    (tmp_path / "own.py").write_text("# axis_face.py\n")
-    assert list(screen_findings(config_of(ini))) == []
-
-
 @pytest.mark.parametrize(
     ("text", "names", "why"),
     [
         (MILL, ["haas", "forms"], "[DISPLAY] DISPLAY is missing"),
         (AXIS, ["cycles-page"], "no code here has a form"),
+        (TURNING, ["polar-kinematics"], "there is no G12.1 here"),
+        (TURNING, ["spindle-c"], "install cannot know the inputs of your spindle's drive"),
         (with_lines(PROBE_BASIC, "DISPLAY", "USER_TABS_PATH = own/\n"), ["haas", "cycles-page"],
          "USER_TABS_PATH = own/ is yours"),
     ],
 )  # fmt: skip
-def test_refused_where_nothing_would_be_shown(tmp_path, text, names, why):
+def test_refused_for_what_is_missing(tmp_path, text, names, why):
     assert why in refused(write_config(tmp_path, text), *names)[0].text
 
 
@@ -183,8 +174,8 @@ COMMAND = "python3 g12/python/g12 translate --control"
 def test_each_usual_extension_is_opened_in_both_cases(tmp_path, control, suffixes, options):
     ini = write_config(tmp_path)
     with restored(ini):
-        put_in(ini, f"programs-{control}", numbers=options)
-        put_in(ini, "circle-mill", numbers=options)
+        put_in(ini, f"programs-{control}", options=options)
+        put_in(ini, "circle-mill", options=options)
         filters = ini.read_text().partition("[FILTER]\n")[2].partition("# <<<")[0]
         shown = ",".join(f".{suffix}" for suffix in suffixes.split())
         assert filters.splitlines() == [
@@ -327,11 +318,6 @@ def test_an_unusual_lathe_keeps_its_kinematics(tmp_path, usual, unusual, says):
     assert any(says in finding.text for finding in findings)
 
 
-def test_without_g12_1_the_kinematics_say_how(tmp_path):
-    (finding,) = refused(lathe_in(tmp_path), "polar-kinematics")
-    assert "--with polar polar-kinematics" in finding.cure
-
-
 def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     ini = lathe_in(tmp_path)
     put_in(ini, "spindle-c", pins=pins_of(tmp_path))
@@ -368,11 +354,6 @@ def test_a_spindle_is_refused_for_what_the_machine_has(tmp_path, old, new, said)
     ini = lathe_in(tmp_path, TURNING.replace(old, new), TURNING_HAL.replace(old, new))
     findings = refused(ini, "spindle-c", pins=pins_of(tmp_path))
     assert said in "".join(finding.text for finding in findings)
-
-
-def test_install_asks_for_the_pins(tmp_path):
-    (finding,) = refused(lathe_in(tmp_path), "spindle-c")
-    assert finding.kind == "pins" and "--pins spindle.toml" in finding.cure
 
 
 def without_c():
@@ -419,9 +400,9 @@ def test_only_what_is_missing_is_told(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("velocity = 'a'", "position, holds: missing"),
+        ("velocity = 'a'", "position: missing; holds: missing"),
         (f"{PINS}\nspeed = 'a'", "speed is none of velocity, position"),
-        (PINS.replace("60", "'fast'"), "velocity_scale is a number, not 'fast'"),
+        (PINS.replace("60", "'fast'"), "velocity_scale = 'fast': must be a number"),
         (PINS.replace("60", "9" * 400), "velocity_scale = 9999"),
         (f"{PINS}\ntimeout = -5", "timeout = -5: must be above 0"),
         (f"{PINS}\nindex_speed = 0", "index_speed = 0: must not be 0"),
@@ -433,8 +414,3 @@ def test_only_what_is_missing_is_told(tmp_path):
 def test_a_file_of_pins_that_says_something_else(tmp_path, text, said):
     with pytest.raises(UsageError, match=said):
         pins_of(tmp_path, text)
-
-
-def test_each_feature_has_a_first_step(tmp_path):
-    assert all(map(features.first_step, features.FEATURE_NAMES))
-    assert planned(write_config(tmp_path), "haas").codes == ["haas"]

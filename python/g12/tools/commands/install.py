@@ -6,16 +6,15 @@ new config is loaded in the stock interpreter before any of the user's files is 
 by `check` is refused.
 """
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
 from g12.tools.errors import UsageError, print_error
-from g12.tools.install.checking import read_config_text
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import Refused
-from g12.tools.install.installation import excluding, install
+from g12.tools.install.config.ini_edit import read_config_text
+from g12.tools.install.installation import install
 from g12.tools.install.lathe.spindle_c import read_pins
 from g12.tools.progress import print_all
 
@@ -52,42 +51,30 @@ def command_parser() -> Parser:
     return parser
 
 
-def ini_and_features(ini: Path | None, words: Sequence[str]) -> tuple[Path | None, list[str]]:
-    """Return the INI, which may come after the features, and the features, each once."""
-    if not ini and len(words) > 1 and words[-1].lower() not in features.FEATURE_NAMES:
-        *words, last = words
-        ini = Path(last)
-    features_named = [name for word in words for name in word.lower().split(",") if name]
-    return ini, list(dict.fromkeys(features_named))
-
-
-def wrong_words(ini: Path | None, requested: Sequence[str]) -> str:
-    """Return the fault of the command line's features, "" without one."""
-    unknown = [f"no feature {name!r}" for name in requested if name not in features.FEATURE_NAMES]
-    given = {"the INI": ini, "--with": requested}
-    return ", ".join(unknown[:1] or [f"{name} is missing" for name in given if not given[name]])
-
-
 @one_line("install")
 def main(arguments: list[str]) -> int:
     parser = command_parser()
     options = parser.parse_args(arguments)
-    ini, requested = ini_and_features(options.ini, options.features)
-    wrong = wrong_words(ini, requested)
-    if wrong:
-        parser.error(wrong)
-    for pair in excluding(requested):
-        raise UsageError(f"{pair} exclude each other: choose one")
+    ini, requested = options.ini, options.features
+    if not ini and requested[1:] and requested[-1] not in features.FEATURE_NAMES:
+        *requested, ini = requested  # the INI may come last
+    unknown = [name for name in requested if name not in features.FEATURE_NAMES]
+    if unknown:
+        parser.error(f"no feature {unknown[0]!r}")
+    missing = [name for name, given in (("the INI", ini), ("--with", requested)) if not given]
+    if missing:
+        parser.error(", ".join(f"{name} is missing" for name in missing))
     values = {name: getattr(options, name) for name in ("decimals", "units")}
-    numbers = "".join(f" --{name} {value}" for name, value in values.items() if value)
-    if numbers and not any(name in features.CONTROLS for name in requested):
-        raise UsageError(f"{numbers.split()[0]} is for --with programs-…")
+    of_translate = "".join(f" --{name} {value}" for name, value in values.items() if value)
+    if of_translate and features.CONTROLS.keys().isdisjoint(requested):
+        raise UsageError(f"{of_translate.split()[0]} is for --with programs-…")
     pins = read_pins(options.pins) if options.pins else None
+    text = read_config_text(Path(ini))
     try:
-        print_all(install(read_config_text(ini), requested, options.dry_run, pins, numbers))
+        print_all(install(text, requested, options.dry_run, pins, of_translate))
     except Refused as refused:
         for finding in refused.args:
-            text = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"
-            print_error("g12 install", text)
+            said = f"[{finding.kind}] {finding.text}; cure: {finding.cure}"
+            print_error("g12 install", said)
         return FINDING
     return GOOD

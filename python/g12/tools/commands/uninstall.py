@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 uninstall INI``: remove from a machine config exactly what `install` added.
 
-The copy of the package, and lines in the user's own modules and in included files, stay until the
-last INI of a folder that uses them is uninstalled.
+The copy of the package, and lines in included files, stay until the last INI of a folder that uses
+them is uninstalled.
 """
 
 from pathlib import Path
 
 from g12.tools.commands.arguments import GOOD, Parser, one_line
-from g12.tools.install.checking import read_config_text
+from g12.tools.install.config.ini_edit import read_config_text
 from g12.tools.install.installation import uninstall
 from g12.tools.progress import print_all
 

@@ -93,9 +93,10 @@ class Page:
         return number_text(entry.default(self.unit))
 
     def tool(self) -> Tool | None:
-        """Return the line of the tool table of the tool that is typed."""
+        """Return the line of the tool table of the tool that is typed, for 0 of the loaded one."""
         with contextlib.suppress(ValueError):
-            return tools_of(self.ini).get(int(self.texts.get("tool", "")))
+            number = int(self.texts.get("tool", "")) or machine_state(self.ini).tool
+            return tools_of(self.ini).get(number)
         return None
 
     def type(self, name: str, text: str) -> None:

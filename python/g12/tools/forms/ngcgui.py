@@ -1,62 +1,83 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The files of ngcgui and the calls of the forms, from the table."""
+"""The files of ngcgui, from the table."""
 
-from g12.tools.forms.table import MILL, Form
+from g12.tools.forms.table import FEED, MILL, UNITS, Entry, Form
 
 LICENCE = "(SPDX-License-Identifier: GPL-2.0-or-later)\n"
 LENGTHS = {"mm": "mm", "inch": "inches"}
-FEEDS = {"mm": "mm", "inch": "in"}
 CODES = {"mm": 21, "inch": 20}
-DIAMETERS = "  #<diameters> = #<_lathe_diameter_mode>\n"
+OF_START_AND_END = ("tool", "speed", "on", "off", "coolant", "retract", "clear", "spindle")
+LOADED = "#<tool> = [#<tool> + #5400 * [#<tool> EQ 0]]\n"  # 0 is the tool in the spindle
+UNCHECKED = ("code", "event")  # by a cycle: they decide which one is called
 
 
 def file_name(form: Form, unit: str) -> str:
     return f"form_{form.name}_{unit}.ngc"
 
 
-def shown(value: float) -> str:
-    """Return a default as the file has it."""
-    return f"{value:g}"
-
-
 def form_text(form: Form, unit: str) -> str:
     """Return the file of a form of ``unit``, mm or inch."""
     name = file_name(form, unit).removesuffix(".ngc")
     on_mill = form.place == MILL
-    restored = f"G{CODES[unit]} and restores the units" if on_mill else ""
-    restored = restored or f"G{CODES[unit]} G7 and restores the modes"
+    restored = "G{} and restores the units" if on_mill else "G{} G7 and restores the modes"
     entries = "".join(
-        f"  #<{entry.name}> = #{number} (={shown(entry.default(unit))}"
-        f" {entry.words.format(unit=FEEDS[unit])})\n"
+        f"#<{entry.name}> = #{number} (={entry.default(unit):g}"
+        f" {entry.words.format(feed=UNITS[unit][FEED])})\n"
         for number, entry in enumerate(form.entries, 1)
     )
+    kept = "#<imperial> = #<_imperial>\n"
+    if not on_mill:
+        kept += "#<diameters> = #<_lathe_diameter_mode>\n"
+    checks = "".join(map(_check, form.entries))
     return (
         f"{LICENCE}(info: {form.info.format(lengths=LENGTHS[unit])})\n"
-        f"(Form of {form.source}. Sets {restored}.)\n"
-        f"o<{name}> sub\n{entries}  #<imperial> = #<_imperial>\n"
-        f"{'' if on_mill else DIAMETERS}{_indented(_body(form, unit))}o<{name}> endsub\n"
+        f"(Form of ngc/{form.page}.md. Sets {restored.format(CODES[unit])}.)\n"
+        f"o<{name}> sub\n{_indented(entries + kept + LOADED + checks + _body(form, unit))}"
+        f"o<{name}> endsub\n"
+    )
+
+
+def _check(entry: Entry) -> str:
+    """Return the check of an entry that decides which cycle is called, "" for another one."""
+    if entry.name not in UNCHECKED:
+        return ""
+    values = sorted(f"{value:g}" for value, _ in entry.choices)
+    wrong = " AND ".join(f"#<{entry.name}> NE {value}" for value in values)
+    return (
+        f"o<no_{entry.name}> if [{wrong}]\n"
+        f"  (ABORT,form: G must be {' or '.join(values)}, not #<{entry.name}>)\n"
+        f"o<no_{entry.name}> endif\n"
     )
 
 
 def _body(form: Form, unit: str) -> str:
-    """Return the lines after the entries."""
-    omitted = "".join(
-        f"#<{name}> = [#<{name}> - 9999 * [#<{name}> EQ 0]]\n" for name in form.omitted
-    )
+    """Return the lines from the start's call to the end's."""
     if form.place == MILL:
-        start = f"tool speed coolant {form.start}"
-        begin, end = "form_start", f"o<form_end> call [#<{form.end}>] [#<imperial>]\n"
+        height, top = form.heights
+        begin, start = "form_start", f"tool speed coolant x y {height} {top} z"
+        end = f"o<form_end> call {_arguments(height, 'imperial')}\n"
     else:
-        start = "tool speed on coolant retract spindle"
-        begin = "form_face_start"
-        end = "o<form_face_end> call [#<off>] [#<imperial>] [#<diameters>] [#<spindle>]\n"
-    text = form.body.replace("START\n", f"o<{begin}> call [{CODES[unit]}] {_arguments(start)}\n")
-    text = text.replace("OMITTED\n", omitted)
-    return text.replace("ENTRIES", _arguments(form.call)) + end
+        begin, start = "form_face_start", "tool speed on coolant retract spindle"
+        end = f"o<form_face_end> call {_arguments('off', 'imperial', 'diameters', 'spindle')}\n"
+    start = f"o<{begin}> call [{CODES[unit]}] {_arguments(*start.split())}\n"
+    return (form.body or _call(form)).replace("START\n", start) + end
 
 
-def _arguments(names: str) -> str:
-    return " ".join(f"[#<{name}>]" for name in names.split())
+def _call(form: Form) -> str:
+    """Return the start and the call of a form's sub, with its entries in their order."""
+    called = [entry for entry in form.entries if entry.name not in OF_START_AND_END]
+    omitted = "".join(
+        f"#<{entry.name}> = [#<{entry.name}> - 9999 * [#<{entry.name}> EQ 0]]\n"
+        for entry in called
+        if entry.omitted
+    )
+    clear = "G0 X#<clear>\n" if any(entry.name == "clear" for entry in form.entries) else ""
+    entries = _arguments(*(entry.name for entry in called))
+    return f"START\n{clear}{omitted}o<{form.sub}> call {entries}\n"
+
+
+def _arguments(*names: str) -> str:
+    return " ".join(f"[#<{name}>]" for name in names)
 
 
 def _indented(text: str) -> str:

@@ -12,17 +12,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from g12.machine_ini import INCLUDE, key_and_value
 from g12.tools.install import package_copy
-from g12.tools.install.checking import check_config
-from g12.tools.install.config import features, screen
-from g12.tools.install.config.findings import (
-    WARNING,
-    ConfigFinding,
-    refuse,
-    refuse_problems,
-)
+from g12.tools.install.config import features
+from g12.tools.install.config.features import COPY
+from g12.tools.install.config.findings import WARNING, ConfigFinding, refuse, refuse_problems
 from g12.tools.install.config.ini_edit import IniLine, IniText, other_inis
 from g12.tools.install.config.loaded import codes_of, load_config, remaps_in
+from g12.tools.install.config.screen import HERE
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
 from g12.tools.install.plan import InstallPlan, make_plan
 from g12.tools.install.rules import LOADING, STOPPING, findings_of
@@ -39,8 +36,7 @@ from g12.tools.system import COMMAND
 from g12.tools.translate.blocks.control import Control, read_control
 
 PREVENTING = STOPPING | {"no-axis"}  # kinds: another INI must not get these
-HERE = rf"(\./|{screen.HERE}/)?{package_copy.NAME}"
-NAMES_COPY = re.compile(rf"\s*(#INCLUDE\s+|[^\s#;].*[=:\s]){HERE}/")
+NAMES_COPY = re.compile(rf"(?<![^\s:=])(\./|{HERE}/)?{COPY}(?=/)")  # in a line
 
 
 def install(
@@ -48,30 +44,29 @@ def install(
     requested: Sequence[str],
     dry_run: bool,
     pins: Pins | None = None,
-    numbers: str = "",
+    options: str = "",
 ) -> Iterator[str]:
-    copy = text.path.parent / package_copy.NAME
+    copy = text.path.parent / COPY
     if not dry_run:
         package_copy.recover(copy)
     earlier, pins = text.words(), pins or pins_in_ini(text.ini())
     text.take_out()
     names = [name for name in features.FEATURE_NAMES if name in (*earlier, *requested)]
-    for pair in excluding(names):
-        raise refuse("exclusive", f"{pair} exclude each other", "uninstall first")
+    refuse_excluding(names)
     config = load_config(text)
     before = findings_of(config)
     refuse_problems(finding for finding in before if finding.kind in LOADING)
-    plan = make_plan(config, names, pins, numbers or options_in(earlier))
+    plan = make_plan(config, names, pins, options or options_in(earlier))
     for name in filter(None, map(features.CONTROLS.get, requested)):
         yield from question_of(read_control(name), plan.words)
-    changes, is_old = text.changes(), plan.copied and not package_copy.is_current(copy)
-    if not changes and not is_old:
+    changes = text.changes()
+    files = {} if package_copy.is_current(copy) else package_copy.package_files()
+    if not changes and not files:
         yield f"{text.path}: {', '.join(requested)}: installed already, nothing to do"
         return
     warnings = try_out(plan, before)
     for path, content in changes.items():
         yield from difference(path, content)
-    files = package_copy.package_files() if is_old else {}
     if files:
         yield f"{copy}: {'would get ' * dry_run}the package, {len(files)} files"
     for warning in warnings:
@@ -90,9 +85,15 @@ def options_in(words: Sequence[str]) -> str:
     return "".join(f" {word}" for word in words if word not in features.FEATURE_NAMES)
 
 
-def excluding(names: Sequence[str]) -> Iterator[str]:
-    chosen = ([name for name in group if name in names] for group in features.EXCLUSIVE)
-    yield from (" and ".join(group) for group in chosen if len(group) > 1)
+def refuse_excluding(names: Sequence[str]) -> None:
+    """Refuse features of which a machine has one."""
+    for group in features.EXCLUSIVE:
+        chosen = [name for name in group if name in names]
+        if len(chosen) > 1:
+            raise refuse(
+                "exclusive", f"{' and '.join(chosen)} exclude each other", "choose one; a feature "
+                "that is there goes by uninstall"
+            )  # fmt: skip
 
 
 def question_of(control: Control, words: str) -> Iterator[str]:
@@ -134,45 +135,41 @@ def try_out(plan: InstallPlan, before: Sequence[ConfigFinding]) -> list[ConfigFi
     """
     warnings = refuse_problems(
         replace(each, level=WARNING) if each in before or each.kind == "live-spindle" else each
-        for each in trial(plan, plan.text)
+        for each in trial(plan.text)
         if each.kind != "copy"  # which is renewed
     )
     for other in other_inis(plan.text):
         shared = [file.name for file in plan.text.changes() if file in other.files]
+        name, found = other.path.name, trial(other) if shared else []
         refuse_problems(
-            of_other(each, other.path.name, shared[0])
-            for each in (trial(plan, other) if shared else ())
+            replace(
+                each,
+                text=f"{name} includes {shared[0]} too and gets the same lines: {each.text}",
+                cure=f"in {name}: {each.cure}; if no machine uses it, rename it to end in .old",
+            )
+            for each in found
             if each.kind in PREVENTING
         )
     return warnings
 
 
-def of_other(finding: ConfigFinding, ini: str, shared: str) -> ConfigFinding:
-    """Return a finding of another INI with that INI's name and why it matters."""
-    text = f"{ini} includes {shared} too and gets the same lines: {finding.text}"
-    cure = f"in {ini}: {finding.cure}; if no machine uses it, rename it to end in .old"
-    return replace(finding, text=text, cure=cure)
+def trial(text: IniText) -> list[ConfigFinding]:
+    """Return the findings of `check` in an edited INI.
 
-
-def trial(plan: InstallPlan, text: IniText) -> list[ConfigFinding]:
-    """Return the findings of `check` in an INI with the plan applied.
-
-    The copy of the package that may not be there yet is a folder of links.
+    A folder of links is in place of the package's copy, which may not be there yet.
     """
     ini = text.ini()
     with tempfile.TemporaryDirectory(prefix="g", dir="/tmp") as scratch:
-        if plan.copied:
-            for part in ("ngc", "python", "configs"):
-                (Path(scratch) / part).symlink_to(features.ROOT / part)
-            ini = replace(ini, lines=tuple(relocated(ini.lines, scratch)))
-        return check_config(text, ini)[1]
+        for part in ("ngc", "python", "configs"):
+            (Path(scratch) / part).symlink_to(features.ROOT / part)
+        ini = replace(ini, lines=tuple(relocated(ini.lines, scratch)))
+        return findings_of(load_config(text, ini))
 
 
 def relocated(lines: Sequence[str], folder: str) -> Iterator[str]:
     """Yield an INI's lines with another folder instead of the copy's."""
-    copy = re.compile(rf"(?<![^\s:=]){HERE}(?=[/\s:]|$)")
     for line in lines:
-        moved = copy.sub(folder, line)
+        moved = NAMES_COPY.sub(folder, line)
         yield from [line] if moved == line else broken_line(moved)
 
 
@@ -180,11 +177,12 @@ def relocated(lines: Sequence[str], folder: str) -> Iterator[str]:
 
 
 def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
-    copy, blocks = text.path.parent / package_copy.NAME, text.blocks()
+    copy, blocks = text.path.parent / COPY, text.blocks()
     if not dry_run:
         package_copy.recover(copy)
     users = text.take_out(shared_files(text))
-    used = is_used_by_others(text)
+    needing = [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
+    used = any(map(names_copy, other_inis(text)))
     if not blocks and (used or not package_copy.is_copy(copy)):
         yield f"{text.path}: nothing that install put in"
         return
@@ -193,8 +191,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
         yield from difference(path, content)
     for line in users:
         yield f"{line.location}: stays, it is not by install, or you changed it: {line.text}"
-    needing = [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
-    for line in sorted({line.location: line for line in needing}.values()):
+    for line in needing:
         yield f"{line.location}: still needs the package: {line.text.strip()}"
     if dry_run:
         yield "dry run: nothing was written"
@@ -216,15 +213,12 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
 
 def names_copy(text: IniText) -> list[IniLine]:
     """Return the lines of an INI that need the copy, by `install` or by hand."""
-    return [line for line in text.lines() if NAMES_COPY.match(line.text)]
-
-
-def is_used_by_others(text: IniText) -> bool:
-    """Return whether another INI of the folder has the package."""
-    for other in other_inis(text):
-        if other.blocks() or any(line.file not in text.files for line in names_copy(other)):
-            return True
-    return False
+    return [
+        line
+        for line in text.lines()
+        if NAMES_COPY.search(line.text)
+        and (INCLUDE.match(line.text) or key_and_value(line.text)[0])
+    ]
 
 
 def shared_files(text: IniText) -> list[Path]:

@@ -15,7 +15,6 @@ from pathlib import Path
 from g12.tools.install.config.features import ROOT
 from g12.tools.machine.files import free_name, take_owner
 
-NAME = "g12"  # of the folder in the config's folder
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
 PAGE_FILES = (  # the pages that a machinist reads at the machine; they link only to each other
     "ngc/*.md",

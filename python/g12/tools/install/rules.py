@@ -14,21 +14,28 @@ from g12.machine_ini import m_codes_of
 from g12.settings import INI_SECTION, check_section, settings_from_lines
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
-from g12.tools.install.config.filters import filter_findings, installed_programs, shortened
-from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
-from g12.tools.install.config.loaded import MOST_FOLDERS, Config, folder_from_ini, subs_named
-from g12.tools.install.config.screen import screen_findings
+from g12.tools.install.config.features import COPY
+from g12.tools.install.config.findings import ConfigFinding, note, problem
+from g12.tools.install.config.loaded import (
+    MOST_FOLDERS,
+    Config,
+    both_cases,
+    filters_of,
+    folder_from_ini,
+    installed_programs,
+    subs_named,
+)
+from g12.tools.install.lathe.hal import pins_missing, pins_taken
 from g12.tools.install.lathe.kinematics import kinematics_findings
-from g12.tools.install.lathe.pins import pins_missing, pins_taken
 from g12.tools.install.lathe.spindle_c import live_spindle_missing, spindle_c_findings
-from g12.tools.system import COMMAND
+from g12.tools.system import COMMAND, PROGRAM
 
 SHELL_CHARACTERS = re.compile(r"[^\w@%+=:,./~-]")
 MEND = "if it was there once, run install again: it mends the folder g12"
-FORM_FILE = re.compile(r"ngc/form_\w+\.ngc")  # whose M codes a lathe's owner writes into it
+MAX_NAMED = 8  # files are named in a line
 AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that did not start
 # Kinds: what keeps LinuxCNC from loading a config, with its own words for it, and these.
-LOADING = {"no-linuxcnc", "python-fails", "does-not-load"}
+LOADING = {"python-fails", "does-not-load"}
 STOPPING = {*LOADING, "taken", "no-sub", "blank-in-path", "no-python"}
 
 Rule = Callable[[Config], Iterator[ConfigFinding]]
@@ -37,12 +44,6 @@ Rule = Callable[[Config], Iterator[ConfigFinding]]
 
 
 def codes_missing(config: Config) -> Iterator[ConfigFinding]:
-    if not config.version:
-        yield problem(
-            "no-linuxcnc",
-            "there is no LinuxCNC on this computer: nothing could be loaded",
-            "run this on the machine's own computer, with LinuxCNC 2.9 or later",
-        )
     if not config.codes and not installed_programs(config):
         yield problem(
             "no-codes",
@@ -95,15 +96,13 @@ def wrong_subs(config: Config) -> Iterator[ConfigFinding]:
         )
     for folder in sorted({files[0].parent for files in subs.values() if files} - {config.folder}):
         yield from odd_folder(folder)
-    package = config.python.package if config.python else None
-    for name, files in subs.items() if package else ():
-        own = (package.parent.parent / "ngc" / f"{name}.ngc").resolve()
-        if own in [other.resolve() for other in files[1:]]:
+    for first, *others in filter(None, subs.values()):
+        if any(first.read_bytes() != other.read_bytes() for other in others):
             yield problem(
                 "shadowed",
-                f"{files[0]} is found before the package's {name}.ngc",
-                "rename or remove that file (LinuxCNC looks in the INI's folder, then "
-                "PROGRAM_PREFIX, then SUBROUTINE_PATH)",
+                f"{first} is found before {others[0]}",
+                "rename or remove the one that is not the package's (LinuxCNC looks in the INI's "
+                "folder, then PROGRAM_PREFIX, then SUBROUTINE_PATH)",
             )
 
 
@@ -120,7 +119,8 @@ def odd_folder(folder: Path) -> Iterator[ConfigFinding]:
 
 def calls_abort_sub(config: Config) -> bool:
     """Return whether LinuxCNC calls the package after an abort."""
-    return features.is_abort_call(config.ini.get("RS274NGC", features.ON_ABORT) or "")
+    command, own = config.ini.get("RS274NGC", features.ON_ABORT) or "", features.CALLS_ABORT_SUB
+    return "".join(command.lower().split()) == "".join(own.lower().split())
 
 
 def abort_not_handled(config: Config) -> Iterator[ConfigFinding]:
@@ -167,25 +167,18 @@ def python_not_loaded(config: Config) -> Iterator[ConfigFinding]:
 
 
 def handlers_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find handlers that are missing, or hidden: LinuxCNC starts, and the code fails when used."""
-    python = config.python
-    if not config.codes or not python or any(python_not_loaded(config)):
+    """Find handlers that are not there: LinuxCNC starts, and the code fails when used."""
+    if not config.codes or not config.python or any(python_not_loaded(config)):
         return
     needed = {name for code in config.codes for name in code.remap.handlers}
-    needed |= {features.ABORT_SUB} if calls_abort_sub(config) else set()
-    missing = sorted(needed - set(python.remap))
+    missing = config.python.lacks([*needed, *[features.ABORT_SUB] * calls_abort_sub(config)])
     if missing:
         yield problem(
             "no-import",
-            f"remap, where LinuxCNC looks for handlers, has no {', '.join(missing)}",
+            f"remap, where LinuxCNC looks for handlers, has no {', '.join(missing)} of the package",
             f"have [PYTHON] TOPLEVEL = …/python/toplevel.py, [{INI_SECTION}] TOPLEVEL = "
-            f"{config.ini.get('PYTHON', 'TOPLEVEL')} and [PYTHON] PATH_APPEND = …/python",
-        )
-    for name in sorted(needed & set(python.users)):
-        yield problem(
-            "hidden",
-            f"your own function {name} (module {python.users[name]}) hides the package's",
-            "give your function another name",
+            f"{config.ini.get('PYTHON', 'TOPLEVEL')} and [PYTHON] PATH_APPEND = …/python, and no "
+            "function of yours under such a name",
         )
 
 
@@ -228,35 +221,35 @@ def needs(config: Config) -> Iterator[ConfigFinding]:
         )
 
 
-def tools(config: Config) -> Iterator[ConfigFinding]:
-    """Find a mill without any diameter in its tool table."""
-    table, database = (config.ini.get("EMCIO", key) for key in ("TOOL_TABLE", "DB_PROGRAM"))
-    mill = config.features.keys() - set(features.ON_LATHE)
-    diameters = {0: 1.0} if config.diameters is None or database else config.diameters
-    if mill and not any(diameters.values()):
-        yield warning(
-            "no-diameters",
-            f"[EMCIO] TOOL_TABLE = {table}: no tool has a diameter: a pocket with D would come out "
-            "too large",
-            f"enter the cutters' diameters (D); the table's name is relative to {config.folder}",
-        )
+def filter_findings(config: Config) -> Iterator[ConfigFinding]:
+    """Find a filter that cannot work."""
+    for suffix, command, program, _ in filters_of(config):
+        file = folder_from_ini(config.ini, program)
+        if not file.exists():
+            yield problem(
+                "filter",
+                f"[FILTER] {suffix}: {file} is not there: no .{suffix} program opens",
+                f"write {PROGRAM} in its place, or take the line out",
+            )
+        for other in both_cases(suffix):
+            if config.ini.get("FILTER", other) != command:
+                yield problem(
+                    "filter",
+                    f"[FILTER] {suffix} is not for .{other} files: LinuxCNC opens PART.{other} "
+                    "another way, or as it is, without a word",
+                    f"have in [FILTER]: {other} = {command}, and .{other} in PROGRAM_EXTENSION",
+                )
 
 
 def changed_copy(config: Config) -> Iterator[ConfigFinding]:
-    copy = config.folder / package_copy.NAME
-    if not (config.codes or installed_programs(config)):
-        return
-    missing = package_copy.missing(copy)
+    copy = config.folder / COPY
+    missing, edited = package_copy.missing(copy), package_copy.edited(copy)
     if missing:
-        yield problem("copy", f"{copy}: missing: {shortened(missing)}", MEND)
-    for name in package_copy.edited(copy):
-        report = note if FORM_FILE.fullmatch(name) else warning
-        yield report(
-            "copy",
-            f"{copy / name}: was changed after it was installed",
-            "leave it, if you changed it on purpose: install keeps it; if not, delete this file "
-            "and run install again",
-        )
+        more = f" and {len(missing) - MAX_NAMED} more" * (len(missing) > MAX_NAMED)
+        yield problem("copy", f"{copy}: missing: {', '.join(missing[:MAX_NAMED])}{more}", MEND)
+    for name in edited:
+        cure = "nothing if you did; install keeps it. Else delete this file and run install again"
+        yield note("copy", f"{copy / name}: was changed after it was installed", cure)
 
 
 CONFIG_RULES: tuple[Rule, ...] = (
@@ -269,10 +262,8 @@ CONFIG_RULES: tuple[Rule, ...] = (
     handlers_missing,
     wrong_values,
     needs,
-    tools,
     filter_findings,
     changed_copy,
-    screen_findings,
     kinematics_findings,
     spindle_c_findings,
     live_spindle_missing,
@@ -285,18 +276,8 @@ def findings_of(config: Config) -> list[ConfigFinding]:
     """Return all findings; a failure without one is reported in LinuxCNC's own words."""
     found = [finding for rule in CONFIG_RULES for finding in rule(config)]
     if config.failure and not any(finding.kind in STOPPING for finding in found):
-        found.append(
-            problem(
-                "does-not-load",
-                f"LinuxCNC does not load this config: {last_words(config.failure)}",
-                "correct the config until LinuxCNC starts",
-            )
-        )
+        lines = [line.strip() for line in config.failure.splitlines() if line.strip()]
+        errors = [line for line in lines if not line.startswith(AFTERMATH)] or lines
+        text = f"LinuxCNC does not load this config: {'; '.join(errors[-2:])}"
+        found.append(problem("does-not-load", text, "correct the config until LinuxCNC starts"))
     return found
-
-
-def last_words(failure: str) -> str:
-    """Return the interpreter's last error in one line."""
-    lines = [line.strip() for line in failure.splitlines() if line.strip()]
-    errors = [line for line in lines if not line.startswith(AFTERMATH)] or lines
-    return "; ".join(errors[-2:])

@@ -4,9 +4,8 @@
 LinuxCNC runs bytes that are no UTF-8, in comments, but its preview and its messages are UTF-8: such
 a program is read with a ``?`` for each of these bytes.
 
-Line numbers are those of the user's file. `translate` marks its lines, ``(line 12)``; the lines of
-any other filter are found by comparing both texts. Where that fails, the numbers are those of the
-filter's output, with a note.
+Line numbers are those of the user's file where the filter marks its lines, ``(line 12)``, as
+`translate` does; else those of the filter's output, with a note.
 """
 
 import os
@@ -19,7 +18,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from g12.tools.errors import ProgramError
-from g12.tools.machine.aligned_lines import aligned_lines
 from g12.tools.machine.files import as_utf8, utf8_text
 from g12.tools.machine.ini import Ini
 
@@ -118,7 +116,7 @@ def opened_program(program: Path, ini: Ini) -> Iterator[OpenedProgram]:
         path = Path(folder, utf8_text(program.name))
         path.write_bytes(content)
         rows = content.splitlines()
-        lines = lines_of_source(source.splitlines(), rows) if command else range(1, len(rows) + 1)
+        lines = lines_of_source(rows) if command else range(1, len(rows) + 1)
         opened = OpenedProgram(program, path, tuple(lines), other_case)
         try:
             yield opened
@@ -150,11 +148,11 @@ def filter_error(text: str, command: str, program: Path) -> str:
     return said.replace(str(program.absolute()), str(program))
 
 
-def lines_of_source(source: Sequence[bytes], written: Sequence[bytes]) -> tuple[int, ...]:
-    """Return the line of the user's file for each line a filter has written, () if not known."""
+def lines_of_source(written: Sequence[bytes]) -> tuple[int, ...]:
+    """Return the line of the user's file for each line a filter has written, () without marks."""
     marks = [MARK.search(row) for row in written]
     if not any(marks):
-        return aligned_lines(source, written) or ()
+        return ()
     found: list[int] = []
     own = 0
     for mark in marks:

@@ -10,6 +10,7 @@ from g12.tools.translate.blocks.control import read_control, shipped_controls
 
 ROOT = Path(__file__).resolve().parents[5]  # the folder that holds ngc, python and configs
 INCLUDES = ROOT / "configs" / "include"
+COPY = "g12"  # the folder beside the INI that gets the package
 
 
 class Feature(NamedTuple):
@@ -27,6 +28,7 @@ SPINDLE_AS_C, KINEMATICS = "spindle-c", "polar-kinematics"
 FORMS, CYCLES_PAGE = "forms", "cycles-page"
 POLAR_FEATURES = ("polar", "polar-g12.3")
 SECTION_SUBS = ("g12_skipped_over",)
+NOTHING = "does nothing, and is no error"
 HOLES = ("face_holes", "side_holes", "face_hole_at", "g12_holes")
 FEATURES = {
     "haas": Feature("G12/G13 circular pocket, Haas words", "g12_haas.inc"),
@@ -39,11 +41,11 @@ FEATURES = {
     "frame": Feature("G12.7/G13.7 frame: a rectangle as pocket or wall", "frame.inc",
                      subs=("g12_frame_ring",)),
     "polar": Feature("G12.1/G13.1 polar coordinate interpolation on and off", "polar.inc", "XC",
-                     subs=SECTION_SUBS),
+                     SECTION_SUBS, f"G13.1 {NOTHING}"),
     "polar-g12.3": Feature("G12.3/G13.3 polar coordinate interpolation on and off",
-                           "polar_g12_3.inc", "XC", subs=SECTION_SUBS),
+                           "polar_g12_3.inc", "XC", SECTION_SUBS, f"G13.3 {NOTHING}"),
     "cylinder": Feature("G7.1 (G07.1) cylindrical interpolation on and off", "cylinder.inc", "XZC",
-                        subs=SECTION_SUBS),
+                        SECTION_SUBS, f"G7.1 C0 (on a mill A0 or B0) {NOTHING}"),
     POLAR_SHAPES: Feature(
         "o<polar_polygon> and other shapes, o<face_holes> and other holes, by G12.4/G13.4",
         "polar_shapes.inc", "XC",
@@ -91,25 +93,17 @@ def remaps_of(feature: str) -> tuple[Remap, ...]:
     return tuple(remap_from_value(value) for _, key, value in entries if key == "REMAP")
 
 
-def model_of(remap: Remap) -> tuple[str, Remap] | None:
-    """Return the feature of a machine's REMAP line, and the package's own line."""
-    models = [(feature, model) for feature in CODES for model in remaps_of(feature)]
-
-    def likeness(candidate: tuple[str, Remap]) -> tuple[int, bool]:
-        _, model = candidate
-        return len(own_names(model) & own_names(remap)), model.number == remap.number
-
-    best = max(models, key=likeness)
-    return best if likeness(best)[0] else None
+def feature_of(remap: Remap) -> str | None:
+    """Return the feature of a machine's REMAP line, whatever its code; None if it is no one's."""
+    own = own_names(remap)
+    models = [(model, feature) for feature in CODES for model in remaps_of(feature)]
+    alike = [(model, feature) for model, feature in models if own & own_names(model)]
+    same_code = [feature for model, feature in alike if model.number == remap.number]
+    return next(iter([*same_code, *(feature for _, feature in alike)]), None)
 
 
 def functions_of(feature: str) -> list[str]:
     return list(dict.fromkeys(name for remap in remaps_of(feature) for name in remap.handlers))
-
-
-def is_abort_call(command: str) -> bool:
-    """Return whether LinuxCNC calls the package after an abort."""
-    return "".join(command.lower().split()) == "".join(CALLS_ABORT_SUB.lower().split())
 
 
 def first_step(feature: str) -> str:
@@ -117,13 +111,8 @@ def first_step(feature: str) -> str:
     if feature in CONTROLS:
         control = read_control(CONTROLS[feature])
         return f"open a .{control.extensions[0]} program of {control.name}"
-    if FEATURES[feature].first_step:
-        return FEATURES[feature].first_step
-    codes = [remap.code for remap in remaps_of(feature)]
-    if feature in (*POLAR_FEATURES, "cylinder"):
-        block = codes[1] if feature in POLAR_FEATURES else f"{codes[0]} C0 (on a mill A0 or B0)"
-        return f"{block:6} does nothing, and is no error"
-    return f"{codes[0]:6} is refused, a word is missing: it works"
+    missing_word = "is refused, a word is missing: it works"
+    return FEATURES[feature].first_step or f"{remaps_of(feature)[0].code} {missing_word}"
 
 
 def axes_needed(feature: str, axes: str) -> str:

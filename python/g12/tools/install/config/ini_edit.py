@@ -14,9 +14,11 @@ from typing import NamedTuple
 
 from g12.errors import LONGEST_BLOCK
 from g12.machine_ini import entries_of, included_file, key_and_value, section_extent
+from g12.tools.errors import UsageError
+from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, IniError, as_included, broken_line
 
-BEGIN_MARK, END_MARK = "# >>> g12 install", "# <<< g12 install"
+BEGIN_MARK, END_MARK = MARKS = "# >>> g12 install", "# <<< g12 install"
 WAS = "# was: "  # before the user's line that one of ours replaces
 LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
@@ -186,24 +188,19 @@ class IniText:
 
     def blocks(self) -> list[list[IniLine]]:
         """Return the blocks, markers included, of the INI and its included files."""
-        blocks: list[list[IniLine]] = []
-        inside = False
-        for line in self.lines():
-            begins, ends = map(line.text.startswith, (BEGIN_MARK, END_MARK))
-            if (begins and inside) or (ends and not inside):
-                raise unpaired(line)
-            if begins:
-                blocks.append([])
-            if begins or inside:
-                blocks[-1].append(line)
-            if ends and line.text == END_MARK:
+        lines = self.lines()
+        marks = [row for row, line in enumerate(lines) if line.text.startswith(MARKS)]
+        pairs = zip(marks[::2], [*marks[1::2], *marks[-1:]])
+        blocks = [lines[first : last + 1] for first, last in pairs]
+        for first, last in ((block[0], block[-1]) for block in blocks):
+            if not first.text.startswith(BEGIN_MARK) or not last.text.startswith(END_MARK):
+                cure = "put it back, or take out what install wrote there"
+                text = f"a marker of install without its other one: {cure}"
+                raise IniError(f"{first.location}: {text}")
+            if last.text == END_MARK:
                 cure = f"by itself first: python3 g12/python/g12 uninstall {self.path}"
-                raise IniError(
-                    f"{line.location}: an earlier version wrote this: take it out {cure}"
-                )
-            inside = (inside or begins) and not ends
-        if inside:
-            raise unpaired(blocks[-1][0])
+                text = f"an earlier version wrote this: take it out {cure}"
+                raise IniError(f"{last.location}: {text}")
         return blocks
 
     def words(self) -> list[str]:
@@ -246,9 +243,15 @@ class IniText:
         self.files[file] = kept
 
 
-def unpaired(line: IniLine) -> IniError:
-    cure = "put it back, or take out what install wrote there"
-    return IniError(f"{line.location}: a marker of install without its other one: {cure}")
+def read_config_text(ini: Path) -> IniText:
+    """Return the INI of a machine; refuse a file that is none."""
+    existing(ini)
+    if ini.suffix == ".expanded":
+        raise UsageError(f"{ini}: LinuxCNC makes this file anew at every start; name {ini.stem}")
+    text = IniText(ini)
+    if not text.section("RS274NGC"):
+        raise UsageError(f"{ini}: no [RS274NGC] section: this is no machine's INI file")
+    return text
 
 
 def other_inis(text: IniText) -> Iterator[IniText]:

@@ -1,66 +1,32 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The package on a machine's screen: ngcgui's forms, the Cycles page, a lathe's face; the checks.
+"""The package on a machine's screen: ngcgui's forms, the Cycles page, a lathe's face, GEOMETRY.
 
 A page is a file of GladeVCP. It is a tab where the screen has a place for tabs, else a window of
 its own. Some screens show the same by a key of their own. AXIS loads ngcgui as a Tcl package, some
 screens of QtVCP contain one, GladeVCP makes one from `forms.ui`.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from g12.lengths import is_inch
 from g12.tools.forms.table import FORMS
-from g12.tools.install.config.features import INCLUDES, ON_LATHE, ROOT, rotary_of_mill
-from g12.tools.install.config.findings import ConfigFinding, note, problem, warning
-from g12.tools.install.config.loaded import Config, folder_from_ini, subs_named
-
-
-class Page(NamedTuple):
-    """A page: the name of its tab, GladeVCP's file, and the Python file that handles it."""
-
-    name: str
-    file: str
-    handler: str = ""
-
-    def command(self, prefix: str) -> str:
-        """Return what follows GladeVCP's own options; ``prefix`` is the package's folder."""
-        handler = f"-u {prefix}/{self.handler} " if self.handler else ""
-        return f"{handler}{prefix}/{self.file}"
-
-
-class OwnKey(NamedTuple):
-    """A key of [DISPLAY] by which one screen shows a page, and the package's value.
-
-    Where the user's own file has ``mark`` in it, or the user's own folder, the page is shown too.
-    """
-
-    key: str
-    value: str
-    mark: str
-    cure: str
-
+from g12.tools.install.config.features import COPY, INCLUDES, ROOT, rotary_of_mill
+from g12.tools.install.config.findings import refuse
+from g12.tools.install.config.loaded import Config, folder_from_ini
 
 Lines = dict[str, list[str]]  # to write, by their sections
-INCLUDE = INCLUDES.relative_to(ROOT).as_posix()
-NGCGUI_PAGE = Page("Forms", f"{INCLUDE}/forms.ui")
-CYCLES = Page("Cycles", f"{INCLUDE}/cycles.ui", "python/g12/tools/cycles_page/gtk_view.py")
-FACE = Page("Face", f"{INCLUDE}/face_view.ui")
+INCLUDE = f"{COPY}/{INCLUDES.relative_to(ROOT).as_posix()}"
+NGCGUI_PAGE, CYCLES, FACE = "Forms", "Cycles", "Face"  # the pages, as their tabs are called
+GLADE = {  # a page: what follows GladeVCP's own options
+    NGCGUI_PAGE: f"{INCLUDE}/forms.ui",
+    CYCLES: f"-u {COPY}/python/g12/tools/cycles_page/gtk_view.py {INCLUDE}/cycles.ui",
+    FACE: f"{INCLUDE}/face_view.ui",
+}
 AXIS, QTVCP, PROBE_BASIC = "axis", "qtvcp", "probe_basic"
-OWN_KEYS = {
-    (AXIS, FACE): OwnKey(
-        "USER_COMMAND_FILE",
-        f"{INCLUDE}/axis_face.py",
-        "axis_face.py",
-        f'add exec(open("g12/{INCLUDE}/axis_face.py").read()) to that file',
-    ),
-    (PROBE_BASIC, CYCLES): OwnKey(
-        "USER_TABS_PATH",
-        f"{INCLUDE}/probe_basic/",
-        "cycles",
-        f"link g12/{INCLUDE}/probe_basic/cycles into that folder",
-    ),
+OWN_KEYS = {  # a screen and a page that it shows by a key of [DISPLAY]: the key, its value
+    (AXIS, FACE): ("USER_COMMAND_FILE", f"{INCLUDE}/axis_face.py"),
+    (PROBE_BASIC, CYCLES): ("USER_TABS_PATH", f"{INCLUDE}/probe_basic/"),
 }
 TAB_LOCATIONS = {  # start of a screen's name: its widget for tabs, "" if it has one place for them
     AXIS: "",
@@ -70,7 +36,6 @@ TAB_LOCATIONS = {  # start of a screen's name: its widget for tabs, "" if it has
     "woodpecker": "tabWidget_utilities",
     "qtaxis": "rightTab",
 }
-WITH_PREVIEW = (AXIS, "gmoccapy", "gscreen", QTVCP, "touchy")
 FACE_SCREENS = (AXIS, "gmoccapy", "touchy")  # they show a lathe's XZ plane alone
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
 QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
@@ -106,21 +71,17 @@ def glade_files(config: Config) -> list[str]:
     return [word for command in commands for word in command.split() if word.endswith(".ui")]
 
 
-# A page.
-
-
-def page_lines(config: Config, page: Page, prefix: str) -> Lines:
+def page_lines(config: Config, page: str) -> Lines:
     """Return the lines that show a page; none where the user has them or others."""
-    own = OWN_KEYS.get((screen_of(config), page))
-    if own:
-        present = config.ini.get("DISPLAY", own.key)
-        return {} if present else {"DISPLAY": [f"{own.key} = {prefix}/{own.value}"]}
-    if Path(page.file).name in (Path(name).name for name in glade_files(config)):
+    key, value = OWN_KEYS.get((screen_of(config), page), ("", ""))
+    if key:
+        return {} if config.ini.get("DISPLAY", key) else {"DISPLAY": [f"{key} = {value}"]}
+    if Path(GLADE[page]).name in (Path(name).name for name in glade_files(config)):
         return {}
-    return tab_or_window(config, page, prefix)
+    return tab_or_window(config, page)
 
 
-def tab_or_window(config: Config, page: Page, prefix: str) -> Lines:
+def tab_or_window(config: Config, page: str) -> Lines:
     """Return the lines of a page's tab, or of its window where the screen has no tabs.
 
     Screens pair names and locations by number: if a tab of the user has none, this one has none.
@@ -132,28 +93,20 @@ def tab_or_window(config: Config, page: Page, prefix: str) -> Lines:
                         for key in ("LOCATION", "NAME"))  # fmt: skip
     paired = len(locations) == len(names)
     if location is None or (is_qtvcp and (page == NGCGUI_PAGE or not paired)):
-        window = f"loadusr gladevcp -c {page.name.lower()} {page.command(prefix)}"
-        return {"HAL": [f"HALCMD = {window}"]}
+        return {"HAL": [f"HALCMD = loadusr gladevcp -c {page.lower()} {GLADE[page]}"]}
     place = [f"EMBED_TAB_LOCATION = {location}"] if location and paired else []
-    command = f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} {page.command(prefix)}"
-    return {"DISPLAY": [f"EMBED_TAB_NAME = {page.name}", *place, command]}
+    command = f"EMBED_TAB_COMMAND = gladevcp -x {{XID}} {GLADE[page]}"
+    return {"DISPLAY": [f"EMBED_TAB_NAME = {page}", *place, command]}
 
 
-def key_taken(config: Config, page: Page) -> Iterator[ConfigFinding]:
-    """Report the user's own file or folder, which takes the key that would show a page."""
-    own = OWN_KEYS.get((screen_of(config), page))
-    value = config.ini.get("DISPLAY", own.key) if own else None
-    if not own or not value or value.endswith(own.value):
-        return
-    place = folder_from_ini(config.ini, value)
-    within = (place / own.mark).exists()
-    if not within and not (place.is_file() and own.mark.encode() in place.read_bytes()):
-        yield note(
-            "screen",
-            f"[DISPLAY] {own.key} = {value} is yours and stays: the screen does not show "
-            f"{page.name}",
-            own.cure,
-        )
+def cycles_lines(config: Config) -> Lines:
+    """Return the lines that show the Cycles page; refuse where the user's folder takes its key."""
+    key, value = OWN_KEYS.get((screen_of(config), CYCLES), ("", ""))
+    users = config.ini.get("DISPLAY", key) if key else None
+    if users not in (None, value) and not (folder_from_ini(config.ini, users) / "cycles").exists():
+        text = f"[DISPLAY] {key} = {users} is yours and stays: the screen does not show {CYCLES}"
+        raise refuse("cycles-page", text, f"link {value}cycles into that folder")
+    return page_lines(config, CYCLES)
 
 
 # The forms of ngcgui.
@@ -166,13 +119,15 @@ def form_files(config: Config, features: Iterable[str]) -> list[str]:
     return [f"form_{form.name}_{unit}.ngc" for form in forms]
 
 
-def form_lines(config: Config, features: Sequence[str], prefix: str) -> Lines:
+def form_lines(config: Config, features: Sequence[str]) -> Lines:
     """Return the missing lines that show the features' forms."""
     present = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
-    lines, folder = ngcgui_lines(config, prefix), ""
-    path = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
-    if has_own_ngcgui(config) and path not in (None, f"{prefix}/ngc"):  # QtVCP searches that alone
-        folder = f"{HERE / Path(prefix)}/ngc/"
+    path, subs, folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH"), f"{COPY}/ngc", ""
+    if has_own_ngcgui(config):  # it searches that path alone
+        lines = {} if path else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {subs}"]}
+        folder = "" if path in (None, subs) else f"{HERE}/{subs}/"
+    else:
+        lines = ngcgui_lines(config)
     pages = [f"NGCGUI_SUBFILE = {folder}{name}" for name in form_files(config, features)
              if name not in present]  # fmt: skip
     return {**lines, "DISPLAY": [*lines.get("DISPLAY", []), *pages]}
@@ -180,77 +135,33 @@ def form_lines(config: Config, features: Sequence[str], prefix: str) -> Lines:
 
 def has_own_ngcgui(config: Config) -> bool:
     """Return whether a screen is one of QtVCP that contains ngcgui."""
-    names = words_of(config)[1:]
-    return screen_of(config) == QTVCP and any(map(is_with_ngcgui, names))
+    return screen_of(config) == QTVCP and any(
+        name.startswith(QTVCP_WITH_NGCGUI) for name in words_of(config)[1:]
+    )
 
 
-def is_with_ngcgui(name: str) -> bool:
-    return name.startswith(QTVCP_WITH_NGCGUI)
-
-
-def ngcgui_lines(config: Config, prefix: str) -> Lines:
+def ngcgui_lines(config: Config) -> Lines:
     """Return the lines that make a screen show ngcgui; none where it does already."""
     if screen_of(config) == AXIS:
         packages = [value.split()[:1] for value in config.ini.all("DISPLAY", "TKPKG")]
         return {} if [NGCGUI] in packages else {"DISPLAY": [f"TKPKG = {NGCGUI} 1.0"]}
-    if has_own_ngcgui(config):
-        present = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH")
-        return {} if present else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {prefix}/ngc"]}
     files = [folder_from_ini(config.ini, name) for name in glade_files(config)]
     if any(file.is_file() and b"PyNgcGui" in file.read_bytes() for file in files):
         return {}
-    return page_lines(config, NGCGUI_PAGE, prefix)
+    return page_lines(config, NGCGUI_PAGE)
 
 
-def forms_shown(config: Config) -> list[str]:
-    """Return the package's forms that a config names, without ``.ngc``."""
-    names = (Path(value).name for value in config.ini.all("DISPLAY", "NGCGUI_SUBFILE"))
-    return [name.removesuffix(".ngc") for name in names if name.startswith("form_")]
+# The picture of the part.
 
 
-# Checks.
+def geometries(config: Config, features: Sequence[str], on_face: bool) -> list[str]:
+    """Return the GEOMETRY that rotates the part, C before the slides; of A and B one for each.
 
-
-def screen_findings(config: Config) -> Iterator[ConfigFinding]:
-    if "C" in config.ini.axes and not config.features.keys().isdisjoint(ON_LATHE):
-        yield from key_taken(config, FACE) if is_for_face(config) else ()
-        yield from part_not_turned(config)
-    shown = forms_shown(config)
-    for form in (form for form in shown if not subs_named(config.ini, form)):
-        yield problem(
-            "form",
-            f"[DISPLAY] NGCGUI_SUBFILE = {form}.ngc is in none of the folders of SUBROUTINE_PATH",
-            "add the package's folder ngc to SUBROUTINE_PATH, or correct the name",
-        )
-    for section, lines in ngcgui_lines(config, "g12").items() if shown else ():
-        yield problem(
-            "form",
-            f"{screen_of(config)} shows no forms: nothing makes it show ngcgui",
-            f"have: [{section}] {', '.join(lines)}",
-        )
-
-
-def geometry_for(axes: str) -> str:
-    """Return the GEOMETRY of a lathe's axes: C, which rotates the part, before the slides."""
-    return f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"
-
-
-def geometries_of_mill(config: Config) -> list[str]:
-    """Return the GEOMETRY for each axis that turns a mill's part; screens draw B the wrong way."""
+    ``on_face``: the kinematics add Y to the axes. Screens draw B the wrong way.
+    """
+    axes = "XYZC" if on_face else config.ini.axes
+    if on_face or ("C" in axes and "Y" not in axes):
+        return [f"C{''.join(axis for axis in 'XYZ' if axis in axes)}!"]
     is_reversed = config.ini.settings.rotary_sense == "reversed"
-    return [
-        f"{'-' * ((turn == 'B') != is_reversed)}{turn}XYZ!"
-        for turn in rotary_of_mill(config.ini.axes)
-    ]
-
-
-def part_not_turned(config: Config) -> Iterator[ConfigFinding]:
-    found = config.ini.get("DISPLAY", "GEOMETRY") or ""
-    turns_first = 0 <= found.upper().find("C") < found.upper().find("X")
-    if screen_of(config) in WITH_PREVIEW and not turns_first:
-        yield warning(
-            "geometry",
-            f"[DISPLAY] GEOMETRY {f'= {found}' if found else 'is missing'}: the screen draws a "
-            "section as a line to and fro along X",
-            f"have: GEOMETRY = {geometry_for(config.ini.axes)}",
-        )
+    turning = rotary_of_mill(axes) if "cylinder" in features else ""
+    return [f"{'-' * ((turn == 'B') != is_reversed)}{turn}XYZ!" for turn in turning]

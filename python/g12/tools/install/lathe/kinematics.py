@@ -19,7 +19,7 @@ from g12.machine_ini import (
     face_of,
     leading_number,
 )
-from g12.tools.install.config.features import POLAR_FEATURES
+from g12.tools.install.config.features import COPY, POLAR_FEATURES
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
 from g12.tools.install.lathe.hal import (
@@ -117,11 +117,11 @@ def limits(config: Config) -> dict[str, str]:
     return {key: f"{value:.10g}" for key, value in values}
 
 
-def added(config: Config, prefix: str) -> dict[str, list[str]]:
-    """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
+def added(config: Config) -> dict[str, list[str]]:
+    """Return the lines that each section gets."""
     files = [GUARD_HAL, *([OFFSET_HAL] if config.ini.tool_beside else [])]
     return {
-        "HAL": [f"HALFILE = {prefix}/{file}" for file in files],
+        "HAL": [f"HALFILE = {COPY}/{file}" for file in files],
         "G12": ["POLAR_KINEMATICS = 1"],
         "AXIS_Y": [f"{key} = {value}" for key, value in limits(config).items()],
     }

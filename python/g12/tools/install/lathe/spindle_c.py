@@ -9,24 +9,24 @@ import re
 import tomllib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from g12.machine_ini import LONGEST_SPINDLE_C, SPINDLE_C_SECONDS, face_joints, leading_number
 from g12.settings import INI_SECTION, LIVE_SPINDLE
 from g12.tools.errors import UsageError
-from g12.tools.install.config.features import KINEMATICS, ROOT
+from g12.tools.install.config.features import COPY, KINEMATICS, ROOT
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config
 from g12.tools.install.lathe.hal import (
     HalLine,
     all_hal,
     hal_lines,
+    modules_of,
     names,
     signals,
     substituted,
 )
 from g12.tools.install.lathe.kinematics import GUARD_HAL, joints
-from g12.tools.install.lathe.pins import modules_of
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.tables import MAX_MEASURE
@@ -90,24 +90,24 @@ class Pins(NamedTuple):
 
 def read_pins(path: Path) -> Pins:
     """Return the data of a file of pins; refuse unknown and missing entries."""
+    existing(path)
     try:
-        entries = tomllib.loads(existing(path).read_text(encoding="utf-8"))
+        entries = tomllib.loads(path.read_text(encoding="utf-8"))
     except (ValueError, RecursionError) as error:
         raise UsageError(f"{path}: {error}") from None
-    known: dict[str, Any] = dict.fromkeys(DRIVE, str)
-    known |= {key.lower(): (int, float) for key in NUMBERS}
+    known = [*DRIVE, *map(str.lower, NUMBERS)]
+    faults = [f"{key}: missing" for key in REQUIRED_PINS if key not in entries]
     for key, value in entries.items():
         if key not in known:
-            raise UsageError(f"{path}: {key} is none of {', '.join(known)}")
-        if not isinstance(value, known[key]) or isinstance(value, bool):
-            kind = "the name of a pin" if key in DRIVE else "a number"
-            raise UsageError(f"{path}: {key} is {kind}, not {value!r:.40}")
-        fault = wrong_number(key.upper(), value) if key not in DRIVE else ""
-        if fault:
-            raise UsageError(f"{path}: {key} = {value!s:.40}: {fault}")
-    missing = [key for key in REQUIRED_PINS if key not in entries]
-    if missing:
-        raise UsageError(f"{path}: {', '.join(missing)}: missing")
+            faults.append(f"{key} is none of {', '.join(known)}")
+        elif key not in DRIVE:
+            is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+            fault = wrong_number(key.upper(), value if is_number else None)
+            faults += [f"{key} = {value!r:.40}: {fault}"] if fault else []
+        elif not isinstance(value, str):
+            faults.append(f"{key} is the name of a pin, not {value!r:.40}")
+    if faults:
+        raise UsageError(f"{path}: {'; '.join(faults)}")
     numbers = {key: entries.get(key.lower(), default) for key, default in NUMBERS.items()}
     return Pins({key: entries[key] for key in DRIVE if key in entries}, numbers)
 
@@ -181,21 +181,20 @@ def lines_of_c(config: Config) -> str:
     C comes after the other joints, whose numbers stay. A section that is there already is the
     owner's: LinuxCNC reads the first of two.
     """
-    letters, ini = joints(config), config.ini
+    letters = joints(config)
     if not letters or "C" in letters:
         return f"make C a joint of its own, as the steps in {SPINDLE_C_PAGE} say"
-    named = f"coordinates={letters}C"
-    kinematics = re.sub(r"coordinates=\w+", named, ini.get("KINS", "KINEMATICS"))
-    changed = [
-        f"[KINS] KINEMATICS = {kinematics}",
-        f"[KINS] JOINTS = {len(letters) + 1}",
-        f"[TRAJ] COORDINATES = {' '.join(f'{letters}C')}",
-    ]
+    present = config.ini.get("KINS", "KINEMATICS")
+    kinematics = re.sub(r"coordinates=\w+", f"coordinates={letters}C", present)
     text = JOINT_INC.read_text(encoding="utf-8").replace("JOINT_2", f"JOINT_{len(letters)}")
-    blocks = text.strip().split("\n\n")  # the first with a remark
-    new = [block[block.index("[") :] for block in blocks]
-    new = [f"\n{block}" for block in new if not config.text.headers(block[1 : block.index("]")])]
-    return "\n".join((f"change these lines ({SPINDLE_C_PAGE}):", *changed, *new))
+    blocks = (block[block.index("[") :] for block in text.strip().split("\n\n"))
+    missing = [block for block in blocks if not config.text.headers(block[1 : block.index("]")])]
+    return (
+        f"change these lines ({SPINDLE_C_PAGE}):\n"
+        f"[KINS] KINEMATICS = {kinematics}\n[KINS] JOINTS = {len(letters) + 1}\n"
+        f"[TRAJ] COORDINATES = {' '.join(f'{letters}C')}\n"
+        + "".join(f"\n{each}\n" for each in missing)
+    ).rstrip()
 
 
 def signals_wanted(config: Config, kinematics: bool) -> dict[str, str]:
@@ -209,10 +208,8 @@ def signals_wanted(config: Config, kinematics: bool) -> dict[str, str]:
     return {key: found.get(pin.format(joint=joint), own) for key, (pin, own) in SIGNALS.items()}
 
 
-def lines_for(
-    config: Config, features: Sequence[str], pins: Pins, prefix: str
-) -> dict[str, list[str]]:
-    """Return the lines that each section gets; ``prefix`` is the package's folder in the INI."""
+def lines_for(config: Config, features: Sequence[str], pins: Pins) -> dict[str, list[str]]:
+    """Return the lines that each section gets."""
     drive = [
         line
         for name, pin in pins.drive.items()
@@ -221,9 +218,9 @@ def lines_for(
     wanted = signals_wanted(config, KINEMATICS in features)
     return {
         "HAL": [
-            f"HALFILE = {prefix}/{SPINDLE_C_HAL}",
+            f"HALFILE = {COPY}/{SPINDLE_C_HAL}",
             *drive,
-            f"HALCMD = loadusr sh {prefix}/{LIMITS_SCRIPT}",
+            f"HALCMD = loadusr sh {COPY}/{LIMITS_SCRIPT}",
         ],
         "SPINDLE_C": [
             f"JOINT = {joint_of_c(config)}",
@@ -270,16 +267,12 @@ def keys_wrong(config: Config) -> Iterator[ConfigFinding]:
 def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
     """Find lines that are missing in [HAL], and a C that shares the index."""
     others = other_lines(config)
-    wanted = {CONNECTS: f"HALFILE = …/{SPINDLE_C_HAL} after the files that wire the spindle"}
-    wanted |= {DRIVE[name]: f"HALCMD = net {DRIVE[name]} => the drive's input"
-               for name in REQUIRED_PINS}  # fmt: skip
-    wanted[Path(LIMITS_SCRIPT).name] = f"HALCMD = loadusr sh …/{LIMITS_SCRIPT}"
-    for name, line in wanted.items():
+    for name in (*map(DRIVE.get, REQUIRED_PINS), Path(LIMITS_SCRIPT).name, CONNECTS):
         if not names(all_hal(config) if name == CONNECTS else others, name):
             yield problem(
                 "spindle-c-hal",
                 f"nothing in [HAL] uses {name}: the spindle does not become C",
-                f"add {line} ({SPINDLE_C_PAGE})",
+                f"the lines of [HAL] at the end of {SPINDLE_C_PAGE}",
             )
     pin = f"joint.{joint_of_c(config)}.index-enable"
     for text, location in others:
@@ -293,14 +286,17 @@ def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def live_spindle_missing(config: Config) -> Iterator[ConfigFinding]:
-    """Find a machine that has no such spindle as its live tool needs."""
-    said = int((config.settings and config.ini.get(INI_SECTION, LIVE_SPINDLE)) or 0)
-    live = said or int(any(PROLOG in remap.handlers for _, remap in config.remaps))
+    """Find a machine that has no such spindle as its live tool needs.
+
+    One whose spindle becomes C may have no live tool.
+    """
+    named = leading_number(config.ini.get(INI_SECTION, LIVE_SPINDLE) or "") or 0
+    live = int(named or any(PROLOG in remap.handlers for _, remap in config.remaps))
     spindles = leading_number(config.ini.get("TRAJ", "SPINDLES") or "") or 1
     loading = (LOADS_MOTION.match(substituted(line.text, config)) for line in all_hal(config))
     loaded = next((int(found[1] or 1) for found in loading if found), spindles)
     if live and min(spindles, loaded) <= live:
-        report = problem if said or spindles > live else warning
+        report = problem if named or spindles > live else warning
         yield report(
             "live-spindle",
             f"[TRAJ] SPINDLES is {spindles:g} and motion is loaded with {loaded:g}: LinuxCNC has "
