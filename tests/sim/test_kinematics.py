@@ -148,14 +148,6 @@ def test_a_long_move_beside_the_pole_is_segments_only_near_it(lathe):
         assert np.abs(np.diff(c, 2)).max() * 1e6 <= np.radians(3600) * 1.01
 
 
-def test_a_circle_between_a_plunge_and_a_retract_runs_at_its_feed(lathe):
-    """To blend them, LinuxCNC would halve its acceleration: 44 mm/s."""
-    around = ["G12.1", "G1 X30 F6000", "G1 Z-1 F3000", "G2 X30 C0 I-10 J0", "G1 Z2", "G13.1", "M2"]
-    run = lathe.run_text([*START, *around])
-    assert run.error is None
-    assert np.median(run.samples.velocity[run.samples.kind == ROUND]) == pytest.approx(50, rel=1e-3)
-
-
 def test_g12_1_with_offsets_inches_and_diameters(lathe):
     lathe.mdi("G10 L2 P1 X40 Y-7 Z3 C20")
     try:
@@ -212,13 +204,6 @@ def test_exact_paths_and_stops_on_the_face(lathe, exact, sharp):
     samples = lathe.motion_of([*ROUGHLY, *square, "G13.1", "M2"])
     assert (off_the_corners(samples) < 0.001).tolist() == [bool(corner) for corner in sharp]
     assert off_the_corners(samples).max() <= 0.052  # G64 P0.05
-
-
-def test_verify_finds_nothing_wrong_in_a_corner_with_a_lead(lathe):
-    square = ["G1 Z-1 F6000", *SQUARE[:-1], "C30", "X45 C32", "Z2"]
-    proof = lathe.proof_of_run(["G21 G18 G8 G90 G94 G64", *ROUGHLY[1:], *square, "G13.1", "M2"])
-    assert proof.findings == [] and proof.sections[0].deviation < 0.005
-    assert proof.sections[0].values["segments"] < 10  # cut on the face
 
 
 def test_blocks_that_wait_cut_a_section_in_two(lathe):

@@ -151,15 +151,6 @@ def test_m3_turns_nothing_while_it_is_c(lathe, word):
     assert lathe.get("axis.x.pos-cmd") == pytest.approx(30)
 
 
-def test_m3_on_the_screen_while_it_is_c_turns_nothing_afterwards(lathe):
-    as_c(lathe)
-    lathe.mdi("M3 S300")
-    lathe.mdi("M65 P2")
-    lathe.wait_for(lambda _: not lathe.is_c())
-    time.sleep(0.5)
-    assert abs(lathe.get("spindle-rps")) < 0.001
-
-
 def test_a_spindle_that_cannot_become_c(tmp_path):
     paths = f"{tmp_path}:../../ngc:subs"
     slow = {
@@ -219,23 +210,6 @@ def test_holes_with_the_live_tool(lathe):
     tapped = axes["Z"][np.abs(axes["X"] - 10) < 1e-3]
     assert tapped.min() == pytest.approx(-3, abs=0.2)
     assert line.max() > 0
-
-
-def test_aborts_in_holes_leave_it_c(lathe):
-    chance = random.Random(28)
-    face = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [900] [1.5] [0.1] [0]"
-    for _ in range(2):
-        lathe.open_text([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "M2"])
-        lathe.start()
-        depth = chance.uniform(-4, 5)
-        lathe.wait_for(lambda status: lathe.is_c() and status.actual[2] < depth)  # noqa: B023
-        lathe.abort()
-        lathe.errors()
-        assert lathe.is_c() and lathe.get("spindle-c-holds")
-        lathe.mdi("G90 G0 Z20")
-        assert lathe.errors() == []
-    samples = lathe.motion_of([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", face, "M255", "M2"])
-    assert samples.axes["Z"].min() == pytest.approx(-4, abs=0.002)
 
 
 def test_the_manuals_program_switches_c_on_by_m35():
