@@ -5,9 +5,6 @@ Lengths are in program units, X is a radius, positions are the program's, angles
 `ProgramFrame` converts to machine millimetres.
 """
 
-from __future__ import annotations
-
-import json
 from cmath import rect
 from collections.abc import Sequence
 from math import radians
@@ -32,7 +29,7 @@ class ProgramFrame(NamedTuple):
     rotation: float
     shifted: bool
 
-    def turned_by(self, zero: float) -> ProgramFrame:
+    def turned_by(self, zero: float) -> "ProgramFrame":
         """Return the frame with the zero of another rotary axis in the place of C's."""
         return self._replace(zero=(*self.zero[:3], zero))
 
@@ -265,6 +262,8 @@ def more_text(elements: Sequence[CutElement]) -> str:
 
 
 def _json(value: object) -> str:
+    import json  # not needed at LinuxCNC's start
+
     return json.dumps(value, default=lambda point: (point.real, point.imag))
 
 

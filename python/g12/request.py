@@ -9,15 +9,58 @@ Lengths are in program units.
 """
 
 import math
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection
 from math import hypot
 from typing import NamedTuple
 
+from g12.cut_report import BY_D, BY_LAST_D, LOADED, UsedCutter
 from g12.errors import Refusal, number
 from g12.lengths import LARGEST
-from g12.state import LINEAR_AXES, XY, XZ, YZ, SpacePoint, State, Tool, beyond_travel
+from g12.state import LINEAR_AXES, XY, XZ, YZ, SpacePoint, State, Tool, beyond_travel, refused_mode
 
 WHOLE = 1e-4  # LinuxCNC's own tolerance for "close to an integer"
+CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
+CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
+LEFT_OUT = -9999.0  # an entry of a call that is left out
+WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
+COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceiling
+MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+
+
+class Cutter(NamedTuple):
+    """The cutter of a block, its name in messages, and what the operator hears of it.
+
+    ``other``: it is not the loaded tool. ``kept``: the program does not show it. ``is_modal``: it
+    counts in later blocks without D.
+    """
+
+    used: UsedCutter
+    source: str
+    other: str | None
+    kept: str | None = None
+    is_modal: bool = False
+
+    @property
+    def radius(self) -> float:
+        return self.used.radius
+
+
+_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
+
+
+class CycleExtent(NamedTuple):
+    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
+
+    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
+    whose centres are as far as ``corners`` from its own.
+    """
+
+    plane: str
+    centre: SpacePoint
+    radius: float
+    heights: tuple[float, ...] = ()
+    corners: tuple[float, float] = (0.0, 0.0)
 
 
 class Words:
@@ -53,69 +96,55 @@ class Words:
         """Return a word as it is written in a program: ``I0.125``."""
         return f"{letter}{number(value)}"
 
-    def value(self, letter: str) -> float | None:
-        """Return the word's value without taking it, None if it is absent."""
-        return self._remaining.get(letter)
-
     def take(self, letter: str) -> float | None:
         """Return the word's value, or None if the block does not have it."""
         return self._remaining.pop(letter, None)
 
     def require(self, letter: str, meaning: str) -> float:
         """Return the word's value; refuse a block without it."""
-        self._check_present(letter, meaning)
+        if letter not in self._remaining:
+            raise self.refuse(f"{letter} is missing: {meaning}")
         return self._remaining.pop(letter)
 
     def take_positive(self, letter: str) -> float | None:
         """Return the word's value, which must be above zero, or None."""
-        return self._positive(letter) if letter in self._remaining else None
+        value = self.take(letter)
+        return None if value is None else self._positive(letter, value)
 
     def require_positive(self, letter: str, meaning: str) -> float:
         """Return the word's value, above zero; refuse a block without it."""
-        self._check_present(letter, meaning)
-        return self._positive(letter)
+        return self._positive(letter, self.require(letter, meaning))
 
-    def take_whole(self, letter: str, least: int, default: int = 0, most: int | None = None) -> int:
+    def take_whole(self, letter: str, least: int, default: int = 0, most: float = math.inf) -> int:
         """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
-        return self._whole(letter, least, most) if letter in self._remaining else default
+        value = self.take(letter)
+        return default if value is None else self._whole(letter, value, least, most)
 
     def require_whole(self, letter: str, meaning: str, least: int, most: int) -> int:
         """Return the word's value, a whole number; refuse a block without it."""
-        self._check_present(letter, meaning)
-        return self._whole(letter, least, most)
+        return self._whole(letter, self.require(letter, meaning), least, most)
 
-    def _check_present(self, letter: str, meaning: str) -> None:
-        if letter not in self._remaining:
-            raise self.refuse(f"{letter} is missing: {meaning}")
-
-    def _positive(self, letter: str) -> float:
-        value = self._remaining.pop(letter)
+    def _positive(self, letter: str, value: float) -> float:
         if not value > 0:
             raise self.refuse_word(letter, value, self.positive_rule)
         return value
 
-    def _whole(self, letter: str, least: int, most: int | None) -> int:
-        value = self._remaining.pop(letter)
-        if abs(value - round(value)) > WHOLE:
+    def _whole(self, letter: str, value: float, least: int, most: float) -> int:
+        whole = round(value)
+        if abs(value - whole) > WHOLE:
             raise self.refuse_word(letter, value, "must be a whole number")
-        if round(value) < least:
+        if whole < least:
             raise self.refuse_word(letter, value, f"must be at least {least}")
-        if most is not None and round(value) > most:
+        if whole > most:
             raise self.refuse_word(letter, value, f"must be at most {most}")
-        return round(value)
+        return whole
 
-    def has_pair(self, first: str, second: str) -> bool:
-        """Return whether two words are in the block; refuse one without the other."""
-        if (first in self) != (second in self):
-            present, absent = (first, second) if first in self else (second, first)
-            raise self.refuse_word(present, self._remaining[present], f"needs {absent} as well")
-        return first in self
-
-    def take_pair(self, first: str, second: str) -> tuple[float, float] | None:
-        """Return two positive words that need each other, or None if both are absent."""
-        if not self.has_pair(first, second):
-            return None
-        return self._positive(first), self._positive(second)
+    def check_pair(self, first: str, second: str) -> None:
+        """Refuse one of two words without the other."""
+        for present, absent in ((first, second), (second, first)):
+            if present in self and absent not in self:
+                value = self._remaining[present]
+                raise self.refuse_word(present, value, f"needs {absent} as well")
 
     def check_known(self, known: str) -> None:
         """Refuse a word that the dialect does not have; ``known`` lists its letters."""
@@ -124,84 +153,163 @@ class Words:
                 rule = f"is not a word of this cycle, which knows {known}"
                 raise self.refuse_word(letter, value, rule)
 
+    def absolute(self, word: float | None, present: float) -> float:
+        """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
+        if word is None:
+            return present
+        return present + word if self.context.incremental else word
 
-CLEARED = 0.9  # of the cutter's radius: a helix or first ring up to this radius leaves no core
-CLOCKWISE, COUNTERCLOCKWISE = 2, 3  # G codes of arcs
-LEFT_OUT = -9999.0  # an entry of a call that is left out
-WEAR = 0.05  # of a tool's radius: D may differ by that from the loaded tool
-COUNTLESS = 1e9  # steps: more are not counted, as a huge quotient has no ceiling
-MOST_CIRCLES = 100_000  # a Q typed a thousand times too small must not hang the preview
+    def take_centre(self) -> tuple[float, float]:
+        """Return X and Y, the present ones where the block does not have them."""
+        x, y, context = self.take("X"), self.take("Y"), self.context
+        return self.absolute(x, context.x), self.absolute(y, context.y)
 
+    def check_block(self, known: str, planes: Collection[str] = (XY,)) -> None:
+        """Refuse the modes in which no circle can be cut, and a word that the dialect lacks.
 
-def check_modes(words: Words, planes: Collection[str] = (XY,)) -> None:
-    """Refuse the modes in which no circle can be cut.
+        In this order: another plane, the modes that all codes refuse (a tool that is still offset
+        may be moved by X or Y), G95 without a spindle speed, a feed of 0; the words.
+        """
+        context = self.context
+        if context.plane not in planes:
+            *others, last = planes
+            needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
+            raise self.refuse(f"needs {needed}, but {context.plane} is active")
+        wrong = refused_mode(context, moves_first="X" in self or "Y" in self)
+        if wrong:
+            raise self.refuse(wrong)
+        if context.per_revolution and context.speed == 0:
+            raise self.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
+        if not context.feed > 0:
+            raise self.refuse(
+                f"F{number(context.feed)} must be greater than 0 (no feed commanded?)"
+            )
+        self.check_known(known)
 
-    In this order: another plane, G93, G95 without a spindle speed, G41/G42, a feed of 0.
-    """
-    context = words.context
-    if context.plane not in planes:
-        *others, last = planes
-        needed = f"plane {', '.join(others)} or {last}" if others else f"the XY plane {last}"
-        raise words.refuse(f"needs {needed}, but {context.plane} is active")
-    if context.inverse_time:
-        raise words.refuse("needs feed per minute or revolution (G94, G95), but G93 is active")
-    if context.per_revolution and context.speed == 0:
-        raise words.refuse("needs a spindle speed for feed per revolution (G95), but S is 0")
-    if context.compensated:
-        raise words.refuse("brings its own cutter compensation: program G40 first")
-    if not context.feed > 0:
-        raise words.refuse(f"F{number(context.feed)} must be greater than 0 (no feed commanded?)")
+    def commanded_tool(self) -> Tool | None:
+        """Return the tool that D names, None without D; D0 is a cutter without size."""
+        if "D" not in self:
+            return None
+        tool_number = self.take_whole("D", least=0)
+        if tool_number == 0:
+            return Tool(0, 0.0)
+        tool = self.context.tool_in_table(tool_number)
+        if tool is None:
+            raise self.refuse(f"D{tool_number} is not in the tool table")
+        return tool
 
+    def chosen_cutter(self) -> Cutter:
+        """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
+        context, tool = self.context, self.commanded_tool()
+        if tool is not None:
+            by, source = BY_D, f"D{tool.number}"
+        elif context.last_cutter is not None:
+            tool, by, source = context.last_cutter, BY_LAST_D, "the D last commanded"
+        elif context.spindle_tool is not None:
+            tool, by = context.spindle_tool, LOADED
+            source = f"T{tool.number} in the spindle"
+        else:
+            raise self.refuse("D is missing, none was commanded before and no tool is loaded")
+        if by != BY_LAST_D:
+            self.check_sound(tool, source)
+        kept = None if by == BY_D else self.kept_cutter(tool)
+        used = UsedCutter(tool.radius, by, tool.number)
+        return Cutter(used, source, self.other_cutter(tool, source), kept, by == BY_D)
 
-def check_start(words: Words) -> None:
-    """Refuse to begin while the tool is still offset from the programmed point after a G40."""
-    if words.context.offset_pending:
-        raise words.refuse("the tool is still offset: after G40 move in X or Y first")
+    def sized_cutter(self) -> Cutter:
+        """Return the cutter of the block, which must have a diameter."""
+        cutter = self.chosen_cutter()
+        if not cutter.radius:
+            raise self.refuse(f"{cutter.source} has no diameter: it sets the path")
+        return cutter
 
+    def check_sound(self, tool: Tool, source: str) -> None:
+        """Refuse a negative diameter. ``source`` names the tool: ``D1``."""
+        if tool.radius < 0:
+            negative = number(2 * tool.radius)
+            raise self.refuse(f"{source} has the negative diameter {negative} in the tool table")
 
-def commanded_tool(words: Words) -> Tool | None:
-    """Return the tool that D names, None without D; D0 is a cutter without size."""
-    if "D" not in words:
-        return None
-    tool_number = words.take_whole("D", least=0)
-    if tool_number == 0:
-        return Tool(0, 0.0)
-    tool = words.context.tool_in_table(tool_number)
-    if tool is None:
-        raise words.refuse(f"D{tool_number} is not in the tool table")
-    return tool
+    def other_cutter(self, tool: Tool, source: str) -> str | None:
+        """Return the operator message of a cutter that is not the loaded tool, by more than wear.
 
+        The cycle uses the cutter: the loaded tool may be the mistake. There is no comparison
+        without a tool, or with one without a diameter.
+        """
+        context, loaded = self.context, self.context.spindle_tool
+        if not tool.radius or loaded is None or loaded.radius <= 0:
+            return None
+        if abs(tool.radius - loaded.radius) <= WEAR * loaded.radius:
+            return None
+        size, loaded_size = (context.tool_size(2 * each.radius) for each in (tool, loaded))
+        used = f"the cycle uses {source}, diameter {size}"
+        return f"{self.code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
 
-def sound_tool(words: Words, tool: Tool, source: str) -> Tool:
-    """Return the tool; refuse a negative diameter. ``source`` names the tool: ``D1``."""
-    if tool.radius < 0:
-        raise words.refuse(
-            f"{source} has the negative diameter {number(2 * tool.radius)} in the tool table"
+    def kept_cutter(self, cutter: Tool) -> str | None:
+        """Return the operator message where the program does not show the cutter: without D.
+
+        It may be that of an older line of the tool table, or depend on what ran before.
+        """
+        context, before = self.context, "the D of what ran before"
+        size = context.tool_size(2 * cutter.radius)
+        named = context.tool_in_table(cutter.number) if cutter.number else None
+        if named and abs(named.radius - cutter.radius) > context.rounding:
+            now = context.tool_size(2 * named.radius)
+            return (
+                f"{self.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
+                f" counts as it was commanded, with {size}. Give D{cutter.number} again"
+            )
+        if not context.d_is_earlier():
+            return None
+        counts = f"{before} counts, diameter {size}"
+        if context.last_cutter is None:
+            counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
+        return f"{self.code}: no D above this block in the program: {counts}. Give D"
+
+    def check_fits(
+        self,
+        letter: str,
+        radius: float,
+        cutter: float,
+        source: str,
+        finish: tuple[float, str] = (0.0, ""),
+    ) -> None:
+        """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
+
+        ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
+        """
+        context, sized = self.context, " in size" if radius < 0 else ""
+        room, smallest = abs(radius) - cutter - finish[0], context.smallest_ring
+        if room >= smallest - context.rounding:
+            return
+        least = number(smallest)
+        if not cutter:
+            raise self.refuse_word(letter, radius, f"must be at least {least}{sized}")
+        by = f" by at least {least}" if room > context.rounding else ""
+        size = f"{context.tool_size(cutter)} ({source}){finish[1]}{by}"
+        raise self.refuse_word(
+            letter, radius, f"must be greater{sized} than the tool radius {size}"
         )
-    return tool
 
+    def check_count(self, circles: int, cause: str) -> None:
+        """Refuse steps so small that the block would never end; ``cause`` names their words."""
+        if circles > MOST_CIRCLES:
+            raise self.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
 
-def check_fits(
-    words: Words,
-    letter: str,
-    radius: float,
-    cutter: float,
-    source: str,
-    finish: tuple[float, str] = (0.0, ""),
-) -> None:
-    """Refuse a circle that the cutter, here its radius, cannot mill: its centre needs a ring.
-
-    ``source`` names the cutter. A ``finish`` dimension has to fit too, which the text adds.
-    """
-    context, sized = words.context, " in size" if radius < 0 else ""
-    room, least = abs(radius) - cutter - finish[0], number(context.smallest_ring)
-    if room >= context.smallest_ring - context.rounding:
-        return
-    if not cutter:
-        raise words.refuse_word(letter, radius, f"must be at least {least}{sized}")
-    by = f" by at least {least}" if room > context.rounding else ""
-    size = f"{context.tool_size(cutter)} ({source}){finish[1]}{by}"
-    raise words.refuse_word(letter, radius, f"must be greater{sized} than the tool radius {size}")
+    def check_travel(self, extent: CycleExtent) -> None:
+        """Refuse a cycle that leaves the limits of an axis."""
+        state, (x, y, z) = self.context, extent.centre
+        if not state.travel:
+            return
+        points = [(x, y, height) for height in extent.heights or (z,)]
+        centres = zip(*map(state.point_on_machine, points))
+        widths = half_widths(state, extent)
+        ranges = [
+            (axis, min(centre) - half, max(centre) + half)
+            for axis, centre, half in zip(LINEAR_AXES, centres, widths)
+        ]
+        beyond = beyond_travel(state, state.travel, ranges)
+        if beyond:
+            raise Refusal(beyond.rule, self.code)
 
 
 def loaded_tool(words: Words) -> Tool:
@@ -217,77 +325,12 @@ def loaded_tool(words: Words) -> Tool:
     return tool
 
 
-def other_cutter(words: Words, last: Tool | None = None) -> str | None:
-    """Return the operator message where D is not the loaded tool by more than wear, or None.
-
-    The cycle uses D: the loaded tool may be the mistake. Without D the ``last`` one counts. There
-    is no comparison without a tool, or with one without a diameter.
-    """
-    d_word, context = words.value("D"), words.context
-    named = context.tool_in_table(round(d_word)) if d_word else None
-    counting = named or (last if d_word is None else None)
-    loaded = context.spindle_tool
-    if not counting or not counting.radius or loaded is None or loaded.radius <= 0:
-        return None
-    radius = counting.radius
-    if abs(radius - loaded.radius) <= WEAR * loaded.radius:
-        return None
-    source = f"D{named.number}" if named else "the D last commanded"
-    size, loaded_size = (context.tool_size(2 * size) for size in (radius, loaded.radius))
-    used = f"the cycle uses {source}, diameter {size}"
-    return f"{words.code}: {used}; the loaded tool T{loaded.number} has {loaded_size}"
-
-
-def check_count(words: Words, circles: int, cause: str) -> None:
-    """Refuse steps so small that the block would never end; ``cause`` names their words."""
-    if circles > MOST_CIRCLES:
-        raise words.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
-
-
 def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
     """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
 
     A remainder shorter than ``tolerance`` is rounding, not a step of its own.
     """
     return math.ceil(max(0.0, min((last - first - tolerance) / step, COUNTLESS)))
-
-
-_X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
-DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
-
-
-class CycleExtent(NamedTuple):
-    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
-
-    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
-    whose centres are as far as ``corners`` from its own.
-    """
-
-    plane: str
-    centre: SpacePoint
-    radius: float
-    heights: tuple[float, ...] = ()
-    corners: tuple[float, float] = (0.0, 0.0)
-
-    def points(self) -> list[SpacePoint]:
-        x, y, z = self.centre
-        return [(x, y, height) for height in self.heights or (z,)]
-
-
-def check_travel(words: Words, extent: CycleExtent, limits: Mapping[str, Sequence[float]]) -> None:
-    """Refuse a cycle that leaves the limits of an axis, its lowest and highest machine position."""
-    state = words.context
-    centres = zip(*map(state.point_on_machine, extent.points()))
-    beyond = beyond_travel(
-        state,
-        limits,
-        [
-            (axis, min(centre) - half, max(centre) + half)
-            for axis, centre, half in zip(LINEAR_AXES, centres, half_widths(state, extent))
-        ],
-    )
-    if beyond:
-        raise words.refuse(beyond.rule)
 
 
 def half_widths(state: State, extent: CycleExtent) -> list[float]:

@@ -52,6 +52,7 @@ class State(NamedTuple):
     speeds: tuple[float, ...] = (0.0,)
     diameter: bool = False  # G7
     surface_speed: bool = False  # G96
+    travel: Mapping[str, Sequence[float]] | None = None  # limits of X, Y, Z; none in a preview
 
     @property
     def millimetre(self) -> float:
@@ -84,12 +85,6 @@ class State(NamedTuple):
         """The smallest radius of a circle, and of a difference of two."""
         return self.length(SMALLEST_RING_MM)
 
-    def absolute(self, word: float | None, present: float) -> float:
-        """Return the absolute coordinate of a word in G90 or G91; without it, the present one."""
-        if word is None:
-            return present
-        return present + word if self.incremental else word
-
     def tool_size(self, length: float) -> str:
         """Return a tool's radius or diameter for a message: ``3.175``.
 
@@ -117,6 +112,25 @@ class State(NamedTuple):
             for letter, value, shift in zip(LINEAR_AXES, turned, shifts)
         )
         return x, y, z
+
+
+# By the name of the state's field, the modes in which no code of the package can begin.
+REFUSED_MODES = {
+    "inverse_time": "needs G94 or G95, not G93",
+    "compensated": "needs G40: compensation is switched on inside",
+    "offset_pending": "needs a move after G40: the tool is still beside the programmed point",
+}
+
+
+def refused_mode(state: State, *, moves_first: bool = False) -> str:
+    """Return the rule that the first refused mode breaks, "" if none is in force.
+
+    ``moves_first``: the block itself moves to where the tool is not offset.
+    """
+    for name, rule in REFUSED_MODES.items():
+        if getattr(state, name) and not (moves_first and name == "offset_pending"):
+            return rule
+    return ""
 
 
 class Beyond(NamedTuple):

@@ -15,7 +15,7 @@ from bench.polar import (
     seconds_at,
     seconds_in,
 )
-from g12.tools.path.least_time import least_seconds
+from g12.tools.path.section_times import least_seconds
 from support.contour_geometry import Round
 from support.operated_machine import Machine
 from support.polar_programs import INCHES

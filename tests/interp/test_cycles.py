@@ -115,14 +115,14 @@ def test_all_modes_make_the_same_machine_path(mill, dialect, block):
 AT = [IN_INCHES, "G1 X1 Y1 Z.1"]
 MOVED = [FIRST, "G91 G0 X3 Z5"]
 AFTER_G40 = ["G41", "G1 X30", "Y30", "G40"]
-OFFSET = "the tool is still offset: after G40 move in X or Y first"
+OFFSET = "needs a move after G40: the tool is still beside the programmed point"
 PLACE = "X1 Y2 Z-.5 I.1 R1.5"
 POCKET_CALL = call(x=0, y=0, z=0, w=0.1, r=1, c=2)
 REFUSED = [  # what a block says by itself is in unit/test_cycles.py
     ("haas inch", AT, "G12 I.5 Z-1 D3", "D3 has the negative diameter -0.25 in the tool table"),
     ("haas inch", AT, "G12 I.5 Z-1", "D is missing, none was commanded before and no tool"),
     ("haas inch", [IN_INCHES, "T3 M6"], "G12 I.75 Z-.1", "T3 in the spindle has the negative"),
-    ("haas inch", AT, "G93 G12 I.5 Z-1 D1 F1", "needs feed per minute or revolution (G94, G95)"),
+    ("haas inch", AT, "G93 G12 I.5 Z-1 D1 F1", "needs G94 or G95, not G93"),
     ("haas inch", AT, "G95 S0 F.1 G12 I.5 Z-1 D1",
      "needs a spindle speed for feed per revolution (G95)"),
     ("haas helix", AT, "G12 I.13 Z-2 D1", "a helix of radius 0.005 needs "),
@@ -135,7 +135,7 @@ REFUSED = [  # what a block says by itself is in unit/test_cycles.py
       for word in ("E1", "H1", "@1", "^1")),
     ("yasnac mm", [FIRST, "T1 M6", *AFTER_G40], "G12 I30 R20 D10", OFFSET),
     ("event inch", [*EVENT_FIRST, "T0 M6"], f"G13.2 {PLACE} H2", "no tool is loaded: its"),
-    ("event inch", [*EVENT_FIRST, "G41 D1"], POCKET_CALL, "brings its own cutter"),
+    ("event inch", [*EVENT_FIRST, "G41 D1"], POCKET_CALL, "needs G40"),
 ]  # fmt: skip
 
 

@@ -140,6 +140,7 @@ def test_positions_are_mm_whatever_the_program_uses(mill):
     assert [move.feed for move in metric.moves + inch.moves] == near([254.0] * 4)
     assert metric.moves[1].centre == near((38.1, -12.7, 0.0))
     assert metric.moves[1].turns == -1
+    assert {*metric.moves} == {*metric.moves[::-1]}  # moves are values: no list in them
 
 
 def test_an_inch_machine_gives_the_same(ini, mill):

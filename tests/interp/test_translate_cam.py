@@ -15,7 +15,7 @@ from support.foreign_programs import FOREIGN, translation
 from support.sim_machines import copy_of_machines
 
 CAM = FOREIGN / "cam"
-POSTS = sorted(folder.name for folder in CAM.iterdir())
+DRILLED = sorted(path.parent.name for path in CAM.glob("*/holes.nc"))
 POSTED = sorted((p.parent.name, p.stem) for p in CAM.glob("*/*.nc") if p.stem in PARTS)
 CUTTERS = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12 / 25.4, 2: 10 / 25.4, 3: 6 / 25.4}}
 TOLERANCE = 0.008  # mm: POLAR_TOLERANCE, and the last digit of the posts
@@ -75,7 +75,7 @@ def moves_of(tracer, post, part):
     return traced.moves
 
 
-@pytest.mark.parametrize("post", POSTS)
+@pytest.mark.parametrize("post", DRILLED)
 def test_posted_holes_are_those_of_the_drawing(lathe, post):
     moves = moves_of(lathe(post), post, "holes")
     drilled = [hole_of(m) for m in moves if m.kind == "feed"]

@@ -60,13 +60,6 @@ CONSTRUCTS = [
     ("haas-mill", "G81 X1.5 Z.5 R.9\nM98 P5\nG83 X1.5 Z.6 R.9 Q.2\nM98 P5\nM30\nO5\n"
      "X2.\nX3.\nG80\nM99",
      "G81 X1.5 Z.5 R.9\nX2\nX3\nG80\nG0\nG83 X1.5 Z.6 R.9 Q.2\nX2\nX3\nG80\nG0"),
-    # patterns of holes
-    ("haas-mill", "T1 M6\nG0 X1. Y1.\nG43 H1 Z1.\nG81 Z.5 R.9 L0\nG70 I1. J0. L4\nG80",
-     "T1 M6\nG0 X1 Y1\nG43 H1 Z1\nG81 X2 Y1 Z.5 R.9\nX1 Y2\nX0 Y1\nX1 Y0\nG80\nG0"),
-    ("haas-mill", "G83 Z.5 R.9 Q.2 L0\nG71 X2. Y2. I1. J0. K90. L3\nX5.\nG80",
-     "G83 X3 Y2 Z.5 R.9 Q.2\nX2 Y3\nX1 Y2\nX5\nG80\nG0"),
-    ("haas-mill", "G81 X2. Z.5 R.9\nG72 I.5 J90. L3\nG80",
-     "G81 X2 Z.5 R.9\nX2 Y1\nY1.5\nY2\nG80\nG0"),
     # G41 before the first move in the plane: it waits for that
     ("haas-mill", "T1 M6\nG0 Y1.5\nG41 D1\nG0 Z.5\nG1 X2.\nY3.\nG40 X4.",
      "T1 M6\nG0 Y1.5\nZ.5\nG41 D1 G1 X2\nY3\nG40 X4"),

@@ -141,7 +141,7 @@ def test_holes_in_the_side(tracer, control, text, top):
         ("fanuc-lathe", "G83 X40. Z-5. K5", "K5 in G83 is not translated"),
         ("fanuc-lathe", "G84 X0 Z-5. F1.", "G84: a tap: write each as G0 and LinuxCNC's G33.1"),
         ("fanuc-lathe", "G83 X40. H5. Z-5.", "H5. in G83 is not translated"),
-        ("fanuc-lathe", "G83 X40. Z-5. Q1", "pecks of 0.001 are 15000 in one hole"),
+        ("fanuc-lathe", "G83 X40. Z-5. Q1", "15000 pecks in one cycle: at most 5000"),
         ("fanuc-lathe", "G87 Z-4. U-9. F500.", "a drilling cycle needs X, where the hole ends"),
         ("fanuc-lathe", "G83 X40. Z-5. M31", "M31 in the block of a drilling cycle"),
         ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins at the tool's position"),

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from g12.tools.errors import ProgramError
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from interp.test_translate_cam import (
@@ -182,24 +181,6 @@ def test_holes_round_a_part_of_a_mill(mill):
         assert near[:, 2].min() == pytest.approx(depth)
     assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
     assert moves[-1].end[2] == 5 + DIAMETER / 2
-
-
-REFUSED = [
-    ("G18 G2 X5 Z1 R5", "G18: arcs lie in X and Y here (G17): no vertical leads in CAM"),
-    ("G0 X9", "G0 at Z-1, below 2 where rapids are clear of the part"),
-    ("G12 I5 F100", "G12: a round pocket of the mill: let CAM write its arcs"),
-    ("G1 A5", "A5: a program for mill-round-part has X, Y and Z"),
-    ("G84 Z-5 R2 F100", "G84"),
-]
-
-
-@pytest.mark.parametrize(("block", "why"), REFUSED)
-def test_what_cannot_be_wound_is_refused_with_its_line(tmp_path, block, why):
-    program = tmp_path / "part.nc"
-    program.write_text(f"G21 G90 G17\nT3 M6\nG0 X0 Y0 Z5\nG1 Z-1 F100\n{block}\nM30\n")
-    with pytest.raises(ProgramError) as refused:
-        translation(program, "mill-round-part", *ROUND, "--ini", str(SIM / "mill_a_mm.ini"))
-    assert f"part.nc:5: {why}" in str(refused.value)
 
 
 CUTTER, CLOSE = 2.5, 0.01  # mm: the radius; POLAR_TOLERANCE, and arcs with three decimals

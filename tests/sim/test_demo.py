@@ -44,13 +44,6 @@ def test_verify_measures_real_motion(pocket, capsys):
     assert "running pocket.ngc" in said.err
 
 
-def test_plot_draws_real_motion(pocket, tmp_path):
-    path = tmp_path / "run.png"
-    words = ["plot", pocket, "--ini", MILL, "-o", str(path), "--run", "--override", "300"]
-    assert main(words) == 0
-    assert path.read_bytes().startswith(b"\x89PNG")
-
-
 def test_the_demo_tells_and_draws_every_program(tmp_path, monkeypatch, capsys):
     samples = [sample for sample in demo.SAMPLES if "example" in sample.program]
     samples.append(next(sample for sample in demo.SAMPLES if "slot" in sample.program))

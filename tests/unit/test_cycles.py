@@ -17,7 +17,7 @@ from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import STRAIGHT_DOWN, EventPlanes, PocketEntry
 from g12.cycles.thread import plan_thread
 from g12.errors import Refusal
-from g12.request import COUNTERCLOCKWISE, CycleExtent, Words
+from g12.request import COUNTERCLOCKWISE, Words
 from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 
@@ -125,12 +125,11 @@ def test_a_bad_block_is_refused_by_name(name, words, rule):
 
 VALID = {"haas": "I.75 Z-1", "yasnac": "I50", "mitsubishi": "I50 D2", "pocket": ""}
 DIAMETER = "T8 in the spindle needs a diameter above 0 in the tool table, not"
-OFFSET = "the tool is still offset: after G40 move in X or Y first"
+OFFSET = "needs a move after G40: the tool is still beside the programmed point"
 BAD_MODES = [
     *((name, *row) for name in VALID for row in [
-        (dict(inverse_time=True),
-         "needs feed per minute or revolution (G94, G95), but G93 is active"),
-        (dict(compensated=True), "brings its own cutter compensation: program G40 first"),
+        (dict(inverse_time=True), "needs G94 or G95, not G93"),
+        (dict(compensated=True), "needs G40: compensation is switched on inside"),
         (dict(feed=0.0), "F0 must be greater than 0 (no feed commanded?)"),
         (dict(per_revolution=True),
          "needs a spindle speed for feed per revolution (G95), but S is 0"),
@@ -183,36 +182,43 @@ def test_a_tools_size_has_its_unit_where_the_machines_is_another(name, words, te
         assert text.format(unit) in message
 
 
-def test_how_far_each_goes():
-    deep = MM._replace(incremental=True)
-    assert plan("haas", "I20 K50 Q5 Z-4 L3 D2", deep).extent == CycleExtent(
-        "G17", (0, 0, 6), 40, (6, -2)
-    )
-    assert plan("yasnac", "I-50 R-40 D2").extent == CycleExtent("G17", (0, 0, 10), 40)
-    upright = plan("mitsubishi", "I-50 D2", plane="G18").extent
-    assert upright == CycleExtent("G18", (1, 2, 3), 40)
-    cutter = MM._replace(spindle_tool=Tool(1, 12.0))
-    for name, words, radius in (("pocket", "H2", 38.0), ("perimeter", "H1", 62.5)):
-        event = plan(name, f"X3 Y4 Z-9 I2 E5 R50 Q.5 {words}", cutter)
-        assert event.extent == CycleExtent("G17", (3, 4, -9), radius, (2, 5, -9))
+DEEP = MM._replace(incremental=True)
+UPRIGHT = STANDING._replace(plane="G18")
+LOADED = MM._replace(spindle_tool=Tool(1, 12.0))
+BORE, FRAME = partial(plan_bore, steepest=3.0), partial(plan_frame, entry=STRAIGHT_DOWN)
+UP, LEFT = partial(plan_thread, arc=COUNTERCLOCKWISE), COUNTERCLOCKWISE
+TILT = 30 * (1 + 4 / 58)
 
 
 @pytest.mark.parametrize(
-    ("planner", "words", "radius", "heights", "corners"),
-    [
-        (partial(plan_bore, steepest=3.0), "Z-9 R0 I25 P1 K21", 15, (10, -9), (0, 0)),
-        (plan_thread, "Z-9 R0 I20 P1", 10, (10, -9, 0.25), (0, 0)),
-        (plan_thread, "Z-9 R0 I20 P1 E-.1 J3", 10.45, (10, -9, -1.5), (0, 0)),
-        (plan_thread, "Z-9 R0 I20 P1 K19 H1", 30 * (1 + 4 / 58), (10, -9, 1 / 58), (0, 0)),
-        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R12 H1", 2, (10, -9), (8, 3)),
-        (partial(plan_frame, entry=STRAIGHT_DOWN), "Z-9 I40 J30 R5 H2", 33, (10, -9), (15, 10)),
+    ("planner", "words", "state", "reached"),
+    [  # X, Y and Z, from and to
+        (plan_pocket, "I20 K50 Q5 Z-4 L3 D2", DEEP, (-40, 40, -40, 40, -2, 6)),
+        (yasnac.plan_circle, "I-50 R-40 D2", MM, (-40, 40, -40, 40, 10, 10)),
+        (mitsubishi.plan_circle, "I-50 D2", UPRIGHT, (-39, 41, 2, 2, -37, 43)),
+        (partial(plan_code, planes=NONE, pocket=True), "X3 Y4 Z-9 I2 E5 R50 Q.5 H2", LOADED,
+         (-35, 41, -34, 42, -9, 5)),
+        (partial(plan_code, planes=NONE, pocket=False), "X3 Y4 Z-9 I2 E5 R50 Q.5 H1", LOADED,
+         (-59.5, 65.5, -58.5, 66.5, -9, 5)),
+        (partial(BORE, arc=LEFT), "Z-9 R0 I25 P1 K21 D2", MM, (-15, 15, -15, 15, -9, 10)),
+        (UP, "Z-9 R0 I20 P1 D2", MM, (-10, 10, -10, 10, -9, 10)),
+        (UP, "Z-9 R0 I20 P1 E-.1 J3 D2", MM, (-10.45, 10.45, -10.45, 10.45, -9, 10)),
+        (UP, "Z-9 R0 I20 P1 K19 H1 D2", MM, (-TILT, TILT, -TILT, TILT, -9, 10)),
+        (partial(FRAME, arc=LEFT), "Z-9 I40 J30 R12 H1 D2", MM, (-10, 10, -5, 5, -9, 10)),
+        (partial(FRAME, arc=LEFT), "Z-9 I40 J30 R5 H2 D2", MM, (-48, 48, -43, 43, -9, 10)),
     ],
-)
-def test_how_far_a_hole_goes(planner, words, radius, heights, corners):
-    extent = planner(Words("G13", words_of(f"{words} D2"), MM), arc=COUNTERCLOCKWISE).extent
-    assert (extent.plane, extent.centre) == ("G17", (0, 0, -9))
-    assert extent.radius == pytest.approx(radius)
-    assert (*extent.heights, *extent.corners) == pytest.approx((*heights, *corners))
+)  # fmt: skip
+def test_a_cycle_may_reach_its_limits_and_not_go_beyond(planner, words, state, reached):
+    for side, end in enumerate(reached):
+        for over in (-0.001, 0.001):  # of this limit, the others are far
+            ends = [-999.0, 999.0] * 3
+            ends[side] = end + (over if side % 2 else -over)
+            travel = {axis: ends[2 * n : 2 * n + 2] for n, axis in enumerate("XYZ")}
+            block = Words("G13", words_of(words), state._replace(travel=travel))
+            if over > 0:
+                assert planner(block)
+            else:
+                assert f"the {'XYZ'[side // 2]} axis would go to" in reported(planner, block)
 
 
 def test_a_frame_goes_down_at_the_machine_s_share_of_the_feed():

@@ -6,7 +6,8 @@ import math
 import numpy as np
 import pytest
 
-from g12.tools.path.follow import follow, worst_of
+from g12.tools.path.follow import follow, windows_of, worst_of
+from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Part
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import duration, track
@@ -145,3 +146,22 @@ def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
     assert pace.lowest == pytest.approx(240, rel=0.01)
     assert 45 < pace.point[0] < 55
     assert pace.expected == pytest.approx(10)
+
+
+def test_the_nearest_points_of_segments_are_found_for_many_points_at_once():
+    starts, along = np.array([[0.0, 0], [5, 5]]), np.array([[4.0, 0], [0, 0]])
+    points = np.array([[1.0, 3], [-2, 1], [9, 0]])
+    near = on_segments(points[:, None], starts, along)
+    assert near[:, 0].tolist() == [[1, 0], [0, 0], [4, 0]]
+    assert near[:, 1].tolist() == [[5, 5]] * 3  # a segment without length is its point
+    assert shares_along(points, starts[0], along[0]).tolist() == [0.25, 0, 1]
+
+
+def test_a_sample_may_be_on_its_lines_moves_or_in_a_corner_with_the_neighbours():
+    hand = Hand().line(x=10).next_block().line(x=10, y=10).next_block().line(x=0, y=10)
+    path, lines = track(MILL, hand.moves, LIMITS), np.array([1, 1, 2, 3])
+    windows = windows_of(path, lines)
+    assert windows.on_its_line.tolist() == [[0, 0], [0, 0], [1, 1], [2, 2]]
+    assert windows.with_neighbours.tolist() == [[0, 1], [0, 1], [0, 2], [1, 2]]
+    anywhere = windows_of(path, lines[::-1])
+    assert anywhere.on_its_line.tolist() == anywhere.with_neighbours.tolist() == [[0, 2]] * 4

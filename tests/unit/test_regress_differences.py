@@ -79,7 +79,7 @@ REFUSED = recording(*SQUARE, error=Error("G12: no I", 8))
         (feed(25.4, units="inch"), feed(25.654, units="inch"), "moved", "X1 → X1.01 (+0.01 in)"),
         (feed(0, 10, units="inch"), feed(0, 12, units="inch"), "moved", "A10 → A12 (+2 degrees)"),
         (feed(feed=100.0), feed(feed=100.009), None, ""),  # within the tolerance
-        (feed(feed=100.0), feed(feed=120.0), "changed", "F100 → F120"),
+        (feed(feed=100.0), feed(feed=100.02), "changed", "F100 → F100.02"),
         (feed(), feed(feed_mode="G95"), "changed", "G94 → G95"),
         (recording(*SQUARE), RAPID, "changed", "feed → rapid"),
         (arc_of(5.0), arc_of(5.01), "moved", "middle of the arc 0.02 mm off"),

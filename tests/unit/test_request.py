@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from g12.lengths import LARGEST, MM_PER_INCH
-from g12.request import CycleExtent, Words, check_travel, half_widths, other_cutter, steps_between
+from g12.request import CycleExtent, Words, half_widths, steps_between
 from g12.state import Tool
 from support.planner_context import MM, reported
 
@@ -68,15 +68,14 @@ LOADED = MM._replace(spindle_tool=Tool(1, 6.0))
         (LOADED, None, None, None),
         (LOADED, 0.0, 9.0, None),
         (LOADED, 4.0, 9.0, None),  # no diameter, as D0
-        (LOADED, 77.0, 9.0, None),  # refused elsewhere
         (MM, 2.0, None, None),  # nothing is loaded
         (MM._replace(spindle_tool=Tool(4, 0.0)), 2.0, None, None),
     ],
 )
 def test_another_cutter_than_the_loaded_one_is_reported(found, d_word, last, message):
-    block = Words("G12", {} if d_word is None else {"D": d_word}, found)
-    cutter = None if last is None else Tool(0, last)
-    assert other_cutter(block, cutter) == (message and f"G12: the cycle uses {message}")
+    state = found._replace(last_cutter=None if last is None else Tool(0, last))
+    block = Words("G12", {} if d_word is None else {"D": d_word}, state)
+    assert block.chosen_cutter().other == (message and f"G12: the cycle uses {message}")
 
 
 # ---------------------------------------------------------------- travel
@@ -108,11 +107,13 @@ METRIC = MM._replace(machine_mm=MM_PER_INCH)  # the other way round
 )  # fmt: skip
 def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, state, rule):
     extent = CycleExtent("G17", centre, radius, heights)
-    assert reported(check_travel, Words("G12", {}, state), extent, AXES) == f"G12: the {rule}"
+    block = Words("G12", {}, state._replace(travel=AXES))
+    assert reported(block.check_travel, extent) == f"G12: the {rule}"
 
 
 def test_one_that_just_fits_is_not():
-    check_travel(words(), CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)), AXES)
+    block = Words("G12", {}, MM._replace(travel=AXES))
+    block.check_travel(CycleExtent("G17", (200, 0, 0), 100 + 1e-9, (-50, 60)))
 
 
 def test_offsets_rotation_and_tool_are_those_of_the_machine():

@@ -9,11 +9,18 @@ import pytest
 
 from g12.geometry.curve import Arc, Line
 from g12.tools.machine.ini import read_machine_ini
-from g12.tools.path.section_times import Leg, axis_derivatives, lathe_axes, section_times
+from g12.tools.path.section_times import (
+    Leg,
+    axis_derivatives,
+    lathe_axes,
+    least_seconds,
+    section_times,
+)
 from support.sim_machines import SIM
 
 FLAT, CUTTER = 13.5, 6.0  # mm, radii
 CIRCLE = [Arc(30 + 0j, 20 + 0j, math.tau)]
+FREE = (1e9, 1e9)  # speed and acceleration
 LATHE, INCH = "lathe_mm", "lathe_inch"
 SLOW = "lathe_slow_c_mm_kinematics"
 
@@ -112,3 +119,16 @@ def test_the_derivatives_are_those_of_radius_and_angle(bend):
 def ends(turn):
     """Return a radius well off the pole."""
     return cmath.rect(15, turn), cmath.rect(25, turn)
+
+
+def test_along_a_radius_the_slide_speeds_up_and_brakes():
+    points = np.linspace(10.0, 50.0, 2001) + 0j
+    assert least_seconds(points, 1e4, (1e9, 1000.0), FREE) == pytest.approx(0.4, rel=0.01)
+    assert least_seconds(points, 50.0, (1e9, 1000.0), FREE) == pytest.approx(0.85, rel=0.01)
+    assert least_seconds(points, 1e4, (50.0, 1e9), FREE) == pytest.approx(0.8, rel=0.01)
+
+
+def test_about_the_axis_c_does():
+    points = 20.0 * np.exp(1j * np.linspace(0.0, math.pi, 2001))
+    least = least_seconds(points, 1e4, FREE, (1e9, 10.0))
+    assert least == pytest.approx(2.0 * math.sqrt(math.pi / 10.0), rel=0.01)

@@ -3,8 +3,7 @@
 
 import pytest
 
-from g12.tools.translate.blocks.control import ControlError, read_control, shipped_controls
-from g12.tools.translate.listing import listing_of
+from g12.tools.translate.blocks.control import ControlError, read_control
 
 
 @pytest.fixture
@@ -19,17 +18,9 @@ def control(tmp_path):
     return read
 
 
-@pytest.mark.parametrize("name", shipped_controls())
-def test_each_states_its_sources_and_what_is_our_reading(name):
-    control = read_control(name)
-    assert control.sources and control.readings
-    assert listing_of(control).startswith(f"{name}: {control.title}")
-
-
 def test_a_comment_can_take_words_with_it(control):
     own = control('[m_codes]\ncomment = ["M60-M62 P Q"]\nM77 = "comment R"\n')
     assert [own.meanings[code] for code in ("M61", "M77")] == ["comment P Q", "comment R"]
-    assert "kept as comments P Q: M60 M61 M62" in listing_of(own)
 
 
 @pytest.mark.parametrize(

@@ -231,18 +231,19 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "M98", "M98 needs P"),
     (HAAS, "M98 P5 Q7", "M98 P with Q7: a program is called from its beginning"),
     (HAAS, "M99 P5", "M99 P5: LinuxCNC has no jumps: write IF […] before each block, or WHILE"),
-    (HAAS, "GOTO#1", "GOTO #1: LinuxCNC has no jumps"),
+    (HAAS, "GOTO#1", "GOTO#1 is a jump, and LinuxCNC has no jumps"),
     (HAAS, "G65 P5 O1", "O1 cannot be an argument"),
     (HAAS, "G65 P5 X1", "X1 has no decimal point: write X1."),
     (HAAS, "IF[1 EQ 1] WHILE[#1 LT 2]DO1", "after IF […] only #… = … and words"),
     (HAAS, "WHILE[1 EQ 1]", "WHILE […] needs DO"),
-    (HAAS, "DO1", "DO without WHILE"),
+    (HAAS, "DO1", "DO1 without WHILE"),
     (HAAS, "END1", "END1 without WHILE"),
     (HAAS, "WHILE[1 EQ 1]DO1", "WHILE […] DO1 has no END1"),
     (HAAS, "#1=#3001", "#3001 means something else"),
     (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
     (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
     (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
+    (HAAS, "#1=[FIX[#2] AND [1 EQ 2]]", "AND is translated between comparisons"),
     (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
     (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
     (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
@@ -267,7 +268,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G0 X\N{EN DASH}1.", "X has no value: –1."),
     (HAAS, "G54:", "G54: is a label, which these controls do not have"),
     (LATHE, "$1", "$1 begins the program of one of two channels"),
-    (HAAS, "IF[#1EQ1]GOTO5", "GOTO 5: LinuxCNC has no jumps"),
+    (HAAS, "IF[#1EQ1]GOTO5", "GOTO5 is a jump, and LinuxCNC has no jumps"),
     (HAAS, "M97 P100", "N100 is not in this program: M97 calls a block of it"),
     (OKUMA, "OSAMPLE", "OSAMPLE is a name: programs have numbers here, as O1"),
     (OKUMA, "G95 G1 X40. F0,2", "0,2 has a decimal comma: write a point"),
@@ -293,7 +294,7 @@ LAST = [  # control, text, how the sentence about its last line begins
       for text in (" C0\nG1 X40. C30. F9.", "\nG1 Z4. C30. F9.", " C0\nG1 U#100 H1. F9.")),
     (HAAS, "#1=#2\n#2=#33", "#33 means something else"),
     (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable: LinuxCNC has none: give each argument"),
-    (HAAS, "G10 L10 P1 R2.", "G10 L10: set the tool's length and diameter in the table"),
+    (HAAS, "G10 L10 P1 R2.", "G10 needs L2 or L20; set a tool's values in the tool table"),
     (HAAS, "G91 G10 L2 P1 X1.", "G10 under G91 adds to the offset"),
     (HAAS, "M29 S99", "M29: rigid tapping: take it out for a floating holder, or write"),
     (LATHE, "G98 C0\nG12.1\nG1 X40. C1. F9.\nX39. C2. W-1.", "W-1. beside other axes in a section"),
@@ -497,6 +498,17 @@ def test_the_live_tool_is_a_spindle_of_the_machine(machine_of, name, text, expec
     assert "say [G12] LIVE_SPINDLE" in refusal(machine_of(name, TWO), text)[1]
 
 
+@pytest.mark.parametrize(
+    ("name", "clamp"),
+    [("colchester-lathe", "M89 M90"), ("dmg-mori-lathe", "M68 M69"), ("mazak-lathe", "M210 M212")],
+)
+def test_a_hole_is_drilled_with_c_clamped_by_its_builders_codes(name, clamp):
+    close, release = clamp.split()
+    head = "G21 G97 S500 M3\nG0 X60. Z10. C0"
+    written = lines_after(control_of(name), f"{head}|G83 X40. Z-5. F50. {close}\nG80")
+    assert [line.split()[0] for line in written if line[:1] == "M"] == [close, release, "M30"]
+
+
 def test_p_names_a_spindle_beside_m3_only():
     assert "M98 P12" in lines_after(control_of("doosan-lathe"), "M98 P12\nM30\nO12\nM99")
 
@@ -594,6 +606,7 @@ REFUSED_OFTEN = [
     (LATHE, "G95\nG90 X9. Z1.", "G95: feed per revolution"),
     (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
     (FANUC, "#1=#4001", "#4001 means something else"),
+    (FANUC, "GOTO10", "GOTO10 is a jump"),
     (FANUC, "G31 Z1.", "G31: a skip function"),
     (LATHE, "G68", "G68: mirror image"),
 ]
@@ -604,6 +617,26 @@ def test_the_page_has_the_commonest_refusals(control, text, sentence):
     assert refusal(control, text)[1].startswith(sentence)
     table = PAGE.read_text(encoding="utf-8").partition("refused most often")[2].partition("##")[0]
     assert sentence in table
+
+
+CURES = [  # a control of one's own: what it is based on and says; a program of it
+    ("fanuc-mill", 'decimals = "whole"', "G21 G90|G0 X1"),
+    ("fanuc-mill", '[m_codes]\nM137 = "comment"\nM88 = "M7"', "M137\nM88"),
+    ("fanuc-mill", 'axes = "XYZA"', "G0 A90."),
+    ("fanuc-mill", '[variables]\n4001 = "#500"', "#1=#4001"),
+    ("fanuc-mill", "", "M98 P9810\nM30\nO9810\nM99"),
+    ("fanuc-mill", "", "#1=0\nWHILE[#1LT2]DO1\nIF[#1EQ1]G0 X1.\n#1=#1+1\nEND1"),
+    ("fanuc-lathe", '[tools]\npatterns = ["TTTOO"]', "T30303"),
+    ("fanuc-lathe-b", "", "G90\nG0 X40. Z1.\nG95\nG77 X9. Z1. F.1"),
+    ("fanuc-lathe", "", "T0101|G0 X50. Z5.\nG90 X9. Z1. F.1"),
+]
+
+
+@pytest.mark.parametrize(("base", "says", "text"), CURES)
+def test_the_pages_cures_of_refusals_are_true(tmp_path, base, says, text):
+    own = tmp_path / "own.toml"
+    own.write_text(f'based_on = "{base}"\n{says}\n')
+    assert lines_after(read_control(str(own)), text)
 
 
 # ---------------------------------------------------------------- hostile text

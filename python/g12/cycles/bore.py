@@ -8,9 +8,9 @@ stay there.
 from math import atan, ceil, degrees, pi, radians, tan
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import Cutter, CyclePlan, check_block, hole_of, sized_cutter, turns_of
+from g12.cycles.plan import CyclePlan, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLEARED, CycleExtent, Words, check_count, check_fits, steps_between
+from g12.request import CLEARED, Cutter, CycleExtent, Words, steps_between
 from g12.state import XY
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
@@ -18,15 +18,15 @@ BORE_WORDS = "X Y Z I P R K L Q D F"
 
 def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     """Return the bore of one block; ``steepest`` is [G12] ENTRY_ANGLE, in degrees."""
-    check_block(words, BORE_WORDS)
+    words.check_block(BORE_WORDS)
     hole = hole_of(words)
     wall = words.require_positive("I", "the finished radius")
     pitch = words.require_positive("P", "the descent per turn")
     opened = open_radius(words, wall)
     stepover = words.take_positive("Q")
     springs = words.take_whole("L", least=0)
-    cutter = sized_cutter(words)
-    check_fits(words, "I", wall, cutter.radius, cutter.source)
+    cutter = words.sized_cutter()
+    words.check_fits("I", wall, cutter.radius, cutter.source)
     first = last = wall - cutter.radius
     steps = 0
     if stepover:  # the first helix leaves no core
@@ -39,7 +39,7 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
     if opened < 2 * cutter.radius:
         check_slope(words, pitch, first, steepest)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
-    check_count(words, circles, "P, Q and L make")
+    words.check_count(circles, "P, Q and L make")
     numbers = {
         **hole._asdict(),
         **turns_of(hole.depth, pitch, arc),
@@ -56,7 +56,9 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
             XY, centre, wall, first_wall, stepover or 0.0, -1.0, (hole.z,), cutter.used
         )
 
-    return cutter.plan(numbers, CycleExtent(XY, centre, last, (hole.start, hole.z)), cut)
+    extent = CycleExtent(XY, centre, last, (hole.start, hole.z))
+    words.check_travel(extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def open_radius(words: Words, wall: float) -> float:

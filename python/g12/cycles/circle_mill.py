@@ -20,15 +20,13 @@ The motions of `ngc/g12_circle_mill.ngc`:
 
 The plunge point is the centre of a pocket, the -Y point of a perimeter.
 
-Rules, in the order of the checks. Of a call: V and F above 0, `check_modes`, G 0 or 7, L not 0; of
-a code: `check_modes`, every word known, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R
+Rules, in the order of the checks. Of a call: V and F above 0, `check_block`, G 0 or 7, L not 0; of
+a code: `check_block`, L only with Q, Q above 0, L 0 or 1. Of both: X, Y, R
 required, R above 0; D from 0 to 3, C required, from 0 to 2, in a pocket the pairs that put the
 tool inside; no finish with C0; W known from here or an earlier event; O, the last one given, not
 below W; Z required;
 K, J, P above 0; a tool with a diameter in the spindle; R with room for it; J in pockets only, and
 not too small; the deepest rough level below W; not too many circles; L not too small.
-
-`check_start` is not needed: the first move goes to the plunge point, which X and Y name.
 """
 
 from typing import NamedTuple
@@ -42,9 +40,6 @@ from g12.request import (
     LEFT_OUT,
     CycleExtent,
     Words,
-    check_count,
-    check_fits,
-    check_modes,
     loaded_tool,
     steps_between,
 )
@@ -113,8 +108,7 @@ def plan_code(words: Words, planes: EventPlanes, pocket: bool) -> CyclePlan:
 
     ``planes`` are the reference planes as last commanded.
     """
-    check_modes(words)
-    words.check_known(EVENT_WORDS)
+    words.check_block(EVENT_WORDS)
     finish, bottom = finish_of_code(words)
     feed = words.context.feed
     return plan_event(EventEntries(words, CODE_LETTERS, planes, pocket, finish, bottom, feed))
@@ -125,7 +119,7 @@ def plan_call(words: Words, planes: EventPlanes) -> CyclePlan:
     finish_feed = finish_feed_of_call(words)
     feed = words.take_positive("F") or words.context.feed
     words.context = words.context._replace(feed=feed)
-    check_modes(words)
+    words.check_block(EVENT_ENTRIES)
     cycle = words.take("G") or PERIMETER_CYCLE
     if cycle not in (PERIMETER_CYCLE, POCKET_CYCLE):
         raise words.refuse_word("G", cycle, "must be 0 (perimeter) or 7 (pocket)")
@@ -179,7 +173,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     tool = loaded_tool(words)
     roughing = roughing_of(entries, circle, tool, width)
     depths = depths_of(entries, depth, first_plane, peck)
-    check_count(words, round(roughing["rings"] * depths["levels"]), "J and K make")
+    words.check_count(round(roughing["rings"] * depths["levels"]), "J and K make")
     side = side_finish_of(entries, circle, tool)
     position = {
         "x": circle.x,
@@ -197,12 +191,14 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     }
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
+    heights = first_plane, second_plane, final
+    words.check_travel(CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
     return CyclePlan(
         position | roughing | depths | side | feeds,
-        CycleExtent(XY, (circle.x, circle.y, final), largest, (first_plane, second_plane, final)),
         lambda: cut_of_event(entries, circle, tool, depths),
+        None,
         uncut_material(words, roughing["roughing_width"], tool),
-        commanded_planes=given,
+        given,
     )
 
 
@@ -247,7 +243,7 @@ def circle_of(entries: EventEntries) -> EventCircle:
             f"{entries.letters.finish}{number(entries.finish)}: there is no finish pass"
             f" with the tool centre on the circle ({letter}0)"
         )
-    x, y = context.absolute(x, context.x), context.absolute(y, context.y)
+    x, y = words.absolute(x, context.x), words.absolute(y, context.y)
     return EventCircle(x, y, radius, side, rough_arc, finish_arc)
 
 
@@ -279,7 +275,7 @@ def roughing_of(
     cutter = 0.0 if circle.side == ON_CIRCLE else tool.radius
     if circle.side != OUTER_SIDE:
         more = f" + {letter}{number(finish)}" if finish else ""
-        check_fits(entries.words, "R", circle.radius, cutter, f"T{tool.number}", (finish, more))
+        entries.words.check_fits("R", circle.radius, cutter, f"T{tool.number}", (finish, more))
     if entries.pocket:
         rings = rings_of(entries, radius, tool, width)
     elif width is not None:

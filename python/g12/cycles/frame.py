@@ -10,24 +10,15 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
-from g12.cycles.plan import (
-    CLEARANCE_MM,
-    Cutter,
-    CyclePlan,
-    Hole,
-    PocketEntry,
-    check_block,
-    hole_of,
-    sized_cutter,
-)
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, hole_of
 from g12.errors import number
 from g12.request import (
     CLEARED,
     CLOCKWISE,
     COUNTERCLOCKWISE,
+    Cutter,
     CycleExtent,
     Words,
-    check_count,
     steps_between,
 )
 from g12.state import XY
@@ -54,20 +45,20 @@ class Frame(NamedTuple):
 
 def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
     """Return the frame of one block; ``entry`` are the machine's settings of a plunge."""
-    check_block(words, FRAME_WORDS)
+    words.check_block(FRAME_WORDS)
     context = words.context
     hole = hole_of(words, context.z)
     frame = frame_of(words)
     level = words.take_positive("K") or hole.depth
     stepover = words.take_positive("Q")
     plunge_feed = words.take_positive("P") or context.feed * entry.feed / 100
-    cutter = sized_cutter(words)
+    cutter = words.sized_cutter()
     if stepover:
         check_stepover(words, frame, stepover, cutter)
     check_room(words, frame, cutter)
     rings = rings_of(words, frame, stepover or cutter.radius, cutter)
     levels = max(1, steps_between(0.0, hole.depth, level, context.rounding))
-    check_count(words, round(levels * (rings["rings"] + 1)), "Q and K make")
+    words.check_count(round(levels * (rings["rings"] + 1)), "Q and K make")
     lead = min(CLEARED * cutter.radius, rings["a"], rings["b"])
     fall = hole.depth / levels
     numbers = {
@@ -95,7 +86,9 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
             (hole.x, hole.y), lengths, frame.corner, frame.side, middle, floors, cutter.used
         )
 
-    return cutter.plan(numbers, extent_of(hole, frame, cutter, lead), cut)
+    extent = extent_of(hole, frame, cutter, lead)
+    words.check_travel(extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def frame_of(words: Words) -> Frame:
@@ -177,7 +170,7 @@ def rings_of(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> dic
 def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -> int:
     """Return the whole turns of the helix down to a level."""
     turns = max(1, ceil(height / (2 * pi * radius * tan(radians(entry.angle))) - 1e-9))
-    check_count(words, turns, "a helix down to the level makes")
+    words.check_count(turns, "a helix down to the level makes")
     return turns
 
 

@@ -16,35 +16,29 @@ The motions of `ngc/g12_haas.ngc`, per level:
 
 A tool-centre radius b is the programmed radius less the tool radius.
 
-Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known; I
-required, above 0; K and Q together, both above 0; L whole, from 1; without X and Y `check_start`;
+Rules, in the order of the checks: the modes and words of `check_block`; I
+required, above 0; K and Q together, both above 0; L whole, from 1;
 D whole, from 0, in the tool table, or a cutter known without it; I greater than the tool radius by
 a ring that can be cut, less than K; not too many circles; a helix of not too many turns.
 """
 
+from typing import NamedTuple
+
 from g12.cut_report import PocketCut
-from g12.cycles.plan import (
-    STRAIGHT_DOWN,
-    Cutter,
-    CyclePlan,
-    PocketEntry,
-    chosen_cutter,
-    pocket_descent,
-)
+from g12.cycles.plan import STRAIGHT_DOWN, CyclePlan, PocketEntry, pocket_descent
 from g12.errors import number
-from g12.request import (
-    CLEARED,
-    CycleExtent,
-    Words,
-    check_count,
-    check_fits,
-    check_modes,
-    check_start,
-    steps_between,
-)
+from g12.request import CLEARED, Cutter, CycleExtent, Words, steps_between
 from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"
+
+
+class Pocket(NamedTuple):
+    """The radii of a pocket's first and last circle, the stepover, 0 where these are one."""
+
+    first: float
+    finished: float
+    stepover: float
 
 
 def plan_pocket(
@@ -52,29 +46,31 @@ def plan_pocket(
 ) -> CyclePlan:
     """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
     context = words.context
-    check_modes(words)
-    words.check_known(HAAS_WORDS)
-    first = words.require_positive("I", "the radius of the first circle")
-    outward = words.take_pair("K", "Q")
-    levels = words.take_whole("L", least=1, default=1)
     names_centre = "X" in words or "Y" in words
-    x = context.absolute(words.take("X"), context.x)
-    y = context.absolute(words.take("Y"), context.y)
+    words.check_block(HAAS_WORDS)
+    first = words.require_positive("I", "the radius of the first circle")
+    words.check_pair("K", "Q")
+    outermost, stepover = words.take_positive("K"), words.take_positive("Q")
+    levels = words.take_whole("L", least=1, default=1)
+    x, y = words.take_centre()
     depth = words.take("Z")
-    if not names_centre:
-        check_start(words)
-    cutter = chosen_cutter(words)
-    check_fits(words, "I", first, cutter.radius, cutter.source)
-    if outward and outward[0] <= first + context.rounding:
-        raise words.refuse_word("I", first, f"must be less than K{number(outward[0])}")
+    z = words.absolute(depth, context.z)
+    cutter = words.chosen_cutter()
+    words.check_fits("I", first, cutter.radius, cutter.source)
+    if outermost and outermost <= first + context.rounding:
+        raise words.refuse_word("I", first, f"must be less than K{number(outermost)}")
 
-    finished, stepover = outward or (first, first)
-    links = links_outward(words, first, finished, stepover, clearing, levels)
-    z = context.absolute(depth, context.z)
+    pocket = Pocket(first, outermost or first, stepover or 0.0)
+    growth = pocket.stepover / 2 if clearing == "spiral" else pocket.stepover  # of a link
+    links = growth and steps_between(first, pocket.finished, growth, context.rounding)
+    cause = f"{words.written('Q', pocket.stepover)} makes" if links else "L makes"
+    words.check_count(round(links + 1) * levels, cause)
     z_step = depth or 0.0 if context.incremental else 0.0
-    first_radius = first - cutter.radius
+    last_level = z + z_step * (levels - 1)
+    extent = CycleExtent(XY, (x, y, z), pocket.finished - cutter.radius, (z, last_level))
+    words.check_travel(extent)
     heights = context.z - z, -z_step
-    down = pocket_descent(words, entry, first_radius, cutter.radius, heights)
+    first_radius = first - cutter.radius
     numbers = {
         "x": x,
         "y": y,
@@ -84,74 +80,65 @@ def plan_pocket(
         "levels": levels,
         "first_radius": first_radius,
         "rings": clearing != "spiral",
+        **pocket_descent(words, entry, first_radius, cutter.radius, heights),
+        **links_outward(pocket, growth, links),
     }
-    message = upward(words, depth)
-    message = message or uncut_material(words, outward, first, cutter, CLEARED * entry.helix)
-    extent = CycleExtent(XY, (x, y, z), finished - cutter.radius, (z, z + z_step * (levels - 1)))
+    message = upward(words, depth, z) or uncut_material(words, pocket, cutter, entry)
 
     def cut() -> PocketCut:
         return PocketCut(
             plane=XY,
             centre=(x, y, z),
-            wall=finished,
+            wall=pocket.finished,
             first=first,
-            step=stepover if outward else 0.0,
+            step=pocket.stepover,
             inner=first_radius - cutter.radius,
             levels=tuple(z + z_step * level for level in range(levels)),
             cutter=cutter.used,
         )
 
-    return cutter.plan(numbers | links | down, extent, cut, message)
+    return CyclePlan(numbers, cut, cutter, message)
 
 
-def links_outward(
-    words: Words, first: float, finished: float, stepover: float, clearing: str, levels: int
-) -> dict[str, float]:
+def links_outward(pocket: Pocket, growth: float, links: float) -> dict[str, float]:
     """Return the locals of the links: stepovers, or half turns of the spiral."""
-    growth = stepover / 2 if clearing == "spiral" else stepover
-    links = steps_between(first, finished, growth, words.context.rounding)
-    check_count(words, (links + 1) * levels, f"Q{number(stepover)} makes" if links else "L makes")
-    step, last_step = min(growth, finished - first), finished - first - growth * (links - 1)
+    if not links:
+        return {"links": 0, "step": 0.0, "shorter": 0.0}
+    width = pocket.finished - pocket.first
+    step, last_step = min(growth, width), width - growth * (links - 1)
     return {"links": links, "step": step, "shorter": (1 - last_step / growth) * step}
 
 
-def upward(words: Words, depth: float | None) -> str | None:
+def upward(words: Words, depth: float | None, z: float) -> str | None:
     """Return the operator message of a pocket that begins above the tool, or None.
 
     A depth without a minus sign has lost it, most likely. The control would go up and cut, too.
     """
     context = words.context
-    if depth is None or context.absolute(depth, context.z) <= context.z + context.rounding:
+    if depth is None or z <= context.z + context.rounding:
         return None
     hint = ": has it lost its minus sign?" if depth > 0.0 else ""
     return f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}{hint}"
 
 
-def uncut_material(
-    words: Words, outward: tuple[float, float] | None, first: float, cutter: Cutter, helix: float
-) -> str | None:
+def uncut_material(words: Words, pocket: Pocket, cutter: Cutter, entry: PocketEntry) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
-
-    ``helix`` is the greatest radius of a helix in tool radii, 0 without.
 
     The control's own sample programs do this, so it is no error. With D0 the cutter's size
     is not known, and a single circle may well finish a bored hole: no message then.
     """
-    if outward is None or cutter.radius == 0:
+    first, finished, stepover = pocket
+    if not stepover or not cutter.radius:
         return None
-    (finished, stepover), rounding = outward, words.context.rounding
-    diameter = words.context.tool_size(2 * cutter.radius)
+    rounding, cut_by_entry = words.context.rounding, 3 + CLEARED * entry.helix  # in tool radii
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
-        return (
-            f"{words.code}: Q{number(stepover)} is greater than the tool diameter {diameter}:"
-            " material is left between the rings"
-        )
-    # The entry cuts up to the tool radius plus the helix, the first ring from I - 2 tool radii on.
-    most = 3 + helix
-    if first > most * cutter.radius + rounding:
-        remains = "a ring is left about the centre" if helix else "a core is left in the centre"
-        return (
-            f"{words.code}: I{number(first)} is greater than {number(most / 2)} x the tool diameter"
-            f" {diameter}: {remains}"
-        )
-    return None
+        wide, where = f"Q{number(stepover)} is greater than", "material is left between the rings"
+    elif first > cut_by_entry * cutter.radius + rounding:
+        # the entry cuts up to the tool radius plus the helix, the first ring from I - 2 of them on
+        wide = f"I{number(first)} is greater than {number(cut_by_entry / 2)} x"
+        where = "a ring is left about" if entry.helix else "a core is left in"
+        where += " the centre"
+    else:
+        return None
+    diameter = words.context.tool_size(2 * cutter.radius)
+    return f"{words.code}: {wide} the tool diameter {diameter}: {where}"

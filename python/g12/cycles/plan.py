@@ -1,31 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the planners of cycles share: their result, the descent, the cutter, a hole.
+"""What the planners of cycles share: their result, the descent, a hole.
 
 The helix of a pocket consists of half turns with the same fall each. The slope of the last few
 decreases, so that the toolpath has no corner where it reaches the level. One full circle at that
 level follows. The helix ends at the angle where it began. Lengths are in program units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from math import atan, ceil, cos, pi, radians, sin, tan
 from typing import NamedTuple
 
-from g12.cut_report import BY_D, BY_LAST_D, LOADED, PlannedCut, UsedCutter
+from g12.cut_report import PlannedCut
 from g12.errors import number
-from g12.request import (
-    CLEARED,
-    COUNTERCLOCKWISE,
-    CycleExtent,
-    Words,
-    check_modes,
-    check_start,
-    commanded_tool,
-    other_cutter,
-    sound_tool,
-)
-from g12.state import Tool
+from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, Words
 
 
 class EventPlanes(NamedTuple):
@@ -34,29 +21,22 @@ class EventPlanes(NamedTuple):
     first: float | None = None
     second: float | None = None
 
-    def scaled(self, factor: float) -> EventPlanes:
-        """Return the planes in another unit."""
-        return EventPlanes(*(None if plane is None else plane * factor for plane in self))
+
+NO_PLANES = EventPlanes()
 
 
 class CyclePlan(NamedTuple):
     """A checked cycle: ``locals`` are the named locals of its sub, which its .ngc file explains.
 
-    Lengths and feeds are in program units. ``message`` is for the operator, never a refusal, as are
-    ``other_cutter``: D is not the loaded tool, and ``kept_cutter``: without D another one counts
-    than the program shows. ``commanded_cutter`` is the one that a Haas D names,
-    ``commanded_planes`` are those that an event gives for later ones. ``cut`` returns what is
-    reported.
+    Lengths and feeds are in program units. ``cut`` returns what is reported, ``message`` is for the
+    operator, never a refusal. ``planes`` are those that an event gives for later ones.
     """
 
     locals: dict[str, float]
-    extent: CycleExtent
     cut: Callable[[], PlannedCut]
+    cutter: Cutter | None
     message: str | None = None
-    other_cutter: str | None = None
-    commanded_cutter: Tool | None = None
-    commanded_planes: EventPlanes | None = None
-    kept_cutter: str | None = None
+    planes: EventPlanes = NO_PLANES
 
 
 LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to the next
@@ -87,13 +67,13 @@ class Descent(NamedTuple):
 class Helix(NamedTuple):
     """Helices of one radius, whose ``last`` half turns have a decreasing slope."""
 
-    radius: float = 0.0
-    slope: float = 0.0
-    last: int = 0
+    radius: float
+    slope: float
+    last: int
 
     def descent(self, height: float) -> Descent:
         """Return the descent by a height, at most as steep as the slope, in whole turns."""
-        if not self.radius or height <= 0.0:
+        if height <= 0.0:
             return Descent()
         rest = 0.5 * self.last
         turns = max(1, ceil(height / (pi * self.radius * self.slope) - rest))
@@ -103,8 +83,6 @@ class Helix(NamedTuple):
 
 def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
     """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
-    if not entry.helix:
-        return Helix()
     slope = tan(radians(entry.angle))
     radius = min(first, CLEARED * cutter) if cutter else first
     return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
@@ -118,18 +96,23 @@ def pocket_descent(
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.
     """
-    helix, feed = helix_of(entry, first, cutter), words.context.feed
-    check_helix(words, helix, heights[0], cutter)
-    to_first, further = map(helix.descent, heights)
+    feed = words.context.feed
     numbers = {
-        "restart": heights[1] != 0 and not further.turns,
-        "turns": to_first.turns,
+        "restart": heights[1] != 0,
+        "turns": 0,
         "feed": feed,
         "plunge_feed": feed * (entry.feed / 100.0),
     }
+    if not entry.helix:
+        return numbers
+    helix = helix_of(entry, first, cutter)
+    check_helix(words, helix, heights[0], cutter)
+    to_first, further = map(helix.descent, heights)
+    numbers["restart"] = heights[1] != 0 and not further.turns
     if not to_first.turns:
         return numbers
     return numbers | {
+        "turns": to_first.turns,
         "fall": to_first.fall,
         "next_turns": further.turns,
         "next_fall": further.fall,
@@ -155,74 +138,6 @@ def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> Non
     )
 
 
-class Cutter(NamedTuple):
-    """The cutter of a block, its name in messages, and what the operator hears of it."""
-
-    used: UsedCutter
-    source: str
-    other: str | None
-    kept: str | None
-
-    @property
-    def radius(self) -> float:
-        return self.used.radius
-
-    def plan(
-        self,
-        numbers: dict[str, float],
-        extent: CycleExtent,
-        cut: Callable[[], PlannedCut],
-        message: str | None = None,
-    ) -> CyclePlan:
-        used = self.used
-        commanded = Tool(used.number, used.radius) if used.source == BY_D else None
-        return CyclePlan(
-            numbers, extent, cut, message, self.other, commanded, kept_cutter=self.kept
-        )
-
-
-def chosen_cutter(words: Words) -> Cutter:
-    """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
-    context, other = words.context, other_cutter(words, words.context.last_cutter)
-    tool, by, kept = commanded_tool(words), BY_D, None
-    if tool is not None:
-        source = f"D{tool.number}"
-    elif context.last_cutter is not None:
-        tool, by, source = context.last_cutter, BY_LAST_D, "the D last commanded"
-    elif context.spindle_tool is not None:
-        tool, by = context.spindle_tool, LOADED
-        source = f"T{tool.number} in the spindle"
-    else:
-        raise words.refuse("D is missing, none was commanded before and no tool is loaded")
-    if by != BY_LAST_D:
-        sound_tool(words, tool, source)
-    if by != BY_D:
-        kept = kept_cutter(words, tool)
-    return Cutter(UsedCutter(tool.radius, by, tool.number), source, other, kept)
-
-
-def kept_cutter(words: Words, cutter: Tool) -> str | None:
-    """Return the operator message of a block without D whose cutter the program does not show.
-
-    It may be that of an older line of the tool table, or depend on what ran before.
-    """
-    context, before = words.context, "the D of what ran before"
-    size = context.tool_size(2 * cutter.radius)
-    named = context.tool_in_table(cutter.number) if cutter.number else None
-    if named and abs(named.radius - cutter.radius) > context.rounding:
-        now = context.tool_size(2 * named.radius)
-        return (
-            f"{words.code}: D{cutter.number} has the diameter {now} in the tool table now, but"
-            f" counts as it was commanded, with {size}. Give D{cutter.number} again"
-        )
-    if not context.d_is_earlier():
-        return None
-    counts = f"{before} counts, diameter {size}"
-    if context.last_cutter is None:
-        counts = f"the loaded tool T{cutter.number} counts, diameter {size}, or {before}"
-    return f"{words.code}: no D above this block in the program: {counts}. Give D"
-
-
 CLEARANCE_MM, CLEARANCE_INCH = 1.0, 0.04  # of the rapid down, above the top
 WHOLE_TURN = 1e-5  # a smaller part of a turn is rounding: its arc would be a full circle
 
@@ -242,22 +157,14 @@ class Hole(NamedTuple):
         return self.top - self.z
 
 
-def check_block(words: Words, known: str) -> None:
-    check_modes(words)
-    words.check_known(known)
-    if "X" not in words and "Y" not in words:
-        check_start(words)
-
-
 def hole_of(words: Words, top: float | None = None) -> Hole:
     """Return where the cycle cuts; under G91 its Z counts from the top, which is R or ``top``."""
     context = words.context
-    x = context.absolute(words.take("X"), context.x)
-    y = context.absolute(words.take("Y"), context.y)
+    x, y = words.take_centre()
     depth = words.require("Z", "the depth")
     if top is None:
         given = words.take("R")
-        top = context.absolute(given, context.z)
+        top = words.absolute(given, context.z)
         if given is not None and top > context.z + context.rounding:
             rule = f"puts the top above the tool at Z{number(context.z)}: retract first"
             raise words.refuse_word("R", given, rule)
@@ -266,14 +173,6 @@ def hole_of(words: Words, top: float | None = None) -> Hole:
         raise words.refuse_word("Z", depth, f"must be below the top, Z{number(top)}")
     clearance = CLEARANCE_INCH if context.inch else CLEARANCE_MM
     return Hole(x, y, context.z, min(context.z, top + clearance), top, z)
-
-
-def sized_cutter(words: Words) -> Cutter:
-    """Return the cutter of the block, which must have a diameter."""
-    cutter = chosen_cutter(words)
-    if not cutter.radius:
-        raise words.refuse(f"{cutter.source} has no diameter: it sets the path")
-    return cutter
 
 
 def turns_of(height: float, pitch: float, arc: int) -> dict[str, float]:

@@ -10,18 +10,9 @@ from math import ceil, sqrt
 from typing import NamedTuple
 
 from g12.cut_report import ThreadCut
-from g12.cycles.plan import (
-    CLEARANCE_MM,
-    Cutter,
-    CyclePlan,
-    Hole,
-    check_block,
-    hole_of,
-    sized_cutter,
-    turns_of,
-)
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, Words, check_count, steps_between
+from g12.request import CLOCKWISE, COUNTERCLOCKWISE, Cutter, CycleExtent, Words, steps_between
 from g12.state import XY
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
@@ -49,19 +40,19 @@ class Thread(NamedTuple):
 
 
 def plan_thread(words: Words, arc: int) -> CyclePlan:
-    check_block(words, THREAD_WORDS)
+    words.check_block(THREAD_WORDS)
     hole = hole_of(words)
     thread = thread_of(words)
     high = thread.large - thread.small
     infeed = words.take_positive("Q") or high
     springs = words.take_whole("L", least=0)
-    cutter = sized_cutter(words)
+    cutter = words.sized_cutter()
     check_room(words, hole, thread, cutter)
     passes = max(1, steps_between(thread.small, thread.large, infeed, words.context.rounding))
     ratio = lead_ratio(words, hole, thread, cutter)
     runs = runs_of(words, hole, thread, ratio, arc)
     turns = ceil(runs["runs"] * abs(runs["rise"] / thread.pitch) * (passes + springs))
-    check_count(words, turns, "P, Q and L make")
+    words.check_count(turns, "P, Q and L make")
     side = 1 if thread.outside else -1
     radius = (thread.small if thread.outside else thread.large) + side * cutter.radius
     numbers = {
@@ -83,11 +74,12 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
         widest = (widest + high) * (1 - 2 * ratio)
     highest = max(runs["begin"], runs["last"] + runs["rise"] + 2 * runs["lead"])
     extent = CycleExtent(XY, (hole.x, hole.y, hole.z), widest, (hole.start, hole.z, highest))
+    words.check_travel(extent)
 
     def cut() -> ThreadCut:
         return ThreadCut((hole.x, hole.y), *thread, hole.top, (hole.z,), cutter.used)
 
-    return cutter.plan(numbers, extent, cut)
+    return CyclePlan(numbers, cut, cutter)
 
 
 def thread_of(words: Words) -> Thread:

@@ -17,11 +17,10 @@ centre:
 All of it lies on the side of X that I's sign picks: I-50 is I50 turned by 180 degrees.
 With d = the tool radius, signed like I, R - d and K - d and I - d are tool-centre positions.
 
-Rules, in the order of the checks: G17 and the modes of `check_modes`; every word known;
-`check_start`; I required; R or J, not both; K and Q together, Q above 0; L whole, from 1; D whole,
-from 0, in the tool table; no negative diameter; I not 0, beyond the tool radius; R - d from 0 to
-less than I - d; K - d between R - d and I - d; each of them apart by an arc that can be cut; not
-too many circles.
+Rules, in the order of the checks: the modes and words of `check_block`; I required; R or J, not
+both; K and Q together, Q above 0; L whole, from 1; D whole, from 0, in the tool table; no negative
+diameter; I not 0, beyond the tool radius; R - d from 0 to less than I - d; K - d between R - d and
+I - d; each of them apart by an arc that can be cut; not too many circles.
 """
 
 from math import copysign
@@ -30,18 +29,7 @@ from typing import NamedTuple
 from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request import (
-    CycleExtent,
-    Words,
-    check_count,
-    check_fits,
-    check_modes,
-    check_start,
-    commanded_tool,
-    other_cutter,
-    sound_tool,
-    steps_between,
-)
+from g12.request import Cutter, CycleExtent, Words, steps_between
 from g12.state import XY, Tool
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
@@ -51,13 +39,23 @@ class OffsetRadii(NamedTuple):
     """Tool-centre positions along X of a block's radii: each less the tool radius, sign of I."""
 
     words: Words
-    offset: float
+    finished: float  # I
+    radius: float  # of the tool
     cutter: str  # for messages
 
     def position(self, word: float) -> float:
         """Return the tool-centre position; exactly 0 if it differs from the centre by rounding."""
-        position = word - self.offset
+        position = word - copysign(self.radius, self.finished)
         return position if abs(position) > self.words.context.rounding else 0.0
+
+    @property
+    def last(self) -> float:
+        """The position on the finished circle."""
+        return self.position(self.finished)
+
+    @property
+    def source(self) -> str:
+        return f"where I{number(self.finished)} puts it"
 
     def refuse(self, letter: str, word: float, rule: str) -> Refusal:
         """Return the refusal of a word whose position breaks ``rule`` (the caller raises it)."""
@@ -74,30 +72,37 @@ class OffsetRadii(NamedTuple):
 
 
 def plan_circle(words: Words) -> CyclePlan:
-    context, other = words.context, other_cutter(words)
-    check_modes(words)
-    words.check_known(YASNAC_WORDS)
-    check_start(words)
+    context = words.context
+    words.check_block(YASNAC_WORDS)
     finished = words.require("I", "the radius of the finished circle")
-    traverse = take_traverse(words)
-    spiral = take_spiral(words)
+    if "R" in words and "J" in words:
+        raise words.refuse("R and J are the same word: give one of them")
+    letter = "R" if "R" in words else "J"
+    traverse = words.take(letter)
+    words.check_pair("K", "Q")
+    start, pitch = words.take("K"), words.take_positive("Q")
     circles = words.take_whole("L", least=1, default=1)
-    named = commanded_tool(words)
-    tool = named or Tool(0, 0.0)
-    radii = offset_radii(words, finished, sound_tool(words, tool, f"D{tool.number}"))
-
-    radius = radii.position(finished)
-    approach = approach_of(radii, traverse, finished)
-    turns = half_turns_of(radii, spiral, approach, finished)
-    check_count(words, round(turns["half_turns"]) + circles, "K, Q and L make")
+    tool = words.commanded_tool()
+    by, tool = (NO_CUTTER, Tool(0, 0.0)) if tool is None else (BY_D, tool)
+    source = f"D{tool.number}"
+    words.check_sound(tool, source)
+    words.check_fits("I", finished, tool.radius, source)
+    used = UsedCutter(tool.radius, by, tool.number)
+    cutter = Cutter(used, source, words.other_cutter(tool, source))
+    named = f"tool radius {context.tool_size(tool.radius)}, {source}" if tool.number else "no D"
+    radii = OffsetRadii(words, finished, tool.radius, named)
+    approach = 0.0 if traverse is None else approach_of(radii, letter, traverse)
+    spiral = None if start is None or pitch is None else (start, pitch)
+    turns = half_turns_of(radii, spiral, approach)
+    words.check_count(round(turns["half_turns"]) + circles, "K, Q and L make")
     numbers = {
         "x": context.x,
         "y": context.y,
         "approach": approach,
-        "radius": radius,
+        "radius": radii.last,
         "circles": circles,
+        **turns,
     }
-    extent = CycleExtent(XY, context.xyz, abs(radius))
 
     def cut() -> PocketCut:
         first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
@@ -105,64 +110,40 @@ def plan_circle(words: Words) -> CyclePlan:
             plane=XY,
             centre=context.xyz,
             wall=abs(finished),
-            first=first + tool.radius,
-            step=spiral[1] if spiral else 0.0,
-            inner=first + growth - tool.radius,
+            first=first + cutter.radius,
+            step=pitch or 0.0,
+            inner=first + growth - cutter.radius,
             levels=(context.z,),
-            cutter=UsedCutter(tool.radius, NO_CUTTER if named is None else BY_D, tool.number),
+            cutter=cutter.used,
         )
 
-    return CyclePlan(numbers | turns, extent, cut, other_cutter=other)
+    extent = CycleExtent(XY, context.xyz, abs(radii.last))
+    words.check_travel(extent)
+    return CyclePlan(numbers, cut, cutter)
 
 
-def take_traverse(words: Words) -> tuple[str, float] | None:
-    if "R" in words and "J" in words:
-        raise words.refuse("R and J are the same word: give one of them")
-    letter = "R" if "R" in words else "J"
-    value = words.take(letter)
-    return None if value is None else (letter, value)
-
-
-def take_spiral(words: Words) -> tuple[float, float] | None:
-    """Return K, signed, and Q, above zero."""
-    words.has_pair("K", "Q")
-    first, pitch = words.take("K"), words.take_positive("Q")
-    return None if first is None or pitch is None else (first, pitch)
-
-
-def offset_radii(words: Words, finished: float, tool: Tool) -> OffsetRadii:
-    """Return the radii of a block; refuse a finished circle that the cutter cannot mill."""
-    size = words.context.tool_size(tool.radius)
-    check_fits(words, "I", finished, tool.radius, f"D{tool.number}")
-    cutter = f"tool radius {size}, D{tool.number}" if tool.number else "no D"
-    return OffsetRadii(words, copysign(tool.radius, finished), cutter)
-
-
-def approach_of(radii: OffsetRadii, traverse: tuple[str, float] | None, finished: float) -> float:
-    """Return the end of the fast move, 0 without R."""
-    if traverse is None:
-        return 0.0
-    last, approach = radii.position(finished), radii.position(traverse[1])
-    source = f"where I{number(finished)} puts it"
-    if not 0.0 <= approach / last < 1.0:
-        raise radii.refuse(*traverse, f"it must be from 0 to less than X{number(last)}, {source}")
-    radii.check_apart(*traverse, last, source)
+def approach_of(radii: OffsetRadii, letter: str, traverse: float) -> float:
+    """Return the end of the fast move, which R commands."""
+    approach = radii.position(traverse)
+    if not 0.0 <= approach / radii.last < 1.0:
+        rule = f"it must be from 0 to less than X{number(radii.last)}, {radii.source}"
+        raise radii.refuse(letter, traverse, rule)
+    radii.check_apart(letter, traverse, radii.last, radii.source)
     return approach
 
 
 def half_turns_of(
-    radii: OffsetRadii, spiral: tuple[float, float] | None, approach: float, finished: float
+    radii: OffsetRadii, spiral: tuple[float, float] | None, approach: float
 ) -> dict[str, float]:
-    """Return the locals of the spiral's half turns.
+    """Return the locals of the spiral's half turns, by K and Q.
 
     Whole turns only, so that the finished circle begins on the side of I. The last turn grows by
     the remainder.
     """
-    last = radii.position(finished)
+    last, source = radii.last, radii.source
     if spiral is None:
         return {"first": last, "half_turns": 0, "growth": 0.0, "shrink": 0.0}
     first, pitch = radii.position(spiral[0]), spiral[1]
-    source = f"where I{number(finished)} puts it"
     if not approach / last < first / last < 1.0:
         bounds = f"between X{number(approach)} and X{number(last)}, {source}"
         raise radii.refuse("K", spiral[0], f"it must be {bounds}")

@@ -193,7 +193,8 @@ def saved_modes(interp: Interp) -> Saved:
 
 def begin(interp: Interp) -> None:
     """Take the value before the first change."""
-    _stack(interp).append(_with_block(interp, modes_in_force(interp)))
+    saved = _with_block(interp, modes_in_force(interp))
+    _stack(interp).append(saved)
 
 
 def _with_block(interp: Interp, saved: Saved) -> Saved:

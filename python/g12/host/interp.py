@@ -24,7 +24,11 @@ MOVE_WORDS = "ABCDHIJKRUVWXYZ"
 WORD_FIELDS = {  # of a block: flag and value
     letter: (f"{letter.lower()}_flag", f"{letter.lower()}_number")
     for letter in "ABCDEFHIJKLPQRSTUVWXYZ"
-} | {"D": ("d_flag", "d_number_float")}
+} | {
+    "D": ("d_flag", "d_number_float"),
+    "@": ("radius_flag", "radius"),
+    "^": ("theta_flag", "theta"),
+}
 
 
 def words_in(block: ParsedBlock, letters: Iterable[str]) -> dict[str, float]:

@@ -12,22 +12,8 @@ from pathlib import Path
 
 import linuxcnc
 
+from g12 import machine_ini
 from g12.errors import Refusal
-from g12.machine_ini import (
-    Axis,
-    FaceAxes,
-    Remap,
-    axes_of,
-    code_of_prolog,
-    coordinates_of,
-    face_of,
-    m_codes_of,
-    ranges_of,
-    remap_lines,
-    spindle_c_timeout,
-    value_in,
-    with_included,
-)
 from g12.settings import INI_SECTION, TOPLEVEL, Settings, settings_from_ini
 
 
@@ -45,8 +31,8 @@ def ini_file() -> str | None:
 def users_toplevel() -> str:
     """Return the file that [G12] TOPLEVEL names, as LinuxCNC finds it: in its working folder."""
     ini = ini_file()
-    lines = list(with_included(Path(ini))) if ini else []
-    return os.path.expanduser(value_in(lines, INI_SECTION, TOPLEVEL) or "")
+    lines = list(machine_ini.with_included(Path(ini))) if ini else []
+    return os.path.expanduser(machine_ini.value_in(lines, INI_SECTION, TOPLEVEL) or "")
 
 
 class Values:
@@ -99,44 +85,44 @@ class RunningMachine:
         return Values(ini_file() or os.devnull)
 
     @functools.cached_property
-    def remaps(self) -> dict[str, Remap]:
-        return {remap.code: remap for remap in remap_lines(self._ini.findall)}
+    def remaps(self) -> dict[str, machine_ini.Remap]:
+        return {remap.code: remap for remap in machine_ini.remap_lines(self._ini.findall)}
 
     @functools.cached_property
     def m_codes(self) -> frozenset[int]:
         """The numbers of the M codes that the machine has besides LinuxCNC's."""
-        return m_codes_of(self._ini.find, self.remaps.values())
+        return machine_ini.m_codes_of(self._ini.find, self.remaps.values())
 
     @functools.cached_property
     def coordinates(self) -> set[str]:
-        return set(coordinates_of(self._ini.find))
+        return set(machine_ini.coordinates_of(self._ini.find))
 
     @functools.cached_property
-    def axes(self) -> dict[str, Axis]:
+    def axes(self) -> dict[str, machine_ini.Axis]:
         """The limits of the axes; raises Refusal for a value that no axis can have."""
-        return axes_of(self._ini.find, self.coordinates | set("XZC"))
+        return machine_ini.axes_of(self._ini.find, self.coordinates | set("XZC"))
 
     @functools.cached_property
-    def face(self) -> FaceAxes | None:
+    def face(self) -> machine_ini.FaceAxes | None:
         """The axes of the part's face, None without the kinematics of the face."""
-        return face_of(self._ini.find)
+        return machine_ini.face_of(self._ini.find)
 
     @functools.cached_property
     def travel(self) -> dict[str, tuple[float, float]]:
         """The lowest and highest position of X, Y and Z in machine units."""
-        return ranges_of(self._ini.find, "XYZ")
+        return machine_ini.ranges_of(self._ini.find, "XYZ")
 
     @functools.cached_property
     def spindle_c_code(self) -> str:
         """The code that makes the spindle C, "" where none does."""
-        return code_of_prolog(remap_lines(self._ini.findall), "spindle_c_on")
+        return machine_ini.code_of_prolog(self.remaps.values(), "spindle_c_on")
 
     @functools.cached_property
     def spindle_c_timeout(self) -> float:
         """How long the spindle may take to become C, in seconds."""
         path = ini_file()  # LinuxCNC 2.9 hands out no empty value
-        lines = list(with_included(Path(path))) if path else []
-        return spindle_c_timeout(functools.partial(value_in, lines))
+        lines = list(machine_ini.with_included(Path(path))) if path else []
+        return machine_ini.spindle_c_timeout(functools.partial(machine_ini.value_in, lines))
 
 
 MACHINE = RunningMachine()

@@ -166,7 +166,8 @@ class ShownOnce(set[object]):
 
 def message_once(interp: Interp, key: object, text: str) -> None:
     """Show a message once for each program and ``key``, as long as LinuxCNC runs."""
-    shown, once = kept(interp, ShownOnce), (main_program(interp), key)
+    once = main_program(interp), key
+    shown = kept(interp, ShownOnce)
     if once not in shown:
         shown.add(once)
         message(text)

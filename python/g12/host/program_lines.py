@@ -12,7 +12,6 @@ from __future__ import annotations
 import functools
 import os
 from bisect import bisect_right
-from collections.abc import Iterable
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -214,11 +213,3 @@ class ProgramLines:
         interp.read("")
         self.line = bisect_right(self.source.starts, interp.blocks[0].offset - 1)
         self._in_file = interp.sequence_number = self.line
-
-
-def without_line(active: Iterable[int]) -> list[int]:
-    """Return active codes without their first entry: a line number, which may look like a code.
-
-    G90.1 is 901 there, and M52 is 52.
-    """
-    return list(active)[1:]

@@ -17,7 +17,6 @@ from g12.host.interp import (
     ToolTableEntry,
     millimetres_per_unit,
 )
-from g12.host.program_lines import without_line
 from g12.section.block_rules import NO_CODE, GGroup
 from g12.state import LINEAR_AXES, ROTARY_AXES, State, Tool
 
@@ -28,6 +27,7 @@ OFFSETS |= {letter: f"{2 * letter}_{{}}_offset" for letter in ROTARY_AXES}
 
 def read_state(interp: Interp) -> State:
     spindle, entry = feed_spindle(interp), interp.tool_table[0]
+    active = tuple(interp.active_g_codes)[1:]  # without a line number, which may look like a code
     return State(
         inch=interp.length_units == INCH_UNITS,
         machine_mm=1 / emccanon.GET_EXTERNAL_LENGTH_UNITS(),
@@ -53,7 +53,7 @@ def read_state(interp: Interp) -> State:
         spindle=spindle,
         speeds=tuple(interp.speed[number] for number in range(interp.num_spindles)),
         diameter=_diameter_mode(interp),
-        surface_speed=G96 in without_line(interp.active_g_codes),
+        surface_speed=G96 in active,
     )
 
 

@@ -12,7 +12,7 @@ from g12.moves.steps import FaceMove, SectionPlan, Segments, Step
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import SectionWords
 from g12.settings import Settings
-from g12.state import Beyond, beyond_travel
+from g12.state import Beyond, beyond_travel, refused_mode
 
 LEAST_MM = 0.001  # LinuxCNC 2.9.0~pre1 runs a smaller move of a slide with a rotary axis too fast
 RADIUS_TOLERANCE_MM = 0.0127  # mismatch of an arc's radii that LinuxCNC itself accepts
@@ -105,7 +105,6 @@ def check_entry(
     ``letters`` are the machine's axes, ``needed`` those of the section. ``centred`` are those whose
     0 is ``centre``.
     """
-    beside = "needs a move after G40: the tool is still beside the programmed point"
     *others, last = tuple(needed)
     state = start.state
     for holds, rule in (
@@ -118,10 +117,8 @@ def check_entry(
             "C" not in needed or not start.missing_code,
             f"needs the spindle as C: {start.missing_code} first",
         ),
-        (not state.compensated, "needs G40: compensation is switched on inside"),
-        (not state.inverse_time, "needs G94 or G95, not G93"),
+        (not (refused := refused_mode(state)), refused),
         (not state.surface_speed, "needs G97: with G96 the speed would change with X"),
-        (not state.offset_pending, beside),
         (not state.rotation, "needs an unrotated work offset (G10 L2 R0)"),
         *(_unshifted(start, letter, centre) for letter in centred),
         *rules,

@@ -21,27 +21,22 @@ END_OF_SUB = "o<g12_on_abort> endsub"
 
 
 def g12_on_abort(interp: Interp) -> None:
-    """Restore all that the aborted code has changed, and end the sub.
+    """Restore what is borrowed, open the clamps, run the user's own command, and end the sub.
 
-    The face ends with a flag that LinuxCNC has to meet at the operator's next line. So the sub's
-    last line is executed here, before it.
+    None of them depends on the success of another one. The face ends with a flag that LinuxCNC has
+    to meet at the operator's next line. So the sub's last line is executed here, before it.
     """
-    restore_all(interp, round(interp.params[REASON]))
+    settings, reason = MACHINE.settings, round(interp.params[REASON])
+    _attempt(interp, borrowed.after_abort, time.monotonic())
+    for code in settings.opening_codes:
+        _attempt(interp, run_code, f"M{code}")
+    if settings.on_abort_command:
+        _attempt(interp, run_code, f"{settings.on_abort_command} [{reason}]")
     if interp.call_level:
         _attempt(interp, run_code, END_OF_SUB)
-    after_abort_on_face(interp)
-
-
-def restore_all(interp: Interp, reason: int) -> None:
-    """Restore what is borrowed, open the clamps, run the user's own command.
-
-    None of them depends on the success of another one.
-    """
-    _attempt(interp, borrowed.after_abort, time.monotonic())
-    for code in MACHINE.settings.opening_codes:
-        _attempt(interp, run_code, f"M{code}")
-    if MACHINE.settings.on_abort_command:
-        _attempt(interp, run_code, f"{MACHINE.settings.on_abort_command} [{reason}]")
+    interp.read("")  # or LinuxCNC would go on with the last block executed here
+    if MACHINE.face:
+        kinematics_switch.leave(interp)
 
 
 def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> None:
@@ -52,9 +47,3 @@ def _attempt(interp: Interp, step: Callable[..., None], argument: object) -> Non
         messages.message(f"ON_ABORT_COMMAND: {error_text(interp)}")
     except Exception as error:
         messages.message(messages.shown_text(error))
-
-
-def after_abort_on_face(interp: Interp) -> None:
-    interp.read("")  # or LinuxCNC would go on with the last block executed here
-    if MACHINE.face:
-        kinematics_switch.leave(interp)

@@ -5,19 +5,15 @@ from __future__ import annotations
 
 import functools
 import itertools
+import math
 import re
-from collections.abc import Callable
-from math import inf
+from collections.abc import Callable, Container
 from typing import NamedTuple
 
 from interpreter import INTERP_OK
 
-from g12.cycles import circle_mill, mitsubishi, yasnac
-from g12.cycles.bore import plan_bore
-from g12.cycles.frame import plan_frame
-from g12.cycles.haas import plan_pocket
+from g12.cycles import bore, circle_mill, frame, haas, mitsubishi, thread, yasnac
 from g12.cycles.plan import CyclePlan, EventPlanes, PocketEntry
-from g12.cycles.thread import plan_thread
 from g12.host import borrowed, messages
 from g12.host.call_frame import set_locals_at
 from g12.host.interp import (
@@ -29,10 +25,9 @@ from g12.host.interp import (
     words_in,
 )
 from g12.host.machine import MACHINE
-from g12.host.messages import code_of_block, in_mdi, main_program
 from g12.host.state import read_state, tool_of_entry
 from g12.lengths import ROUNDING_MM
-from g12.request import CLOCKWISE, COUNTERCLOCKWISE, CycleExtent, Words, check_travel
+from g12.request import CLOCKWISE, COUNTERCLOCKWISE, Words
 from g12.section.block_rules import NO_CODE, GGroup
 from g12.state import State, Tool
 
@@ -44,25 +39,15 @@ def check_at_start() -> None:
 
 
 def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> int:
-    """Set the locals of a plan that stays in the travel; show the operator its messages.
+    """Set the locals of a plan, take the modes to restore, and show the operator its messages.
 
-    That of another cutter is shown once for each program and tool. A form has the block refused
-    where a program would be told.
+    A form has the block refused where a program would be told.
     """
-    if is_strict(interp) and plan.message:
+    if plan.message and is_strict(interp):
         raise words.refuse(plan.message.removeprefix(f"{words.code}: "))
-    stay_within_limits(interp, words, plan.extent)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     borrowed.begin(interp)
-    tool = words.context.spindle_tool
-    if plan.other_cutter and tool:
-        messages.message_once(interp, tool.number, plan.other_cutter)
-    if plan.commanded_cutter:
-        remember_cutter(interp, plan.commanded_cutter)
-    if plan.kept_cutter:
-        messages.message_once(interp, plan.kept_cutter, plan.kept_cutter)
-    if plan.commanded_planes:
-        remember_planes(interp, plan.commanded_planes)
+    remember(interp, plan, kept(interp, CommandedValues))
     if plan.message:
         messages.message(plan.message)
     messages.begin_cut(interp, words, plan.cut)
@@ -76,7 +61,7 @@ def entry_of_machine() -> PocketEntry:
 
 def prepare_haas(interp: Interp, arc: int) -> int:
     words = words_of_block(interp)
-    plan = plan_pocket(words, MACHINE.settings.clearing, entry_of_machine())
+    plan = haas.plan_pocket(words, MACHINE.settings.clearing, entry_of_machine())
     hand = 1 if arc == COUNTERCLOCKWISE else -1
     return hand_over(interp, words, plan, arc=arc, hand=hand)
 
@@ -116,17 +101,17 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
 
 def prepare_bore(interp: Interp, arc: int) -> int:
     words = words_of_block(interp)
-    return hand_over(interp, words, plan_bore(words, arc, MACHINE.settings.entry_angle))
+    return hand_over(interp, words, bore.plan_bore(words, arc, MACHINE.settings.entry_angle))
 
 
 def prepare_thread(interp: Interp, arc: int) -> int:
     words = words_of_block(interp)
-    return hand_over(interp, words, plan_thread(words, arc))
+    return hand_over(interp, words, thread.plan_thread(words, arc))
 
 
 def prepare_frame(interp: Interp, arc: int) -> int:
     words = words_of_block(interp)
-    return hand_over(interp, words, plan_frame(words, arc, entry_of_machine()))
+    return hand_over(interp, words, frame.plan_frame(words, arc, entry_of_machine()))
 
 
 def prolog(prepare: Callable[..., int], which: int) -> Callable[..., int]:
@@ -175,7 +160,7 @@ HARMLESS_M = (NO_CODE, 0, 1, 2, 3, 4, 5, 7, 8, 9, 30, 48, 49, 60)
 
 FORM = "form_"  # begins the name of a form's sub
 # every word that a block can have but F, S, T, N, M and O, which the interpreter processes itself
-CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ"
+CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ@^"
 
 
 def words_of_block(interp: Interp) -> Words:
@@ -183,20 +168,17 @@ def words_of_block(interp: Interp) -> Words:
 
     Refuses a second code that reads them.
     """
-    block = interp.blocks[interp.remap_level]
+    commanded, block = kept(interp, CommandedValues), interp.blocks[interp.remap_level]
     values = words_in(block, CYCLE_WORDS)
-    if block.radius_flag:
-        values["@"] = block.radius
-    if block.theta_flag:
-        values["^"] = block.theta
-    words = Words(code_of_block(interp), values, snapshot(interp))
-    other = code_reading_words(block, words)
+    state = with_tools(interp, read_state(interp), commanded)
+    other = code_reading_words(block, values)
+    words = Words(messages.code_of_block(interp), values, state)
     if other:
         raise words.refuse(f"{other} cannot be in the same block")
     return words
 
 
-def code_reading_words(block: ParsedBlock, words: Words) -> str | None:
+def code_reading_words(block: ParsedBlock, words: Container[str]) -> str | None:
     """Return a code of the block that would read a word of the cycle too, or change its tool.
 
     (The interpreter knows the tool of M6 only after the block.)
@@ -207,11 +189,8 @@ def code_reading_words(block: ParsedBlock, words: Words) -> str | None:
     for group, code, letters in READING_WORDS:
         if g_modes[group] == code and any(letter in words for letter in letters):
             return f"G{code / 10:g}"
-    if block.m_count:
-        for code in block.m_modes:
-            if code not in HARMLESS_M:
-                return f"M{code}"
-    return None
+    m_codes = block.m_modes if block.m_count else ()
+    return next((f"M{code}" for code in m_codes if code not in HARMLESS_M), None)
 
 
 def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
@@ -222,6 +201,25 @@ def entries_of_sub(interp: Interp, sub: str, count: int) -> list[float] | None:
     if interp.sub_context[interp.call_level - 1].subname != sub:
         return None
     return [interp.params[index] for index in range(1, count + 1)]
+
+
+def is_strict(interp: Interp) -> bool:
+    """Return whether a form makes the block: its messages would be read too late."""
+    frames = (interp.sub_context[level] for level in range(interp.call_level + 1))
+    return any((frame.subname or "").startswith(FORM) for frame in frames)
+
+
+def with_tools(interp: Interp, state: State, commanded: CommandedValues) -> State:
+    """Return the state with what only cycles and shapes need: tools, and the limits of the axes.
+
+    In a preview there are no limits: it also shows programs before the work offset is set.
+    """
+    return state._replace(
+        last_cutter=last_cutter(interp, commanded),
+        d_is_earlier=functools.partial(d_is_earlier, interp, commanded),
+        tool_in_table=functools.partial(tool_in_table, interp),
+        travel=MACHINE.travel if interp.task else None,
+    )
 
 
 def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
@@ -238,69 +236,23 @@ def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
     return None
 
 
-def last_cutter(interp: Interp) -> Tool | None:
+def last_cutter(interp: Interp, commanded: CommandedValues) -> Tool | None:
     """Return the cutter of the last D commanded, by a cycle or by G41/G42: tool 0.
 
     The interpreter's compensation radius remains after G40 and is converted by G20/G21. The cycles
     store their D there too: one register, as on the control.
     """
-    commanded, unit = commanded_of(interp), millimetres_per_unit(interp)
-    cutter, radius = commanded.cutter, interp.cutter_comp_radius * unit
-    if cutter is None and radius <= 0.0:
-        return None
-    if cutter is None or abs(cutter.radius - radius) > ROUNDING_MM:
-        cutter = commanded.cutter = Tool(0, radius)
-    return Tool(cutter.number, interp.cutter_comp_radius)
+    radius = interp.cutter_comp_radius
+    in_mm = radius * millimetres_per_unit(interp)
+    if abs(commanded.radius - in_mm) > ROUNDING_MM:
+        commanded.radius, commanded.tool_number = in_mm, 0
+    return Tool(commanded.tool_number, radius) if commanded.gives_d or in_mm > 0.0 else None
 
 
-def remember_cutter(interp: Interp, cutter: Tool) -> None:
-    interp.cutter_comp_radius = cutter.radius
-    in_mm = cutter._replace(radius=cutter.radius * millimetres_per_unit(interp))
-    commanded_of(interp).remember_cutter(in_mm, place_of_block(interp))
-
-
-def d_is_earlier(interp: Interp) -> bool:
+def d_is_earlier(interp: Interp, commanded: CommandedValues) -> bool:
     """Return whether the D last commanded, if any, is not this run's."""
     place = place_of_block(interp)
-    return not commanded_of(interp).gives_d(place) and not compensates_above(place)
-
-
-def event_planes(interp: Interp) -> EventPlanes:
-    """Return the circle mill's reference planes as last commanded by this program.
-
-    A plane of another program, or of the text before an edit, would send the tool to a height that
-    this program does not contain.
-    """
-    planes = commanded_of(interp).planes_at(place_of_block(interp))
-    return planes.scaled(1 / millimetres_per_unit(interp))
-
-
-def remember_planes(interp: Interp, planes: EventPlanes) -> None:
-    in_mm = planes.scaled(millimetres_per_unit(interp))
-    commanded_of(interp).remember_planes(in_mm, place_of_block(interp))
-
-
-def snapshot(interp: Interp) -> State:
-    return read_state(interp)._replace(
-        last_cutter=last_cutter(interp),
-        d_is_earlier=functools.partial(d_is_earlier, interp),
-        tool_in_table=functools.partial(tool_in_table, interp),
-    )
-
-
-def is_strict(interp: Interp) -> bool:
-    """Return whether a form makes the block: its messages would be read too late."""
-    frames = (interp.sub_context[level] for level in range(interp.call_level + 1))
-    return any((frame.subname or "").startswith(FORM) for frame in frames)
-
-
-def stay_within_limits(interp: Interp, words: Words, extent: CycleExtent) -> None:
-    """Refuse a cycle that leaves the machine's travel.
-
-    Not in a preview, which also shows programs before the work offset is set.
-    """
-    if interp.task:
-        check_travel(words, extent, MACHINE.travel)
+    return not commanded.stands_above("D", place) and not compensates_above(place)
 
 
 # What a cycle commands for later blocks of the program, and where it did so. LinuxCNC tells no
@@ -320,78 +272,89 @@ class Place(NamedTuple):
     program: tuple[str, int] | None
     offsets: tuple[int, ...]
 
-    @property
-    def is_typed(self) -> bool:
-        return not self.offsets
-
     def reaches(self, later: Place) -> bool:
         """Return whether a value commanded here is still in force there.
 
         In MDI that of the loaded program is, in a program none that was typed.
         """
-        in_order = later.is_typed or () < self.offsets <= later.offsets
+        in_order = not later.offsets or () < self.offsets <= later.offsets
         return self.program == later.program and in_order
 
 
 def place_of_block(interp: Interp) -> Place:
     """Return the place of the block being remapped."""
-    if in_mdi(interp):
-        return Place(main_program(interp), ())
+    program = messages.main_program(interp)
+    if messages.in_mdi(interp):
+        return Place(program, ())
     levels = range(interp.call_level - 1)  # the last frame is that of the remap
     calls = (interp.sub_context[level].position - 1 for level in levels)
-    return Place(main_program(interp), (*calls, interp.blocks[interp.remap_level].offset))
+    return Place(program, (*calls, interp.blocks[interp.remap_level].offset))
 
 
 class CommandedValues:
-    """The commanded values of one interpreter, in mm.
+    """What the blocks of one interpreter have commanded for later ones, in mm.
 
-    ``planes`` are the circle mill's reference planes, ``cutter`` is that of the last D, tool 0
-    where G41 or G42 commanded it.
+    ``planes`` are the circle mill's reference planes by name. ``radius`` and ``tool_number`` are
+    those of the last D, the number 0 where G41 or G42 commanded it.
     """
 
     def __init__(self) -> None:
-        self.planes = EventPlanes()
-        self.cutter: Tool | None = None
+        self.planes: dict[str, float] = {}
+        self.radius, self.tool_number = 0.0, 0
         self._first: dict[tuple[str, bool], Place] = {}  # by value and whether it was typed
 
-    def remember_planes(self, given: EventPlanes, place: Place) -> None:
-        """Note the planes that a block gives."""
-        for name, plane in given._asdict().items():
-            if plane is not None:
-                self.planes = self.planes._replace(**{name: plane})
-                self._note(name, place)
-
-    def planes_at(self, place: Place) -> EventPlanes:
-        """Return those planes that a block above a place gives."""
-        planes = self.planes._asdict().items()
-        return EventPlanes(**{name: at for name, at in planes if self._stands_above(name, place)})
-
-    def remember_cutter(self, cutter: Tool, place: Place) -> None:
-        self.cutter = cutter
-        self._note("D", place)
-
-    def gives_d(self, place: Place) -> bool:
-        """Return whether a cycle with D stands above a place."""
-        return self._stands_above("D", place)
-
-    def _note(self, name: str, place: Place) -> None:
-        first = self._first.get((name, place.is_typed))
+    def note(self, name: str, place: Place) -> None:
+        """Note where a value has been commanded: the first such block of a run counts."""
+        first = self._first.get((name, not place.offsets))
         if not first or not first.reaches(place):
-            self._first[name, place.is_typed] = place
+            self._first[name, not place.offsets] = place
 
-    def _stands_above(self, name: str, place: Place) -> bool:
+    def stands_above(self, name: str, place: Place) -> bool:
         """Return whether the first block that commands a value stands above a place."""
         firsts = (self._first.get((name, typed)) for typed in (False, True))
         return any(first.reaches(place) for first in firsts if first)
 
+    @property
+    def gives_d(self) -> bool:
+        """Whether a cycle has commanded a D, which may be D0."""
+        return any(name == "D" for name, _ in self._first)
 
-def commanded_of(interp: Interp) -> CommandedValues:
-    return kept(interp, CommandedValues)
+
+def remember(interp: Interp, plan: CyclePlan, commanded: CommandedValues) -> None:
+    """Note what a plan commands for later blocks; show, once a program, how its D differs."""
+    place, unit, cutter = place_of_block(interp), millimetres_per_unit(interp), plan.cutter
+    for name, plane in plan.planes._asdict().items():
+        if plane is not None:
+            commanded.planes[name] = plane * unit
+            commanded.note(name, place)
+    if not cutter:
+        return
+    if cutter.is_modal:
+        interp.cutter_comp_radius = cutter.radius
+        commanded.radius, commanded.tool_number = cutter.radius * unit, cutter.used.number
+        commanded.note("D", place)
+    for key, text in ((interp.tool_table[0].toolno, cutter.other), (cutter.kept, cutter.kept)):
+        if text:
+            messages.message_once(interp, key, text)
+
+
+def event_planes(interp: Interp) -> EventPlanes:
+    """Return the circle mill's reference planes as last commanded by this program.
+
+    A plane of another program, or of the text before an edit, would send the tool to a height that
+    this program does not contain.
+    """
+    commanded, place = kept(interp, CommandedValues), place_of_block(interp)
+    unit = millimetres_per_unit(interp)
+    planes = commanded.planes.items()
+    return EventPlanes(
+        **{name: at / unit for name, at in planes if commanded.stands_above(name, place)}
+    )
 
 
 def compensates_above(place: Place) -> bool:
     """Return whether the program switches G41 or G42 on above a place; subs are not searched."""
-    if place.is_typed or not place.program:
+    if not place.offsets or not place.program:
         return False
     return first_compensation(*place.program) < place.offsets[0]
 
@@ -401,4 +364,4 @@ def first_compensation(filename: str, changed: int) -> float:
     """Return the byte in a file at which G41 or G42 first stands; inf if it has none."""
     with open(filename, "rb") as file:
         found = COMPENSATION.search(file.read())
-    return found.end() if found else inf
+    return found.end() if found else math.inf

@@ -14,20 +14,12 @@ from interpreter import INTERP_OK
 from g12.errors import Refusal
 from g12.host import borrowed, messages
 from g12.host.call_frame import locals_at, set_locals_at
-from g12.host.handlers import cycles
-from g12.host.handlers.sections import (
-    FACE_ON,
-    check_clamp,
-    check_ini,
-    is_alone,
-    section_machine,
-    start_of_section,
-)
-from g12.host.interp import Interp
+from g12.host.handlers import cycles, sections
+from g12.host.interp import Interp, kept
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
-from g12.host.state import feed_spindle
+from g12.host.state import feed_spindle, read_state
 from g12.polar.polar_section import POLE_SHARE, Polar
 from g12.section.effects import SectionStart, code_of_handler
 from g12.section.line import BlockLocation
@@ -36,7 +28,7 @@ from g12.shapes.entries import Extent, ShapeEntries, ShapeMachine, ShapePlan, ch
 from g12.shapes.holes import HoleMachine
 from g12.state import beyond_travel
 
-check_at_start = check_ini
+check_at_start = sections.check_ini
 SHAPE_CALLS = {  # names of the entries, planner
     "polar_polygon": (polygon.POLYGON_ENTRIES, polygon.plan_polygon),
     "polar_slot": (pockets.SLOT_ENTRIES, pockets.plan_slot),
@@ -60,10 +52,11 @@ def polar_shape(self, **words):
     messages.settle(self)
     name, level = shape_at_work(self)
     if face_in_force(self):
-        raise Refusal(FACE_ON, name)
-    section = Polar(start_of_shape(self, name), section_machine())
+        raise Refusal(sections.FACE_ON, name)
+    section = Polar(start_of_shape(self, name), sections.section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
-    entries = ShapeEntries(name, names, locals_at(self, level), cycles.snapshot(self))
+    state = cycles.with_tools(self, read_state(self), kept(self, cycles.CommandedValues))
+    entries = ShapeEntries(name, names, locals_at(self, level), state)
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
@@ -89,7 +82,7 @@ def plan_of_shape(interp: Interp, entries: ShapeEntries, section: Polar) -> Shap
 
 
 def plan_of_holes(interp: Interp, entries: ShapeEntries, section: Polar) -> ShapePlan:
-    check_clamp(entries.refuse)
+    sections.check_clamp(entries.refuse)
     close, opens = MACHINE.settings.c_clamp or (0, 0)
     machine, (_, planner) = hole_machine(interp, section), HOLE_CALLS[entries.code]
     plan = planner(entries, machine)
@@ -146,14 +139,14 @@ def shape_at_work(interp: Interp) -> tuple[str, int]:
         *names, last = *SHAPE_CALLS, *HOLE_CALLS
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise Refusal(where, code)
-    if not is_alone(interp.blocks[interp.remap_level]):
+    if not sections.is_alone(interp.blocks[interp.remap_level]):
         raise Refusal("must be alone in its block", code)
     return name, level
 
 
 def start_of_shape(interp: Interp, name: str) -> SectionStart:
     line = messages.line_of(interp, name) or 0
-    start = start_of_section(interp, 0)
+    start = sections.start_of_section(interp, 0)
     state = start.state._replace(x=1.0)  # the sub itself moves the tool to its start
     return start._replace(location=BlockLocation(name, line), state=state)
 

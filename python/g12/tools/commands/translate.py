@@ -27,14 +27,12 @@ from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
 from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
-from g12.tools.translate.listing import listing_of
 from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import RefusedBlock, translate_program
 
 EXAMPLES = """\
 examples:
   g12 translate --list
-  g12 translate --list --control haas-mill
   g12 translate --control haas-mill part.nc > part.ngc
   g12 translate --control my_lathe.toml --ini lathe.ini part.nc
 
@@ -51,7 +49,7 @@ def main(arguments: list[str]) -> int:
     options = parsed(arguments)
     try:
         if options.list:
-            print(contents(options), end="")
+            print(contents(), end="")
             return GOOD
         control = changed(read_control(options.control), options)
     except ControlError as problem:
@@ -65,7 +63,7 @@ def command_parser() -> Parser:
     parser = Parser(prog="g12 translate", description=__doc__, epilog=EXAMPLES)
     parser.add_argument("program", type=Path, nargs="?", help="program of the other control")
     parser.add_argument("--control", help="name, or a .toml file of your own")
-    parser.add_argument("--list", action="store_true", help="print what controls understand")
+    parser.add_argument("--list", action="store_true", help="print the controls")
     parser.add_argument("--ini", type=Path, help="INI of the machine (a filter knows it)")
     parser.add_argument(
         "--units", choices=UNIT_CODES, help="of a program that says neither G20 nor G21"
@@ -90,10 +88,7 @@ def parsed(arguments: list[str]) -> argparse.Namespace:
     return options
 
 
-def contents(options: argparse.Namespace) -> str:
-    """Return the output of --list: the controls, or the codes of one of them."""
-    if options.control:
-        return listing_of(read_control(options.control))
+def contents() -> str:
     controls = [read_control(name) for name in shipped_controls()]
     return "".join(
         f"{control.name:16} {control.title} (.{', .'.join(control.extensions)})\n"

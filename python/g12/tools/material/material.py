@@ -27,6 +27,7 @@ ALLOWED = 0.05  # depth of a rapid into material that counts as none: blended co
 LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
 RAPID_STEP = 0.5  # between the evaluated points of a rapid
 BAND, MOST_BANDS = 0.25, 40  # levels into which a descending move is divided
+NEXT = 1e-6  # mm: a cut that is repeated is this near to itself
 NOTHING = Polygon()
 
 
@@ -126,7 +127,8 @@ class Material:
         if self.top < level + SAME_LEVEL or region.is_empty:
             return NOTHING
         near, wider = self._near(region.bounds, level + SAME_LEVEL, before)
-        if any(sweep.shape.covers(region) for sweep in wider):  # saves their union
+        covers = (s.shape.equals_exact(region, NEXT) or s.shape.covers(region) for s in wider)
+        if any(covers):  # saves their union
             return NOTHING
         region = region.intersection(self.shape)
         return region.difference(unary_union([each.shape for each in near])) if near else region
@@ -139,8 +141,8 @@ class Material:
         x0, y0, x1, y1, levels, move = self._table
         found = np.flatnonzero((x0 <= high_x) & (x1 >= low_x) & (levels <= level) & (move < before))
         found = found[(y0[found] <= high_y) & (y1[found] >= low_y)]
-        wider = found[(x0[found] <= low_x) & (x1[found] >= high_x)]
-        wider = wider[(y0[wider] <= low_y) & (y1[wider] >= high_y)]
+        wider = found[(x0[found] <= low_x + NEXT) & (x1[found] >= high_x - NEXT)]
+        wider = wider[(y0[wider] <= low_y + NEXT) & (y1[wider] >= high_y - NEXT)]
         return [self._sweeps[n] for n in found], [self._sweeps[n] for n in wider]
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:

@@ -11,6 +11,14 @@ a spiral. Where the path makes the angle p with the radius r, the spiral has the
 On the face the planner may brake anywhere with all of its acceleration A, and C and the slide have
 to follow. The path takes the share p v**2 of an axis's acceleration, braking q times the planner's:
 p v**2 + q sqrt(A**2 - v**4 / R**2) is at most 1. A is chosen once a section, for the least time.
+
+The least time, a lower bound for any planner, is a time-optimal path parametrisation: with z the
+square of the speed along the path and u half its change, an axis q(s) has the acceleration
+q' u + q'' z. Backwards along the path, the greatest z is found from which the rest can still be
+followed; forwards, the greatest of these that can be reached.
+
+An axis of acceleration A allows |u + w z| <= A / |q'|, with w = q'' / q'. That is a pair of
+straight lines in the plane of u and z, so the greatest z is where two of them meet.
 """
 
 import math
@@ -22,7 +30,6 @@ import numpy as np
 from g12.geometry.curve import Curve
 from g12.machine_ini import face_of
 from g12.tools.machine.ini import Ini
-from g12.tools.path.least_time import least_seconds, seconds_at
 
 STEP, FEWEST, MOST = 0.1, 40, 4000  # mm; greatest number from one corner to the next
 SMOOTH_CORNER = math.radians(5.0)  # a sharper corner is a stop
@@ -31,7 +38,7 @@ STOPPED_IN = 0.4  # measured: the square of the speed by length times accelerati
 TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried values
 PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
-TINY = 1e-9
+TINY = 1e-9  # a smaller slope of an axis along the path, among others, counts as this
 POLE_RADIUS = 1e-6  # mm: there C has no angle
 Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
 
@@ -243,3 +250,66 @@ def axis_derivatives(
         radius = np.where(radius < POLE_RADIUS, np.nan, radius)
         turn = around / radius
         return (along, around * (turn - bend)), (turn, along * (bend - 2.0 * turn) / radius)
+
+
+def least_seconds(
+    points: np.ndarray, speed: float | np.ndarray, slide: Sequence[float], spindle: Sequence[float]
+) -> float:
+    """Return the least time of a path of points (complex), from stop to stop.
+
+    ``speed`` is the programmed one, perhaps one for each point; ``spindle`` is in radians. The
+    points are evenly spaced along the path, none of them in the centre.
+    """
+    step = float(abs(np.diff(points)).mean())
+    most = np.square(np.broadcast_to(np.asarray(speed, float), points.shape))
+    reserves, swings = [], []
+    for axis, (velocity, acceleration) in (
+        (np.abs(points), slide),
+        (np.unwrap(np.angle(points)), spindle),
+    ):
+        slope = np.gradient(axis, step)
+        bend = np.gradient(slope, step)
+        slope = np.where(np.abs(slope) < TINY, TINY, slope)
+        most = np.minimum(most, np.square(velocity / slope))
+        reserves.append(2.0 * step * acceleration / np.abs(slope))
+        swings.append(2.0 * step * bend / slope)
+    apart = np.maximum(np.abs(swings[0] - swings[1]), TINY**2)
+    most = np.minimum(most, (reserves[0] + reserves[1]) / apart)
+    limits = [*zip(*(zip(*each) for each in zip(reserves, swings)))]
+    reachable = _reachable(most.tolist(), limits)
+    return seconds_at(_gained(reachable, limits), step)
+
+
+def seconds_at(squares: list[float], step: float) -> float:
+    """Return the time of a path from the squares of the speed at points one step apart."""
+    speeds = np.sqrt(np.maximum(squares, 0.0))
+    return float((2.0 * step / np.maximum(speeds[1:] + speeds[:-1], 1e-9)).sum())
+
+
+def _reachable(most: list[float], limits: list) -> list[float]:
+    """Return the greatest squares of the speed from which the rest can be followed."""
+    reachable = [0.0] * len(most)
+    for at in range(len(most) - 2, -1, -1):
+        greatest = most[at]
+        for reserve, swing in limits[at]:
+            if swing < 1.0:
+                greatest = min(greatest, (reachable[at + 1] + reserve) / (1.0 - swing))
+        reachable[at] = greatest
+    return reachable
+
+
+def _gained(reachable: list[float], limits: list) -> list[float]:
+    """Return the greatest of these squares of the speed that can be reached from rest.
+
+    An axis that brakes more at a higher speed is evaluated at the step's end: no step brakes below
+    zero.
+    """
+    squares = [0.0]
+    for axes, greatest in zip(limits, reachable[1:]):
+        square = squares[-1]
+        gained = (
+            (square + reserve) / (1.0 + swing) if swing > 0.0 else square + reserve - swing * square
+            for reserve, swing in axes
+        )
+        squares.append(min(*gained, greatest))
+    return squares

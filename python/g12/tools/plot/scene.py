@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The content of a picture: a program, the machine, the moves, and the actual motion if run."""
 
-from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from operator import itemgetter
 
 import numpy as np
 
@@ -68,12 +66,9 @@ class Scene:
     @cached_property
     def turned(self) -> list[int]:
         """The moves at feed at a part that its spindle turns, where tools have one of their own."""
-        if not self.path.part.turning or self.program.ini.number("TRAJ", "SPINDLES", 1) < 2:
+        if not self.path.part.turning or not self.program.several_spindles:
             return []
-        codes = [(0, "M5"), *((each.at, each.text) for each in self.program.trace.events)]
-        codes = [(at, text) for at, text in codes if text in ("M3", "M4", "M5")]
-        last = (bisect_right(codes, index, key=itemgetter(0)) - 1 for index in self.fed)
-        return [index for index, code in zip(self.fed, last) if codes[code][1] != "M5"]
+        return [index for index in self.fed if self.program.state(index).spindle in ("M3", "M4")]
 
     @cached_property
     def sweeping(self) -> list[int]:

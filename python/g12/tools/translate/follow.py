@@ -16,10 +16,10 @@ from g12.tools.translate.blocks.draft import Draft, SubprogramCall
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignBlock
 from g12.tools.translate.blocks.modal import GROUP_OF, ModalState, merged
-from g12.tools.translate.macros import STATEMENTS
 from g12.tools.translate.phases import translate_words
 from g12.tools.translate.rules.codes import keep_modes
 from g12.tools.translate.rules.milled import before_loop
+from g12.tools.translate.rules.subprograms import STATEMENTS
 from g12.tools.translate.structure import MAIN, OPENING, Structure, ways_from
 
 Progress = Callable[[int], None]

@@ -7,6 +7,7 @@ them. A machine without a clamp, or whose C is always an axis, needs none.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import zip_longest
 from typing import Any
 
 from g12.machine_ini import Remap, face_joints, m_codes_of, remap_lines
@@ -15,14 +16,9 @@ from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import unset_positions
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS
-from g12.tools.translate.rules.milled_surfaces import WOUND
 
 ON_MILL = {"G7": "G8", "G18": "G17"}  # at the start, in place of a lathe's
 SPINDLE_C = {"C axis on": "spindle_c_on", "C axis off": "spindle_c_off"}
-REFUSE_LIVE_TOOL = (
-    "refuse: it is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's spindle that "
-    "drives the tool (install --with programs-… sets it)"
-)
 
 
 def on_machine(control: Control, ini: Ini) -> Control:
@@ -30,7 +26,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
     control = _round_part_of_mill(control, ini)
     settings, remaps = ini.settings, _remaps_in_force(ini)
     clamp = [f"M{code}" for code in settings.c_clamp]
-    own = dict(zip(("clamp C", "unclamp C"), clamp))
+    own = dict(zip_longest(("clamp C", "unclamp C"), clamp, fillvalue="comment"))
     own |= {meaning: _code_of(remaps, name) or "comment" for meaning, name in SPINDLE_C.items()}
     on_mill = bool(control.value("mill", "turn", ""))
     live = "0" if on_mill else ini.get(INI_SECTION, LIVE_SPINDLE) or ""
@@ -44,7 +40,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
     return replace(
         control,
         axes=control.axes if control.onto else axes,
-        meanings={code: _meaning_here(m, own, live) for code, m in control.meanings.items()},
+        meanings={code: own.get(m, m) for code, m in control.meanings.items()},
         tables={
             **control.tables,
             **{n: {**control.tables.get(n, {}), **t} for n, t in of_machine.items()},
@@ -58,7 +54,7 @@ def on_machine(control: Control, ini: Ini) -> Control:
 
 def _round_part_of_mill(control: Control, ini: Ini) -> Control:
     """Return a control for programs round a part with a mill's rotary axis, if the INI has one."""
-    turn = next((letter for letter in WOUND if letter in ini.axes), "")
+    turn = next((letter for letter in "AB" if letter in ini.axes), "")
     if control.onto != "round" or not turn or "Y" not in ini.axes:
         return control
     sense = -1.0 if ini.settings.rotary_sense == "reversed" else 1.0
@@ -81,16 +77,3 @@ def _code_of(remaps: Sequence[Remap], name: str, letter: str = "") -> str:
         if name in remap.handlers or remap.keywords.get("ngc") == name
     )
     return next((code for code in found if code.startswith(letter)), "")
-
-
-def _meaning_here(meaning: str, own_codes: dict[str, str], live: str) -> str:
-    """Return what a code is on the machine; ``live`` is the live tool's spindle, "" unknown."""
-    if meaning in ("clamp C", "unclamp C", *SPINDLE_C):
-        return own_codes.get(meaning, "comment")
-    if "$live" not in meaning and "$all" not in meaning:
-        return meaning
-    if not live:
-        return meaning.replace(" $all", "") if "$all" in meaning else REFUSE_LIVE_TOOL
-    first = live == "0"
-    texts = {"$live": "" if first else f"${live}", "$all": "" if first else "$-1"}
-    return " ".join(filter(None, (texts.get(text, text) for text in meaning.split())))

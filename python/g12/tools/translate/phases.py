@@ -61,7 +61,7 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     "tool and spindle": (tools.tool_and_offsets, tools.speed_limit, tools.live_tool),
     # work offsets and reference points are LinuxCNC's
     "origins": (
-        offsets.numbered_offset,
+        of_meaning("numbered offset", offsets.numbered_offset),
         of_meaning("offset by program", offsets.offset_by_program),
         motion.reference_point,
     ),
@@ -87,7 +87,6 @@ PHASES: dict[str, tuple[Rule, ...]] = {
     ),
     # drilling cycles are LinuxCNC's, those on a lathe calls of its holes
     "cycles of mills": (
-        drilling_cycles.hole_pattern,
         milled.whole_cycle,
         drilling_cycles.drilling_cycle,
         milled.hole_call,

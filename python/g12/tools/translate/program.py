@@ -15,10 +15,9 @@ from g12.tools.translate.blocks.lexer import (
     source_lines,
 )
 from g12.tools.translate.follow import FollowedProgram
-from g12.tools.translate.macros import unset_variables
 from g12.tools.translate.output import lines_of, output_lines, written_order
-from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS
-from g12.tools.translate.structure import MAIN, structure_of
+from g12.tools.translate.rules.subprograms import unset_variables
+from g12.tools.translate.structure import LOCAL_BLOCKS, MAIN, structure_of
 from g12.tools.translate.whole_program import (
     control_of_program,
     lacking_constructs,

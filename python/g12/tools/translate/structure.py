@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Which blocks of a file are its main program and which its subprograms, and who calls them."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from g12.tools.translate.blocks.control import Control
 from g12.tools.translate.blocks.draft import ENDS
 from g12.tools.translate.blocks.lexer import ForeignBlock
-from g12.tools.translate.rules.subprograms import LOCAL_BLOCKS, called_program
 
 MAIN = -1  # the number of the main program
+LOCAL_BLOCKS = 100_000_000  # a block called by M97 P100 is program O100000100
 TEXT = ("words", "tape")  # kinds of blocks that do nothing if they have no words
 LOCAL_SUBPROGRAM = "local subprogram"
 CALLS = frozenset(("subprogram", "macro call"))
@@ -94,6 +94,14 @@ def _called_in(block: ForeignBlock, control: Control, numbers: Collection[int]) 
         return []
     programs = [called_program(n, control, numbers)[0] for n in block.numbers("P")]
     return programs or [LOCAL_BLOCKS + number for number in block.numbers("Q")]
+
+
+def called_program(number: int, control: Control, programs: Container[int]) -> tuple[int, str]:
+    """Return the program that M98 P calls and how often: P51001 can be O1001 five times."""
+    digits = control.value("subprograms", "repeat_digits", False)
+    if digits and number > 9999 and number not in programs:
+        return number % 10000, str(number // 10000)
+    return number, ""
 
 
 def _program_heads(blocks: Sequence[ForeignBlock]) -> dict[int, int]:

@@ -16,7 +16,7 @@ refused with its line. What a code does is one of
 
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -32,7 +32,6 @@ MEANINGS = {
         "drilling cycle", "roughing along Z", "roughing along X", "finishing",
         "pecking along Z", "pecking along X", "turning pass", "facing pass", "thread pass",
         "threading", "thread",
-        "circle of holes", "arc of holes", "row of holes",
         *HOLE_MEANINGS,
         "radius or diameter",
     ),
@@ -85,6 +84,7 @@ TOP = {
     "decimals": _one_of("least", "whole"), "feed_of_c": _one_of("mm"),
     "at_zero": TEXT, "remarks": FLAG, "sources": TEXTS, "readings": TEXTS,
 }  # fmt: skip
+REMARKS = frozenset(("sources", "readings"))  # for who reads the file
 TABLES: dict[str, Any] = {
     "increments": {
         "angle": NUMBER,
@@ -153,8 +153,6 @@ class Control:
     at_zero: str = ""  # axes that the machine lacks and whose words may be 0
     extensions: tuple[str, ...] = ("nc",)  # of its programs' files, the usual one first
     remarks: bool = False  # text after ``;`` is a remark
-    sources: tuple[str, ...] = ()
-    readings: tuple[str, ...] = ()
     tables: Mapping[str, Mapping[str, object]] = field(default_factory=dict)
     machine_codes: frozenset[str] | None = None  # M codes of the machine itself, None: not known
     live_spindle: str = "1"  # LinuxCNC's spindle that drives the tool, "" unknown
@@ -214,12 +212,11 @@ def read_control(name: str) -> Control:
     missing = [key for key in ("machine", "axes", "g_codes", "m_codes") if key not in data]
     if missing:
         raise ControlError(f"{path}: {missing[0]} is missing: say it, or based_on another control")
-    given: dict[str, Any] = {"title": path.stem}
-    given |= {k: tuple(v) if isinstance(v, list) else v for k, v in data.items() if k in TOP}
+    given: dict[str, Any] = {k: v for k, v in data.items() if k in TOP.keys() - REMARKS}
     given |= {key: tuple(data[key].split()) for key in ("start", "extensions") if key in data}
     return Control(
         name=path.stem,
-        **given,
+        **{"title": path.stem, **given},
         meanings={**data["g_codes"], **data["m_codes"]},
         c_axis_on=frozenset(code for code, as_ in data["m_codes"].items() if as_ == "C axis on"),
         tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},
@@ -286,14 +283,13 @@ class _Checked:
         if not isinstance(table, dict):
             self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if isinstance(rules, Rule) and re.fullmatch(rules.keys, key):
-                self._value(key, value, rules)
-            elif isinstance(rules, Rule):
-                self._refuse(key, f"{key} = {value!r} {rules.sentence}")
-            elif key not in rules:
-                self._refuse(key, f"{key} is no key of [{name}]: {', '.join(rules)}")
-            else:
+            if isinstance(rules, Rule):
+                named = re.fullmatch(rules.keys, key)
+                self._value(key, value, rules if named else rules._replace(accepts=lambda v: False))
+            elif key in rules:
                 self._value(key, value, rules[key])
+            else:
+                self._refuse(key, f"{key} is no key of [{name}]: {', '.join(rules)}")
 
     def _value(self, key: str, value: Any, rule: Rule) -> None:
         if not rule.accepts(value):
@@ -302,26 +298,31 @@ class _Checked:
     def _codes(self, letter: str, table: dict) -> dict[str, str]:
         """Return the meaning of every code; a code that is named twice is refused."""
         meanings: dict[str, str] = {}
+        for key, code, meaning in self._rows_of(table):
+            for one in self._each(letter, code, key):
+                if one in meanings:
+                    self._refuse(key, f"{one} has two meanings")
+                if one in OWNED and meaning == "machine":
+                    self._refuse(key, f"{one} is LinuxCNC's own: no machine can give it a meaning")
+                meanings[one] = self._meaning(letter, key, meaning)
+        return meanings
+
+    def _rows_of(self, table: dict) -> Iterator[tuple[str, str, str]]:
+        """Yield each code or range of a table, with its key before it and its meaning behind."""
         for key, value in table.items():
+            listed = key in ("same", "comment", "machine")
             if isinstance(value, dict):
                 self._refuse(
                     key, f'a code with a point is written in quotes: "{key}.{next(iter(value))}"'
                 )
-            listed = key in ("same", "comment", "machine")
             if listed != isinstance(value, list):
                 self._refuse(key, f"{key} must be a {'list of codes' if listed else 'text'}")
-            for entry in value if listed else [key]:
-                code, *words = str(entry).split(" ") if key == "comment" else [str(entry)]
-                meaning = " ".join([key, *words]) if listed else value
-                for one in self._each(letter, code, key):
-                    if one in meanings:
-                        self._refuse(key, f"{one} has two meanings")
-                    if one in OWNED and "machine" in (key, value):
-                        self._refuse(
-                            key, f"{one} is LinuxCNC's own: no machine can give it a meaning"
-                        )
-                    meanings[one] = self._meaning(letter, key, meaning)
-        return meanings
+            if not listed:
+                yield key, key, value
+                continue
+            for entry in value:
+                code, *words = str(entry).split(" ")
+                yield key, code, " ".join([key, *words])
 
     def _each(self, letter: str, code: str, key: str) -> list[str]:
         """Return the codes of ``G110-G129``, or the one code."""

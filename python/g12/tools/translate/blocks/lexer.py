@@ -38,7 +38,7 @@ MOTION = re.compile(r"G0*([0-3])(?![0-9.])")  # of a block that cannot be read
 HEADER = re.compile(r"\$.*%")  # of a file of an Okuma
 LEADING_N = re.compile("N[0-9]+")
 SKIP = re.compile(r"/([0-9]?)")
-STATEMENT = re.compile(r"(IF|WHILE|DO|END|GOTO|CALL)(?=[\[0-9O#])|RTS$")
+STATEMENT = re.compile(r"(IF|WHILE|END|CALL)(?=[\[0-9O#])|RTS$")
 CALLED_PROGRAM = re.compile(r"O([0-9]{1,8})(?:Q([0-9]{1,4}))?")
 NO_JUMPS = "LinuxCNC has no jumps: write IF […] before each block, or WHILE […] DO and END"
 ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
@@ -53,6 +53,7 @@ MOST_DIGITS = 24
 OTHER_TEXTS = {
     re.compile(r"^\$.*"): "begins the program of one of two channels: translate one channel's "
     "blocks, in a file of its own",
+    re.compile("^(N[0-9]+)?DO[0-9]+$"): "without WHILE never ends: LinuxCNC needs WHILE […] DO",
     re.compile("^[A-Z_][A-Z0-9_]*:"): "is a label, which these controls do not have: take out the "
     "colon",
     re.compile("^O[A-Z][A-Z0-9]*$"): "is a name: programs have numbers here, as O1",
@@ -62,6 +63,7 @@ OTHER_TEXTS = {
     re.compile(
         rf"(?<=[=[]){OWN_NAME}(?!\[)"
     ): "is a variable of the control's own: write its value",
+    re.compile(r"(?<![A-Z])GOTO[\[0-9#].*"): f"is a jump, and {NO_JUMPS}",
 }
 ALL_PLANES = frozenset(("G17", "G18", "G19"))
 
@@ -308,8 +310,6 @@ def _if(line: int, text: str) -> list[ForeignBlock]:
     """Return a condition with the rest of its block, which a Haas obeys with THEN or without."""
     condition = bracketed_from(text, 0)
     rest = text[condition.end :].removeprefix("THEN")
-    if rest.startswith("GOTO"):
-        return _goto(line, rest[4:])
     head = ForeignBlock(line, "if", expression=condition)
     return [head, *_ruled(line, rest), ForeignBlock(line, "endif")]
 
@@ -336,18 +336,10 @@ def _while(line: int, text: str) -> list[ForeignBlock]:
     return [ForeignBlock(line, "while", expression=condition, label=rest[1])]
 
 
-def _do(line: int, text: str) -> list[ForeignBlock]:
-    raise NotTranslated("DO without WHILE never ends: LinuxCNC needs WHILE […] DO")
-
-
 def _end(line: int, text: str) -> list[ForeignBlock]:
     if not text.isdigit():
         raise NotTranslated(f"END{excerpt(text)} needs a number alone")
     return [ForeignBlock(line, "end", label=text)]
-
-
-def _goto(line: int, text: str) -> list[ForeignBlock]:
-    raise NotTranslated(f"GOTO {excerpt(text)}: {NO_JUMPS}")
 
 
 def _call(line: int, text: str) -> list[ForeignBlock]:
@@ -368,9 +360,7 @@ def _return(line: int, text: str) -> list[ForeignBlock]:
 STATEMENT_READERS = {
     "IF": _if,
     "WHILE": _while,
-    "DO": _do,
     "END": _end,
-    "GOTO": _goto,
     "CALL": _call,
     "RTS": _return,
 }

@@ -18,8 +18,6 @@ IN_POLAR = {"Y": "C", "V": "H"}
 LENGTH_CODES = frozenset(("G43", "G49"))  # of the tool: a mill's is along Z
 ORIGINS = frozenset(f"G{n}" for n in range(54, 60))
 SHIFTING = LENGTH_CODES | ORIGINS
-PATTERNS = frozenset(("circle of holes", "arc of holes", "row of holes"))
-DRILLING_MEANINGS = PATTERNS | {"drilling cycle"}
 STAYING = frozenset(  # codes that move nothing and leave the origin, or set it to their words
     (
         "speed limit or origin",
@@ -64,7 +62,7 @@ def end_of_word(state: ModalState, word: ForeignWord) -> float | None:
 
 def _is_drilling(draft: Draft) -> bool:
     """Whether a mill's drilling cycle is active in a block; a motion code ends it."""
-    begins = bool(set(draft.meanings) & DRILLING_MEANINGS)
+    begins = "drilling cycle" in draft.meanings
     goes_on = bool(draft.state.cycle) and MOTIONS.isdisjoint(draft.codes())
     return (begins or goes_on) and not draft.control.is_lathe
 
@@ -73,7 +71,7 @@ def _follow_drilling(draft: Draft) -> None:
     again = draft.letters() & set(draft.control.value("subprograms", "cycle_repeat", "L"))
     words = [w for w in draft.axis_words() if w.letter in "XY"]
     moved = {FIELDS[w.letter]: end_of_word(draft.state, w) for w in words}
-    lost = draft.state.distance == "G91" and again and not set(draft.meanings) & PATTERNS
+    lost = draft.state.distance == "G91" and again
     draft.change(at_z=None, **(dict.fromkeys(moved) if lost else moved))
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from g12.tools.translate.blocks.control import MEANINGS, PLACES
-from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft
+from g12.tools.translate.blocks.draft import AXIS_NUMBERS, PARTNERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
@@ -19,7 +19,6 @@ from g12.tools.translate.rules.motion import cancel_length
 
 RULES = frozenset((*MEANINGS["G"], *MEANINGS["M"]))
 BUILDERS = frozenset(("machine", *PLACES))
-SPINDLES = {"$live": "$1", "$all": "$-1"}  # where the machine is not known
 INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have besides
 BLOCK_LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 MACHINES_OWN = REFERENCES | {"G53"}
@@ -60,12 +59,27 @@ def _speed_by_p(draft: Draft) -> list[ForeignWord]:
         return []
     draft.drop([word])
     speed = draft.take("P")
-    return _own_words(meanings[word.text].replace("S=P", f"S{speed.value}" if speed else ""))
+    meaning = meanings[word.text].replace("S=P", f"S{speed.value}" if speed else "")
+    return _own_words(draft, word, meaning)
 
 
-def _own_words(meaning: str) -> list[ForeignWord]:
-    texts = (SPINDLES.get(text, text) for text in meaning.split())
-    return [ForeignWord(text[0], text[1:]) for text in texts]
+def _own_words(draft: Draft, code: ForeignWord, meaning: str) -> list[ForeignWord]:
+    """Return LinuxCNC's words for a code; the first spindle has no ``$``."""
+    words = {"$live": "", "$all": "$-1" if draft.control.live_spindle not in ("", "0") else ""}
+    if "$live" in meaning:
+        words["$live"] = live_spindle(draft, code)
+    return [word_of(text) for one in meaning.split() if (text := words.get(one, one))]
+
+
+def live_spindle(draft: Draft, code: ForeignWord) -> str:
+    """Return the ``$`` word of the spindle that drives the tool, "" for the first spindle."""
+    live = draft.control.live_spindle
+    if not live:
+        raise NotTranslated(
+            f"{code.text} is the live tool's: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's "
+            "spindle that drives the tool (install --with programs-… sets it)"
+        )
+    return f"${live}" if live != "0" else ""
 
 
 def _part_builders_codes(draft: Draft) -> None:
@@ -105,7 +119,7 @@ def mapped(draft: Draft, word: ForeignWord) -> list[ForeignWord]:
     if not meaning:
         table = f"[{code[0].lower()}_codes]"
         raise NotTranslated(f"{code} is not known of {control.name}: say under {table} what it is")
-    return [word] if meaning in BUILDERS else _own_words(meaning)
+    return [word] if meaning in BUILDERS else _own_words(draft, word, meaning)
 
 
 def follow_modes(draft: Draft) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Drilling cycles of mills, G73 and G81 to G89, and Haas's patterns of holes.
+"""Drilling cycles of mills, G73 and G81 to G89.
 
 LinuxCNC gets the words that the control stores:
 
@@ -7,16 +7,7 @@ LinuxCNC gets the words that the control stores:
 - levels given under G90 hold under G91 as they are, and the other way round
 - a new cycle code keeps the words of an earlier one; dwell is in the control's unit
 - G80 beside a motion is the motion
-
-A pattern is one hole for each of its points:
-
-- G70: L holes on a circle of radius I about the tool, the first at the angle J
-- G71: L holes on an arc of radius I from the angle J, K degrees from hole to hole
-- G72: L holes in a row from the tool on, I from hole to hole, at the angle J
 """
-
-from cmath import rect
-from math import radians
 
 from g12.tools.translate.blocks.draft import Draft, position, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -29,7 +20,6 @@ from g12.tools.translate.blocks.modal import (
     UNKNOWN,
     UNSURE,
 )
-from g12.tools.translate.blocks.positions import known_position, value_text
 from g12.tools.translate.rules.decimals import time_in_seconds
 
 KEPT = "ZRQP"
@@ -210,50 +200,3 @@ def _write_level_as_r(draft: Draft, distance: str) -> None:
     if draft.sure("plane", "a cycle without R") not in ("G17", UNKNOWN):
         raise NotTranslated("a cycle without R in another plane than G17")
     draft.words.append(ForeignWord("R", "0" if distance == "G91" else position("Z"), "expression"))
-
-
-MOST_HOLES = 1000
-PATTERN_WORDS = {"circle of holes": "IJL", "arc of holes": "IJKL", "row of holes": "IJL"}
-
-
-def hole_pattern(draft: Draft) -> None:
-    meaning = next((name for name in PATTERN_WORDS if name in draft.meanings), "")
-    if not meaning:
-        return
-    code = draft.meanings.pop(meaning).code
-    if not draft.state.cycle and "drilling cycle" not in draft.meanings:
-        raise NotTranslated(f"{code} needs a drilling cycle before it, as G81 Z R F L0")
-    x, y = known_position(draft.state, "X"), known_position(draft.state, "Y")
-    if x is None or y is None or draft.state.distance != "G90":
-        raise NotTranslated(
-            f"{code} is laid about the tool's position, which is not known here: write X and Y "
-            "as numbers, under G90"
-        )
-    numbers = {letter: _pattern_number(draft, code, letter) for letter in PATTERN_WORDS[meaning]}
-    holes = [complex(x, y) + step for step in _steps_of(meaning, numbers)]
-    first, *others = (f"X{value_text(p.real)} Y{value_text(p.imag)}" for p in holes)
-    draft.words = [word for word in draft.words if word.letter not in "XY"]
-    draft.words += [word_of(text) for text in first.split()]
-    draft.after += others
-    draft.comments.append(code)
-    draft.change(at_x=holes[-1].real, at_y=holes[-1].imag, at_z=None)
-
-
-def _pattern_number(draft: Draft, code: str, letter: str) -> float:
-    word = draft.take(letter)
-    if not word or word.kind != "number":
-        raise NotTranslated(f"{code} needs {letter} as a number")
-    plain = word.lacks_point and word.number
-    if plain and letter != "L" and draft.control.decimals != "whole":
-        raise NotTranslated(f"{word.text} of {code} has no decimal point: write {word.text}.")
-    if letter == "L" and not 1 <= word.number <= MOST_HOLES:
-        raise NotTranslated(f"{code} {word.text}: there must be from 1 to {MOST_HOLES} holes")
-    return word.number
-
-
-def _steps_of(meaning: str, numbers: dict[str, float]) -> list[complex]:
-    count, begin = int(numbers["L"]), radians(numbers["J"])
-    if meaning == "row of holes":
-        return [rect(numbers["I"] * number, begin) for number in range(count)]
-    step = radians(numbers.get("K", 360 / count))
-    return [rect(numbers["I"], begin + number * step) for number in range(count)]

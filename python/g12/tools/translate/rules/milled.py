@@ -17,6 +17,7 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.modal import MOVES, REFERENCES, UNKNOWN, UNSURE, ModalState
 from g12.tools.translate.blocks.positions import SHIFTING, known_position, value_text
 from g12.tools.translate.rules.codes import MACHINES_OWN
+from g12.tools.translate.rules.decimals import UNIT
 from g12.tools.translate.rules.milled_surfaces import (
     DrilledHole,
     is_plain_number,
@@ -25,7 +26,6 @@ from g12.tools.translate.rules.milled_surfaces import (
 )
 from g12.tools.translate.rules.polar import feed_of_rapids
 
-SAFE = {"G20": ("safe_inch", 0.1), "G21": ("safe_mm", 2.0)}
 OTHER_PLANES = frozenset(("G18", "G19"))
 NEEDLESS = frozenset(("G17", "G98", "G99"))  # in a section G98 and G99 are feed modes
 OTHER_FEEDS = {"G93": "inverse time", "G95": "a feed per revolution"}
@@ -56,7 +56,7 @@ def mill_block(draft: Draft) -> None:
     elif draft.call:
         before_loop(draft)
     if draft.state.polar != "off":
-        surface_of(draft).words(draft)
+        surface_of(draft).words()
     elif draft.state.compensation in ("G41", "G42"):
         code = draft.state.compensation
         raise NotTranslated(f"{code} before the first cut: write it with the contour's first G1")
@@ -125,7 +125,7 @@ def _rapid_outside(draft: Draft, across: bool) -> None:
         draft.comment_out(letter, " with the next cut")
     draft.change(waiting=tuple(sorted(waiting.items())))
     if draft.control.onto != "face":
-        surface_of(draft).words(draft)
+        surface_of(draft).words()
 
 
 def _begin_section(draft: Draft) -> None:
@@ -142,7 +142,7 @@ def _begin_section(draft: Draft) -> None:
         )
     why = "a cut begins here, and the position of {} is not known: G0 X Y before it"
     x, y = (_point_value(draft, axis, draft.start, why.format(axis)) for axis in "XY")
-    first, *lines = surface_of(draft).begin(draft, (x, y), feed_of_rapids(draft))
+    first, *lines = surface_of(draft).begin(x, y, feed_of_rapids(draft))
     absolute = draft.start.distance == "G90"
     draft.before += [first, *lines] if absolute else [f"G90 {first}", *lines, "G91"]
     draft.change(
@@ -158,7 +158,7 @@ def _begin_section(draft: Draft) -> None:
 def _end_section(draft: Draft) -> None:
     if draft.start.compensation != "G40" or draft.state.delayed:
         raise NotTranslated("G41 or G42 is on where the section ends: G40 with a move before it")
-    draft.before += surface_of(draft).end(draft)
+    draft.before += surface_of(draft).end()
     own = _drills(draft) and "Y" in draft.letters()  # of the hole, which no section is for
     y = known_position(draft.state, "Y" if own else surface_of(draft).y_in)
     draft.change(polar="off", section=UNKNOWN, own_motion=UNSURE, at_y=y, at_c=None)
@@ -172,7 +172,7 @@ def _go_home(draft: Draft) -> None:
     if codes == {"G53"} and surface.away:
         _machine_zero(draft, surface.away)
     else:
-        surface.home(draft)
+        surface.home()
         if surface.away and not draft.axis_words():
             draft.comments += draft.take_codes(codes)  # without an axis G28 moves each of them
     draft.change(waiting=())
@@ -201,11 +201,11 @@ def _safe_height(draft: Draft) -> float:
     if safe is not None:
         return safe
     units = draft.sure("units", "how high a rapid must be depends on the units")
-    if units not in SAFE:
+    if units not in UNIT:
         raise NotTranslated(
             "how high a rapid must be depends on the units: say G20 or G21 (--units)"
         )
-    return draft.control.value("mill", *SAFE[units])
+    return draft.control.value("mill", f"safe_{UNIT[units]}")
 
 
 def _waiting_point(draft: Draft) -> dict[str, str]:
@@ -273,7 +273,7 @@ def hole_call(draft: Draft) -> None:
     draft.take_codes({cycle, "G90", "G94"})
     hole = _hole_of_cycle(draft, cycle, given)
     after, draft.after = draft.after, []
-    draft.write([*surface_of(draft).hole(draft, cycle, hole), *after])
+    draft.write([*surface_of(draft).hole(cycle, hole), *after])
     draft.change(waiting=(), own_motion=UNSURE, own_feed="other", at_z=_start_height(draft))
 
 

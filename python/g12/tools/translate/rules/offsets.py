@@ -15,13 +15,9 @@ from g12.tools.translate.rules.codes import check_axis
 EXTRA = range(1, 4)  # of G154
 BEFORE_EXTRA = 6  # G54 to G59
 SYSTEM_CODES = range(110, 130)  # G codes of the first of G154
-OF_TOOLS = range(10, 14)
 
 
-def numbered_offset(draft: Draft) -> None:
-    code = draft.meanings.pop("numbered offset", None)
-    if not code:
-        return
+def numbered_offset(draft: Draft, code: ForeignWord) -> None:
     for own in ORIGINS.intersection(draft.codes()):
         raise NotTranslated(f"{own} and {code.code} in one block")
     named = code.number in SYSTEM_CODES
@@ -60,10 +56,8 @@ def offset_by_program(draft: Draft, code: ForeignWord) -> None:
     elif number == 20:
         system = _take_number(draft, "G10 L20")
         system = BEFORE_EXTRA + _extra(system, f"G10 L20 P{system}")
-    elif number in OF_TOOLS:
-        raise NotTranslated(f"G10 {kind.text}: set the tool's length and diameter in the table")
     else:
-        raise NotTranslated("G10 needs L2 or L20")
+        raise NotTranslated("G10 needs L2 or L20; set a tool's values in the tool table")
     words = draft.axis_words()
     draft.drop(words)
     if not words:

@@ -231,19 +231,12 @@ def _programs_feed(draft: Draft) -> list[str]:
 
 
 def switch_cylinder(draft: Draft, code: ForeignWord) -> None:
-    radius = _named_radius(draft, code.code)
+    size = draft.take("C") or draft.take("H")
+    if not size:
+        raise NotTranslated(f"{code.code} needs C, the radius of the cylinder, or C0")
+    radius = "" if size.is_zero else size.value
     name, word = draft.control.cylinder_code
     value = f"[2 * {radius}]" if radius and word == "diameter" else radius or "0"
     feed = own_feed_ended(draft) if radius else []
     own_block(draft, code.code, [*feed, f"{name} C{value}"])
     draft.change(polar="cylinder" if radius else "off", own_motion=UNSURE)
-
-
-def _named_radius(draft: Draft, code: str) -> str:
-    """Return the radius that C or H says, "" for the end of the cylinder."""
-    word = draft.take("C") or draft.take("H")
-    if not word:
-        raise NotTranslated(f"{code} needs C, the radius of the cylinder, or C0")
-    if word.is_zero:
-        return ""
-    return word.value

@@ -12,14 +12,12 @@ from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, REFERENCES, UNKNOWN, UNSURE
 from g12.tools.translate.blocks.positions import is_unmoved
+from g12.tools.translate.rules.codes import live_spindle
 from g12.tools.translate.rules.polar import SECTION_NAMES
 
 STOP_CODES = frozenset(("M5", "M9"))
 RAPIDS = REFERENCES | {"G0", "G53"}
 SPINDLE_M_CODES = frozenset(("M3", "M4", "M5"))
-NO_LIVE_TOOL = (
-    "{} is the live tool's spindle: say [G12] LIVE_SPINDLE in the INI, LinuxCNC's that drives it"
-)
 POCKET_CODES = frozenset(("G12", "G13", "G12.2", "G13.2"))
 PLANES = {"G18": "XZ", "G19": "YZ"}
 COMPENSATION_ON = frozenset(("G41", "G42"))
@@ -94,10 +92,8 @@ def _named_spindle(draft: Draft, turns: bool) -> str:
         raise NotTranslated(f"{word.text}: no spindle of the machine: there are {known}")
     if word and (turns or (word.text in spindles and "S" in draft.letters())):
         draft.take("P")
-        live, is_live = draft.control.live_spindle, spindles[word.text] == "live"
-        if is_live and not live:
-            raise NotTranslated(NO_LIVE_TOOL.format(word.text))
-        draft.words += [word_of(f"${live}")] if is_live and live != "0" else []
+        live = live_spindle(draft, word) if spindles[word.text] == "live" else ""
+        draft.words += [word_of(live)] if live else []
     return next((w.text for w in draft.words if w.letter == "$"), UNKNOWN)
 
 

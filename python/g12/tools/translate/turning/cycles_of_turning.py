@@ -37,13 +37,12 @@ from g12.tools.translate.turning.moves import (
     Pecking,
     Thread,
     all_passes,
-    facing_pass,
     finishing_cut,
     lines_of_moves,
     pecks,
     pitch_along,
+    single_pass,
     thread_pass,
-    turning_pass,
 )
 from g12.tools.translate.turning.roughing import RoughCuts, rough
 
@@ -228,10 +227,14 @@ def pecking(draft: Draft, meaning: str) -> None:
     _write_moves(draft, pecks(start, given), start)
 
 
-def _single_pass(draft: Draft, meaning: str) -> None:
-    """G90 and G94 of system A."""
+def _modal_pass(draft: Draft, meaning: str) -> None:
+    """G90, G94 and G92 of system A."""
     start, end, taper = _pass_words(draft, meaning)
-    moves = (turning_pass if meaning == "turning pass" else facing_pass)(start, end, taper)
+    if meaning == "thread pass":
+        thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft))
+        moves = thread_pass(start, thread)
+    else:
+        moves = single_pass(start, end, taper, meaning == "facing pass")
     _write_moves(draft, moves, start, turning_cycle=meaning)
 
 
@@ -267,13 +270,6 @@ def _other_meaning(code: str, meaning: str) -> str:
         f"{code} is a cycle here, the {meaning}, with X and Z and no G0 or G1: where it is a mode, "
         "the control is another of fanuc-lathe, fanuc-lathe-b and fanuc-lathe-c; else take it out"
     )
-
-
-def _one_thread_pass(draft: Draft, meaning: str) -> None:
-    """G92 of system A."""
-    start, end, taper = _pass_words(draft, meaning)
-    thread = Thread(end, _lead_of(draft), taper, _chamfer_of(draft))
-    _write_moves(draft, thread_pass(start, thread), start, turning_cycle=meaning)
 
 
 def _lead_of(draft: Draft) -> float:
@@ -369,9 +365,9 @@ CYCLES: dict[str, Callable[[Draft, str], None]] = {
     "finishing": finishing,
     "pecking along Z": pecking,
     "pecking along X": pecking,
-    "turning pass": _single_pass,
-    "facing pass": _single_pass,
-    "thread pass": _one_thread_pass,
+    "turning pass": _modal_pass,
+    "facing pass": _modal_pass,
+    "thread pass": _modal_pass,
     "threading": threading,
     "thread": _thread_move,
 }

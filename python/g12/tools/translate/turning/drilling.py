@@ -32,10 +32,10 @@ from g12.tools.translate.turning.given_words import (
     take_increments,
     take_number,
 )
+from g12.tools.translate.turning.moves import limited
 
 POSITION_LETTERS = frozenset("XZCUWHR")
 OWN_M_CODES = frozenset(f"M{number}" for number in range(10))  # LinuxCNC's, beside a cycle
-MOST_PECKS = 1000
 STOP = "G4 P0"
 LEAST_PECK = 1e-6  # of a peck that is no rounding
 
@@ -61,9 +61,7 @@ class HoleLevels(NamedTuple):
     def pecked(self, depth: float, clear: float) -> Iterator[str]:
         """Yield the moves down to the end, each ``depth`` deeper (0: at once)."""
         stroke = (self.end - self.r) / self.scale
-        count = ceil((stroke - LEAST_PECK) / depth) if depth else 1
-        if count > MOST_PECKS:
-            raise NotTranslated(f"pecks of {depth:g} are {count} in one hole: at most {MOST_PECKS}")
+        count = limited(ceil((stroke - LEAST_PECK) / depth), "pecks") if depth else 1
         for peck in range(1, count):
             there = self.r + peck * depth * self.scale
             yield f"G1 {self.word(there)}"

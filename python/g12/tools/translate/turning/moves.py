@@ -24,7 +24,14 @@ ARC_CODES = ("G2", "G3")
 SAME = 1e-7  # points and lengths that are nearer are the same
 ROUNDED = 0.01  # what R may be too short by, or two radii of I and K may differ
 DIGITS = 1e-6  # a word is written where its value changes by that
-MOST_THREAD_PASSES = 1000
+MOST_CUTS = 5000  # of one cycle
+
+
+def limited(count: float, cuts: str) -> int:
+    """Return the number of a cycle's cuts, or refuse one that only a wrong word can have."""
+    if count > MOST_CUTS:
+        raise NotTranslated(f"{count:.0f} {cuts} in one cycle: at most {MOST_CUTS}, go in deeper")
+    return int(count)
 
 
 class ContourBlock(NamedTuple):
@@ -172,9 +179,6 @@ def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
-MOST_CYCLE_PASSES = 5000
-
-
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
     return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
 
@@ -185,16 +189,15 @@ def _tool_side(contour: Sequence[ContourMove]) -> int:
     return 1 if start - min(ends) >= max(ends) - start else -1
 
 
-def turning_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
-    """Return G90 of system A: along Z; ``taper`` the radius at the start less the end's."""
-    begin = complex(start.real, end.imag + taper)
-    return [rapid_to(begin), feed_to(end), feed_to(complex(end.real, start.imag)), rapid_to(start)]
+def single_pass(start: complex, end: complex, taper: float, along_x: bool) -> list[CycleMove]:
+    """Return G90 of system A, along Z, or G94, along X: in, along, out, back.
 
-
-def facing_pass(start: complex, end: complex, taper: float) -> list[CycleMove]:
-    """Return G94 of system A: along X; ``taper`` is Z at the start less that at the end."""
-    begin = complex(end.real + taper, start.imag)
-    return [rapid_to(begin), feed_to(end), feed_to(complex(start.real, end.imag)), rapid_to(start)]
+    ``taper`` is the radius (of G94: Z) at the start less that at the end.
+    """
+    begin, out = complex(start.real, end.imag + taper), complex(end.real, start.imag)
+    if along_x:
+        begin, out = complex(end.real + taper, start.imag), complex(start.real, end.imag)
+    return [rapid_to(begin), feed_to(end), feed_to(out), rapid_to(start)]
 
 
 class Pecking(NamedTuple):
@@ -216,8 +219,7 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     if not depth:
         raise NotTranslated("the cycle cuts nothing: it ends at the tool's position")
     peck = given.peck or abs(depth)
-    if abs(depth) / peck > MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{abs(depth) / peck:.0f} pecks: they are too small")
+    limited(abs(depth) / peck, "pecks")
     point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
     away, moves = copysign(1.0, -depth), []
     for number, aside in enumerate(offsets):
@@ -243,9 +245,7 @@ def _offsets(span: complex, given: Pecking) -> tuple[float, list[float]]:
         return depth, [0.0]
     if not given.step:
         raise NotTranslated("the cycle has no step to the next peck")
-    count = int(abs(width) / given.step - SAME)
-    if count > MOST_CYCLE_PASSES:
-        raise NotTranslated(f"{count} steps: the step is too small")
+    count = limited(abs(width) / given.step - SAME, "steps")
     steps = [copysign(given.step * number, width) for number in range(count + 1)]
     return depth, [*steps, width]
 
@@ -297,10 +297,7 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
         moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
-    last = moves[-1].end
-    clear = side * max(side * start.imag, side * last.imag)
-    back = (complex(last.real, clear), complex(start.real, clear), start)
-    return [*moves, *map(rapid_to, back)]
+    return [*moves, *return_by(start, moves[-1].end, side)]
 
 
 def pitch_along(path: complex, lead: float) -> float:
@@ -321,10 +318,7 @@ def _depths(infeed: Infeed) -> list[float]:
         if depth > full - SAME:
             break
         found.append(depth)
-        if number > MOST_THREAD_PASSES:
-            raise NotTranslated(
-                f"more than {MOST_THREAD_PASSES} passes: the first depth is too small"
-            )
+        limited(number, "passes")
     finishing = infeed.finishing if infeed.allowance > SAME else infeed.finishing - 1
     return [*found, full, *[infeed.height] * max(finishing, 0)]
 

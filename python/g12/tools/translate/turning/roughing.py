@@ -21,12 +21,11 @@ from g12.tools.translate.turning.moves import (
     ContourMove,
     CycleMove,
     feed_to,
+    limited,
     moves_along,
     offset_by,
     rapid_to,
 )
-
-MOST_LEVELS = 5000
 
 
 class RoughCuts(NamedTuple):
@@ -86,9 +85,7 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
             )
     at, depths = view.local(start), [end.imag for portion in portions for end in portion.ends]
     top = max(at.imag, *depths)
-    count = floor((at.imag - min(depths)) / given.depth - SAME)
-    if count > MOST_LEVELS:
-        raise NotTranslated(f"{count} cuts: the depth of cut is too small")
+    count = limited(floor((at.imag - min(depths)) / given.depth - SAME), "cuts")
     cuts: list[CycleMove] = []
     for number in range(1, count + 1):
         cuts += _level(portions, at.imag - number * given.depth, at, top, given)
