@@ -21,13 +21,12 @@ LinuxCNC's positive A turns the part so that the tool moves to Y- on it, by the 
 from __future__ import annotations
 
 import cmath
-from collections.abc import Sequence
 from functools import partial
 from math import copysign, degrees, radians, sqrt
 from typing import ClassVar, NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, PathElement, PlaneMove, Plunge
+from g12.compensation.contour import Contour, PlaneMove
 from g12.errors import number
 from g12.geometry.curve import Arc
 from g12.lengths import LARGEST
@@ -42,7 +41,6 @@ from g12.moves.steps import (
     StepMaker,
     spaced,
 )
-from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
 
@@ -52,7 +50,6 @@ ORIGIN = "the origin must stay where it is inside the section"
 CYLINDER_WORDS = SectionWords(
     plane="CZX",
     axes=AxisLetters("Z", "C", "X"),
-    turn_is_length=False,
     letters=(("X", "XU"), ("Z", "ZW"), ("C", "CH"), ("the centre along C", "IJ")),
     foreign={"u": "x", "w": "z", "h": "c"},
     relative={"U": "X", "W": "Z", "H": "C"},
@@ -61,11 +58,7 @@ CYLINDER_WORDS = SectionWords(
     plane_name="Z-C",
     centre=("JI", "K"),
     centre_name="J and K",
-    refused={
-        **dict.fromkeys("ABVY@^", "the section's words are Z, C, X, W, H and U"),
-        "T": NO_TOOL_CHANGE,
-        "D": OWN_RADIUS,
-    },
+    refused=dict.fromkeys("ABVY@^", "the section's words are Z, C, X, W, H and U"),
     own_block="X needs a block of its own, or [G12] CYLINDER_X = allow",
     origin=ORIGIN,
 )
@@ -78,20 +71,14 @@ def words_on_mill(plane: str, axes: AxisLetters, across: str) -> SectionWords:
     return SectionWords(
         plane=plane,
         axes=axes,
-        turn_is_length=False,
-        letters=(),
         foreign={},
         relative={},
         plain=plain_line_of(f"{slide}{turn}{height}IJRF"),
         planes=frozenset({170}),
         plane_name=f"{plane[0]}-{plane[1]}",
-        centre=("I", "J"),
-        centre_name="I and J",
         refused={
             **dict.fromkeys(others, f"the section's words are {slide}, {turn}, {height}, I and J"),
             across: f"{across} stays on the axis of rotation inside the section",
-            "T": NO_TOOL_CHANGE,
-            "D": OWN_RADIUS,
         },
         own_block=f"{height} needs a block of its own, or [G12] CYLINDER_X = allow",
         origin=ORIGIN,
@@ -223,12 +210,7 @@ def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
     stopping = stops(path, ROUNDING_SHARE * settings.tolerance, acceleration)
     machine = _Surface(contour, settings)
     for element, stop in zip(path, stopping):
-        if isinstance(element, PlaneMove):
-            machine.cut(element, stop)
-        elif isinstance(element, Plunge):
-            machine.plunge(element, stop)
-        else:
-            machine.steps.append(element)
+        machine.make(element, stop)
     machine.finish(path)
     return SectionPlan(
         machine.steps, machine.position, radians(machine.position.turn), contour.notes
@@ -262,12 +244,8 @@ class _Surface(StepMaker):
         split = self._split(move, split_by, self._settings.tolerance, stop)
         self._segments(move, split, 0.0, stop)
 
-    def finish(self, path: Sequence[PathElement]) -> None:
-        ends = [element.end for element in path if isinstance(element, PlaneMove)]
-        slide = self.position.slide
-        if ends:
-            slide, _ = _slide_and_around(ends[-1], self._settings.turn_is_first)
-        self._add_remainder(path, slide)
+    def slide_at(self, point: complex) -> float:
+        return _slide_and_around(point, self._settings.turn_is_first)[0]
 
 
 def split_on_cylinder(move: PlaneMove, settings: CylinderSettings, deviation: float) -> Split:

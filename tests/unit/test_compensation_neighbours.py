@@ -12,12 +12,10 @@ from collections import Counter
 import pytest
 from shapely.ops import nearest_points
 
-from g12.compensation.centre_path import tool_path
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from support import random_contours
 from support.contour_geometry import Round, Straight, lines
-from support.growth import growth
 from support.planned_cuts import add
 from support.random_contours import (
     TOLERANCE,
@@ -283,26 +281,3 @@ def test_what_cuts_into_another_is_found_and_nothing_else(monkeypatch):
 
 
 # How long it takes.
-
-
-def waves(count, radius):
-    angles = [2 * math.pi * k / count for k in range(count + 1)]
-    points = [cmath.rect(radius + 2.0 * math.sin(5 * a), -a) for a in angles]
-    return boss(lines(*points), 3.0)
-
-
-@pytest.mark.parametrize(
-    "parts",
-    [
-        lambda n: [(waves(n // 25, 20.0 + 0.1 * k), -1.0 - k) for k in range(50)],
-        lambda n: [(waves(n // 10, 25.0 - 0.1 * k), -1.0) for k in range(20)],
-        lambda n: [(waves(n, 20.0), -1.0), (waves(n, 19.992), -1.0)],
-    ],
-)
-def test_elements_are_not_compared_each_with_each(parts):
-    def planned(count):
-        contour = section(*parts(count))
-        assert len(contour.elements) > 1.98 * count
-        return lambda: tool_path(contour, contour.elements, TOLERANCE)
-
-    assert growth(planned, 500) < 10

@@ -158,13 +158,3 @@ def test_too_tight_names_both_lines(blocks, message):
         joined(*blocks)
     assert refused.value.message == f"G12.1 {message}"
     assert len(refused.value.message) < LONGEST_MESSAGE
-
-
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_a_ramp_alone_cannot_be_cut(side):
-    contour = Contour(10.0, 0.0, 0.0)
-    contour.compensate(side, 2.0, at=1)
-    contour.straight(10.0, 5.0, at=1, feed=100.0)
-    needs = "needs a block of the contour after its G1"
-    with pytest.raises(Refusal, match=rf"^G12\.1 line 1: G{side} {needs}$"):
-        tool_path(contour, contour.elements, TOLERANCE)

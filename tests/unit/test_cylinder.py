@@ -21,9 +21,9 @@ from g12.errors import Refusal
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
-from g12.section.block_rules import SectionBlock, check_codes, check_letters
+from g12.section.block_rules import SectionBlock
 from g12.section.effects import codes_with_word
-from g12.section.line import BlockLocation, split_line
+from g12.section.line import BlockLocation
 from g12.settings import Settings
 from support import planned_moves
 from support.section_starts import START as POLAR_START
@@ -144,21 +144,6 @@ def test_the_settings_of_a_section_are_in_program_units():
 
 
 @pytest.mark.parametrize(
-    ("settings", "found", "word", "value"),
-    [
-        ({"cylinder_word": "diameter"}, {}, "turn_scale", pytest.approx(10 * math.pi / 180)),
-        ({"polar_x": "diameter"}, {}, "x_scale", 1.0),
-        ({}, {"diameter": True}, "diameter", True),
-        ({"polar_tool_offset": 3.0}, {}, "beside", 0.0),  # a matter of the face
-        ({}, {}, "height_with_others", False),
-        ({"cylinder_x": "allow"}, {}, "height_with_others", True),
-    ],
-)
-def test_what_settings_mean_on_a_cylinder(settings, found, word, value):
-    assert getattr(section(Settings(**settings), **found).rules, word) == value
-
-
-@pytest.mark.parametrize(
     ("found", "rule"),
     [
         ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),  # as for all sections
@@ -173,15 +158,6 @@ def test_where_no_section_begins(found, rule):
     assert refused.value.message == f"G7.1 line 7: {rule}"
 
 
-def test_where_one_begins():
-    section()  # in G19, too
-    section(letters="XYZC", x=-1.0)
-    for radius in (1e-3, 1e6):
-        section(words={"C": radius})
-    with pytest.raises(Refusal, match="needs a machine with an X, Z and a C axis"):
-        section(letters="XC")
-
-
 def test_one_code_switches_on_and_off():
     codes = codes_with_word("G7.1", [], "cylinder_mode", "C")
 
@@ -194,28 +170,6 @@ def test_one_code_switches_on_and_off():
     ]  # fmt: skip
     assert codes.ends(block(C=0.0)) and not codes.ends(block(C=1.0)) and not codes.ends(block())
     assert not codes.begins(block(g=72)) and not codes.ends(block(g=72, C=0.0))
-
-
-WORDS = "the section's words are Z, C, X, W, H and U"
-
-
-@pytest.mark.parametrize(
-    ("text", "why"),
-    [
-        *((f"{letter}1", f"{letter} is refused: {WORDS}") for letter in "ABVY@^"),
-        ("Z1 W1", "Z and W both move Z: only one of them"),
-        ("I1 J1", "I and J both move the centre along C: only one of them"),
-        ("G17.1", "G17.1 is refused: the section's plane is Z-C"),
-        ("G90.1", "G90.1 is refused: J and K are always incremental inside the section"),
-        ("G54", "G54 is refused: the origin must stay where it is inside the section"),
-    ],
-)
-def test_words_that_are_refused(text, why):
-    line = split_line(text, CYLINDER_WORDS)
-    with pytest.raises(Refusal) as refused:
-        check_letters(line, CYLINDER_WORDS, START.location)
-        check_codes(line.codes, CYLINDER_WORDS, False, START.location)
-    assert refused.value.message == f"G7.1 line 7: {why}"
 
 
 # ---------------------------------------------------------------- on a mill with A or B
@@ -251,10 +205,6 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
     assert planning.height_acceleration == 1100.0
 
 
-def test_a_spindle_that_is_not_c_does_not_matter_round_a_mills_part():
-    assert on_mill("A", missing_code="M133").planning
-
-
 @pytest.mark.parametrize(
     ("letter", "found", "rule"),
     [
@@ -280,33 +230,3 @@ def test_where_none_begins_on_a_mill(letter, found, rule):
     with pytest.raises(Refusal) as refused:
         on_mill(letter, **found)
     assert refused.value.message == f"G7.1 line 7: {rule}"
-
-
-def test_where_one_begins_on_a_mill():
-    on_mill("A", y=1e-9, shifts={"X": 9.0, "Y": 0.0, "Z": 0.0})
-    on_mill("B", letters="YBZ")
-
-
-WORDS_OF_A, WORDS_OF_B = (
-    f"the section's words are {words}" for words in ("X, A, Z, I and J", "Y, B, Z, I and J")
-)
-
-
-@pytest.mark.parametrize(
-    ("letter", "text", "why"),
-    [
-        *(("A", f"{other}1", f"{other} is refused: {WORDS_OF_A}") for other in "BCUVWHK@^"),
-        *(("B", f"{other}1", f"{other} is refused: {WORDS_OF_B}") for other in "ACUVWHK@^"),
-        ("A", "Y0", "Y is refused: Y stays on the axis of rotation inside the section"),
-        ("B", "X0", "X is refused: X stays on the axis of rotation inside the section"),
-        ("A", "D3", "D is refused: the radius is that of the loaded tool"),
-        ("A", "G90.1", "G90.1 is refused: I and J are always incremental inside the section"),
-    ],
-)
-def test_words_that_are_refused_on_a_mill(letter, text, why):
-    known = CYLINDERS[letter].words
-    line = split_line(text, known)
-    with pytest.raises(Refusal) as refused:
-        check_letters(line, known, START.location)
-        check_codes(line.codes, known, False, START.location)
-    assert refused.value.message == f"G7.1 line 7: {why}"

@@ -78,14 +78,3 @@ def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew()
     assert (again.line, again.move.start.imag) == (9, pytest.approx(0.0, abs=0.002))
     assert again.move.start.real == pytest.approx(switch.position[0])
     assert 0.2 < again.move.start.real < hypot(3, 30)
-
-
-def test_a_plunge_on_the_face_keeps_x_and_c():
-    drawn = contour((30, 20), (-30, 20))
-    drawn.elements.append(Plunge(9, 500.0, 0.0, -1.0))
-    made = plan(drawn, SETTINGS, c=10.0)
-    down, back = made.steps[-2:]
-    assert down.move == Plunge(9, 500.0, 0.0, -1.0)
-    assert [pytest.approx((hypot(30, 20), 10 + degrees(atan2(20, -30)), -1.0))] == down.segments
-    assert back == FaceSwitch(9, False, made.position)
-    assert made.position.height == -1.0

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from g12.geometry.curve import Arc
 from g12.polar.face import MoveDemands
-from support.face_moves import LIMITS, arcs, line, lines, motion
+from support.face_moves import LIMITS, arcs, lines, motion
 
 
 def can_follow(move, limits):
@@ -58,9 +58,3 @@ def test_a_move_is_able_if_its_place_that_asks_the_most_is(move, beside, slide_s
     assume(abs(motion(move)[0]).min() > abs(beside) + 0.5)
     share = share_of_limits(move, limits)
     assert can_follow(move, limits) == (share < 1.0) or 0.97 < share < 1.1
-
-
-def test_a_higher_feed_needs_more_room():
-    slow, fast = (line((17, -20), (17, 20), feed=feed) for feed in (500.0, 6000.0))
-    assert can_follow(slow, LIMITS)
-    assert not can_follow(fast, LIMITS)

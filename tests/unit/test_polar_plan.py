@@ -19,7 +19,6 @@ from support.planned_cuts import SAGITTA, cuts, path, programmed
 TOLERANCE = 0.005
 LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
 EXACT = LATHE._replace(least_x=1e-9)  # nothing is handed on, so that all of the deviation is seen
-DRIVEN = EXACT._replace(x_acceleration=1e-3, c_acceleration=1e-3)  # no segments for an even speed
 
 coordinate = st.floats(-30.0, 30.0) | st.sampled_from([0.0, 1e-9, 0.001, -0.004, 0.02, 1.0, -7.0])
 point = st.builds(complex, coordinate, coordinate)
@@ -98,20 +97,6 @@ def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
     assert len(run.segments) == segments
 
 
-def test_what_is_left_out_of_a_contour_is_taken_from_the_tolerance():
-    """A step of 0.0013 in a side is left out under compensation."""
-    step = 0.0013
-    contour = Contour(30.0, 0.0, -15.0)
-    contour.compensate(41, 5.0, at=1)
-    for line, (x, c) in enumerate(
-        [(20, -15), (20, -14), (20, 0), (20 + step, 0), (20 + step, 15), (20 + step, 16)], 1
-    ):
-        contour.straight(x, c, at=line, feed=250.0)
-    made = [cut for cut in cuts(contour, plan(contour, DRIVEN, c=0.0)) if cut.line in (3, 5)]
-    side = [Straight(15 - 14j, 15 + 0j), Straight(15 + step + 0j, 15 + step + 15j)]
-    assert 0.6 * TOLERANCE < distance(path(made), side).max() <= TOLERANCE
-
-
 # At its feed.
 
 
@@ -155,18 +140,6 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
 
 
 # A tool beside the X line.
-
-
-def test_what_is_nearer_to_the_centre_is_refused_with_its_line():
-    contour = Contour(20.0, 0.0, 0.0, beside=-3.0)
-    contour.straight(10.0, 0.0, at=7, feed=100.0)
-    contour.straight(2.9, 0.0, at=8, feed=100.0)
-    with pytest.raises(Refusal) as refused:
-        plan(contour, EXACT._replace(beside=-3.0), c=0.0)
-    assert refused.value.message == (
-        "G12.1 line 8: the tool's centre would come to 2.9 from the spindle's centre: it is 3 "
-        "beside X's line (POLAR_TOOL_OFFSET) and comes no nearer than 3.005"
-    )
 
 
 # Corners, marks, sections cut in two.

@@ -2,18 +2,16 @@
 """What of a section is made on the face, with which acceleration: as it is made soonest."""
 
 from itertools import groupby
-from math import cos, hypot, pi, radians, sin
+from math import hypot, pi, radians
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Plunge
 from g12.polar.face import FaceLimits, MoveDemands
 from g12.polar.quickest import quickest
 from g12.section.effects import Action
 from support import planned_moves
-from support.growth import growth
 
 QUICK = FaceLimits(1000.0, 707.0, 1000.0, radians(3600.0), radians(360.0), 1.0, 20.0)
 SLOW = FaceLimits(1500.0, 1060.0, 1500.0, radians(1200.0), radians(90.0), 1.5, 35.0)
@@ -51,14 +49,8 @@ def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
         assert before.end == pytest.approx(after.start)
 
 
-@pytest.mark.parametrize("feed", [1000.0, 3000.0])
-def test_along_a_radius_one_segment_is_as_quick_as_the_face(feed):
-    slot = [line((18, 0), (0, 0), feed=feed), line((0, 0), (-18, 0), feed=feed)]
-    assert shares_of(quickest(slot, [True, True], QUICK)) == [0.0, 0.0]
-
-
-FAR, SHORT = line((40, -20), (40, 20), feed=1000.0), line((1e-4, -1), (1e-4, 1), feed=1000.0)
-MARK, PLUNGE = Action(2, "M8", None), Plunge(3, 500.0, 0.0, -1.0)
+SHORT = line((1e-4, -1), (1e-4, 1), feed=1000.0)
+MARK = Action(2, "M8", None)
 
 
 @pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
@@ -66,17 +58,6 @@ def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
     shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
     assert [*map(bool, shares)] == [False, worth, worth, False]
-
-
-def test_moves_near_the_pole_are_not_compared_each_with_each():
-    def planned(count):
-        turn = [
-            ((8 + k / 250) * cos(k / 20), (8 + k / 250) * sin(k / 20)) for k in range(count + 1)
-        ]
-        path = [line(*ends, feed=2000.0) for ends in zip(turn, turn[1:])]
-        return lambda: made_of(path, SLOW)
-
-    assert growth(planned, 150) < 10
 
 
 ways = st.lists(

@@ -10,12 +10,10 @@ from g12.section.effects import (
     SectionModes,
     action_text,
     comment_text,
-    decimal,
     modes_after,
 )
-from g12.section.line import BlockLocation, split_line, split_words
+from g12.section.line import split_line, split_words
 
-HERE = BlockLocation("G12.1", 7)
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 
 
@@ -26,13 +24,6 @@ def block(*, g=(), m=(), motion=-1, **words):
         for group, code in given.items():
             codes[group] = code
     return SectionBlock(tuple(by_group[0]), tuple(by_group[1]), motion, words)
-
-
-@pytest.mark.parametrize(
-    "raw", ["G1 X1.5 C-2. F20", "x1c2", "N10 G03 X-1 I-2.5 J+3", "G2R.5X1", "F5", "X1 \r", "Z-.375"]
-)
-def test_plain_lines(raw):
-    assert POLAR_WORDS.plain(raw)
 
 
 @pytest.mark.parametrize(
@@ -94,11 +85,6 @@ O_WORDS = {
 @pytest.mark.parametrize(("kind", "lines"), O_WORDS.items())
 def test_o_words(kind, lines):
     assert [split_line(raw, POLAR_WORDS).control for raw in lines] == [kind] * len(lines)
-
-
-def test_an_o_word_keeps_its_text_and_its_comments():
-    line = split_line("O100 If [#1 EQ 2] (msg, two) ; or not", POLAR_WORDS)
-    assert (line.text, line.comments) == ("o100if[#1eq2]", ("msg, two",))
 
 
 def test_words_are_split_at_their_values():
@@ -178,11 +164,6 @@ def test_a_report_is_cut_to_a_line_that_linuxcnc_reads_and_no_shorter():
     """A blank after a # at its end, or a parameter would begin there."""
     assert len(comment_text("print," + "#" * 300, VALUES.get)) == LONGEST_BLOCK
     assert len(comment_text("print," + "x" * 300, VALUES.get)) == LONGEST_BLOCK - 1
-
-
-def test_decimals_have_no_exponents():
-    values = (1.0, -0.5, 1e-7, 0.0, 100.0)
-    assert [decimal(value) for value in values] == ["1", "-0.5", "0.0000001", "0", "100"]
 
 
 def test_codes_are_g_and_m_with_a_plain_number():

@@ -122,20 +122,6 @@ def test_where_c_stands_the_tolerance_is_no_coarser_than_the_section_s(tolerance
     assert interp.done == blended
 
 
-@pytest.mark.parametrize(
-    ("tolerance", "merging", "blended"),
-    [(0.0, 0.0, SMOOTH), (0.0254, 0.0, SMOOTH), (0.0254, 0.0254, None), (0.02, 0.0, None)],
-)
-def test_on_the_face_the_tolerance_that_linuxcnc_starts_with_is_none(tolerance, merging, blended):
-    """Between segments of C it may stay: P does nothing there."""
-    interp = Interpreter(tolerance=tolerance, merging=merging)
-    path = PathControl(interp, borrowed.saved_modes(interp), 0.0025, 0.0254)
-    path.on_face()
-    assert interp.done == ([blended] if blended else [])
-    borrowed.restore(interp, borrowed.saved_modes(interp))
-    assert interp.active_settings[3:] == [tolerance, merging]
-
-
 def test_a_segment_that_another_is_blended_into_is_stopped_by_a_dwell():
     one = [run(segments=LINE[:1]), run(segments=LINE[1:], stop=True)]
     for steps in ([run(stop=True), run()], [*one, run()]):
@@ -150,29 +136,6 @@ def test_g9_is_an_exact_stop_at_the_end_of_its_block():
     assert done == [SMOOTH, FIRST, *NEXT, FIRST, *NEXT, STOP_HERE, OLD, *RELEASED]
     alone = handed_over([run(segments=LINE[:1], line=8)], exact={8}).done
     assert alone == ["G61.1", FIRST, OLD, *RELEASED]
-
-
-@pytest.mark.parametrize(("feed_mode", "first"), [(0, []), (2, ["G94"])])
-def test_feed_per_revolution_is_left_and_comes_back_with_each_part(feed_mode, first):
-    interp = Interpreter()
-    interp.feed_mode = feed_mode
-    borrowed.renew(interp, borrowed.modes_in_force(interp))
-    emission = emission_of(interp)
-    modes = MODES._replace(per_revolution=True, feed=0.2, incremental=True, motion=30)
-    for _ in range(2):
-        assert list(emission.run([run()], modes, ())) == []
-    part = [SMOOTH, FIRST, *NEXT, OLD, "G95", "G91", "F0.2"]
-    assert interp.done == [*first, *part, "G90", "G94", *part]
-    assert interp.motion_mode == 30
-
-
-def test_path_control_commanded_inside_stays():
-    g64, g61 = Action(8, "G64P0.1", MODES), Action(10, "G61", MODES)
-    done = handed_over([run(), g64, run(line=9), g61, run(line=11)]).done
-    second, third = done.index("G64P0.1"), done.index("G61")
-    assert done[second:third] == ["G64P0.1", FIRST, *NEXT, *RELEASED]
-    back = ["G64P0.1Q0.1", "G61", *RELEASED]
-    assert done[third:] == ["G61", SMOOTH, FIRST, *NEXT, STOP_HERE, *back]
 
 
 @pytest.mark.parametrize(

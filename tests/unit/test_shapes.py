@@ -100,10 +100,7 @@ REFUSED = [
         (dict(depth=LEFT_OUT), "depth is missing: how deep, from the face at Z0"),
     )),
     ("polar_slot", dict(angle=361), "angle 361 must lie between -360 and 360"),
-    ("polar_slot", dict(angle=-360.5), "angle -360.5 must lie between -360 and 360"),
-    ("polar_slot", dict(width=LEFT_OUT), "width is missing: from wall to wall"),
     ("polar_slot", dict(width=0), f"width 0 must be greater than 0 {CALL.format(8)}"),
-    ("polar_slot", dict(length=LEFT_OUT), "length is missing: over all"),
     ("polar_slot", dict(length=20),
      "length 20 must be greater than width 20 (polar_pocket makes a round one)"),
     ("polar_slot", dict(width=5.9999), "width 5.9999 must not be less than the cutter's 6"),
@@ -113,66 +110,35 @@ REFUSED = [
     ("polar_slot", dict(allowance=-0.1), "allowance -0.1 must not be below 0"),
     ("polar_slot", dict(allowance=4.6, **IN_MM),
      "allowance 4.6 must be at most 4.5, what one round of the cutter of 6 mm takes"),
-    ("polar_pocket", dict(diameter=LEFT_OUT), "diameter is missing: the pocket's"),
     ("polar_pocket", dict(diameter=5.9), "diameter 5.9 must not be less than the cutter's 6"),
     ("polar_pocket", dict(diameter=6.0101), f"diameter 6.0101 {HELIX}"),
     ("polar_pocket", dict(diameter=7, allowance=0.5), f"diameter 7 {HELIX}"),
-    ("polar_polygon", dict(sides=LEFT_OUT), "sides is missing: how many, 2 for two flats"),
-    ("polar_polygon", dict(across_flats=LEFT_OUT),
-     "across_flats is missing: the distance between two flats"),
-    ("polar_polygon", dict(stock_diameter=LEFT_OUT), "stock_diameter is missing: the bar's"),
     ("polar_polygon", dict(depth=0), f"depth 0 must be greater than 0 {CALL.format(10)}"),
     ("polar_polygon", dict(stock_diameter=27),
      "stock_diameter 27 must be greater than across_flats 27"),
     ("polar_polygon", dict(corner_radius=13.5),
      "corner_radius 13.5 must be less than half of across_flats 27"),
     ("polar_polygon", dict(sides=2, corner_radius=1), "corner_radius 1: two flats have no corners"),
-    ("polar_polygon", dict(sides=1), "sides 1 must be at least 2"),
     ("polar_polygon", dict(sides=101), "sides 101 must be at most 100"),
     ("polar_polygon", dict(stock_diameter=30, allowance=1.5),
      "allowance 1.5 must be less than the 1.5 from the stock to the flats"),
     ("polar_polygon", dict(allowance=4.6, stock_diameter=40),
      "allowance 4.6 must be at most 4.5, what one round of the cutter of 6 takes"),
     ("face_holes", dict(found=FOUND._replace(spindle_tool=None)), "no tool is loaded"),
-    ("face_holes", dict(count=LEFT_OUT), "count is missing: how many holes"),
-    ("face_holes", dict(count=0), "count 0 must be at least 1"),
     ("face_holes", dict(count=361), "count 361 must be at most 360"),
-    ("face_holes", dict(count=2.5), "count 2.5 must be a whole number"),
-    ("face_holes", dict(circle_diameter=-1),
-     f"circle_diameter -1 must be greater than 0 {CALL.format(10)}"),
-    ("face_holes", dict(circle_diameter=LEFT_OUT),
-     "circle_diameter is missing: of the circle of holes"),
-    ("face_holes", dict(first_angle=361), "first_angle 361 must lie between -360 and 360"),
-    ("face_holes", dict(step_angle=361), "step_angle 361 must lie between -360 and 360"),
-    ("face_holes", dict(depth=LEFT_OUT), "depth is missing: how deep, from the face or surface"),
-    ("face_holes", dict(depth=-1), f"depth -1 must be greater than 0 {CALL.format(10)}"),
-    ("face_holes", dict(retract=-2), f"retract -2 must be greater than 0 {CALL.format(10)}"),
     ("face_holes", dict(found=FOUND._replace(z=0.0)),
      "Z0: the tool must be above the face at Z0"),
-    ("face_holes", dict(retract=LEFT_OUT),
-     "retract is missing: the height at which the tool is clear"),
-    ("face_holes", dict(kind=-1), "kind -1 must be at least 0"),
     ("face_holes", dict(kind=4), "kind 4 must be at most 3"),
-    ("face_holes", dict(kind=1, feed=LEFT_OUT), "feed is missing: a tap's pitch"),
     ("face_holes", dict(kind=1, peck=-1), "peck -1 is for drilling (kind 0), not for kind 1"),
-    ("face_holes", dict(kind=3, peck=1), "peck 1 is for drilling (kind 0), not for kind 3"),
     ("face_holes", dict(kind=2),
      "kind 2 taps a left-hand thread: the tool's spindle must turn, by M4 and S"),
     ("face_holes", dict(kind=1, machine=LIVE._replace(speed=0.0)),
      "kind 1 taps a right-hand thread: the tool's spindle must turn, by M3 and S"),
     ("face_holes", dict(peck=1e-4), "count and peck make 1440018 moves, the most is 100000"),
-    ("face_holes", dict(feed=LEFT_OUT, found=STILL), "feed is missing, and no F is active"),
-    ("face_holes", dict(found=TURNING), "feed per revolution (G95) needs the spindle speed S"),
-    ("face_holes", dict(dwell=-1), "dwell -1 must not be below 0"),
     ("face_hole_at", dict(machine=LIVE._replace(beside=-12.0)),
      "the hole is 11.18034 from the spindle's axis, where [G12] POLAR_TOOL_OFFSET"
      " lets the tool no nearer than 12"),
-    ("side_holes", dict(z=LEFT_OUT), "z is missing: where the holes are along the part"),
     ("side_holes", dict(first_angle=-361), "first_angle -361 must lie between -360 and 360"),
-    ("side_holes", dict(surface_diameter=LEFT_OUT),
-     "surface_diameter is missing: of the turned surface"),
-    ("side_holes", dict(surface_diameter=-4),
-     f"surface_diameter -4 must be greater than 0 {CALL.format(11)}"),
     ("side_holes", dict(surface_diameter=60),
      "X30 (radius): the tool must be outside the surface, beyond 30"),
     ("side_holes", dict(machine=LIVE._replace(beside=1.0)),
@@ -186,40 +152,7 @@ def test_a_bad_call_is_refused_by_name(name, wrong, rule):
     assert refusal(name, **wrong) == f"{name}: {rule}"
 
 
-@pytest.mark.parametrize(
-    ("shape", "entries"),
-    [
-        ("polar_slot", dict(angle=360)),
-        ("polar_slot", dict(angle=-360)),
-        ("polar_slot", dict(width=8, length=30, allowance=1)),
-        ("polar_slot", dict(width=40, allowance=4.5)),
-        ("polar_slot", dict(allowance=0.00508)),
-        ("polar_slot", dict(length=20.01)),
-        ("polar_pocket", dict(diameter=6.01016)),
-        ("polar_polygon", dict(stock_diameter=30, allowance=1.499)),
-        ("polar_polygon", dict(corner_radius=13.499)),
-        ("polar_polygon", dict(sides=100)),
-        ("polar_polygon", dict(sides=2, across_flats=36, depth=1, depth_per_pass=1e-4)),
-        *((shape, dict(found=FOUND._replace(z=1e-3))) for shape in SHAPES),
-        *((shape, dict(found=STILL, feed=0.5)) for shape in SHAPES),
-        *((shape, dict(found=TURNING._replace(speed=1e-3))) for shape in SHAPES),
-    ],
-)
-def test_what_just_fits_is_planned(shape, entries):
-    planned(shape, **entries)
-
-
 # ---------------------------------------------------------------- what every shape has
-
-
-@pytest.mark.parametrize("shape", SHAPES)
-def test_it_goes_on_at_a_feed_from_a_millimetre_above_the_face(shape):
-    inches = FOUND._replace(inch=True)
-    for found, heights in (
-        (FOUND, (5, 1)), (FOUND._replace(z=0.3), (0.3, 0.3)), (inches, (5, 1 / 25.4)),
-    ):  # fmt: skip
-        made = taken(numbers_of(shape, found=found), "start_z", "near_z")
-        assert made == pytest.approx(heights)
 
 
 @pytest.mark.parametrize(
@@ -352,14 +285,6 @@ def test_no_slot_leads_through_the_centre_where_that_is_refused(width, length, t
 
 
 # ---------------------------------------------------------------- polygons
-
-
-def test_a_polygon_turns_c_once_with_every_round():
-    made = planned("polar_polygon", depth_per_pass=2, allowance=0.5, angle=0)
-    turns = made.locals["levels"] * made.locals["rounds"] + 1
-    low, high = made.extent.c
-    assert turns == 3 * 2 + 1
-    assert 30 <= high < 90 and -360 * turns - 60 < low <= 30 - 360 * turns
 
 
 @pytest.mark.parametrize("sides", [2, 100])

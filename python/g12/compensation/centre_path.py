@@ -105,13 +105,10 @@ def _centred(
     joints.append(_Joint(last.parallel.end, last.parallel.end))
     cuts = []
     for k, step in enumerate(steps):
-        joint, end = joints[k], joints[k + 1].end_before
-        if not step.compensated:
-            path = _uncompensated(step.move, joint.start_after, end)
-        else:
-            path = _trimmed(contour, steps, k, joint.start_after, end)
-            if joint.corner is not None:
-                path = (_corner_arc(step.move, joint, joint.corner), *path)
+        joint = joints[k]
+        path = _between(contour, steps, k, joint.start_after, joints[k + 1].end_before)
+        if joint.corner is not None:
+            path = (_corner_arc(step.move, joint, joint.corner), *path)
         cuts.append(PathOfMove(step.move, path, step.compensated))
     check_gouges(contour, cuts, tolerance)
     return [cut.path for cut in cuts]
@@ -217,12 +214,19 @@ def _neighbours(contour: Contour, move: PlaneMove) -> str:
     return f"between lines {moves[k - 1].line} and {moves[k + 1].line}"
 
 
-def _trimmed(
+def _between(
     contour: Contour, steps: list[_Step], k: int, start: complex, end: complex
 ) -> tuple[PathElement, ...]:
-    """Return the parallel of a step between two points of it; refuse points in reverse order."""
-    move, parallel = steps[k].move, steps[k].parallel
-    length = parallel.length_to(end, late=True) - parallel.length_to(start)
+    """Return the parallel of a step between the joints at its ends; refuse them in reverse order.
+
+    A ramp that is square to the contour and as long as the tool's radius shrinks to a point.
+    """
+    move, parallel, compensated = steps[k].move, steps[k].parallel, steps[k].compensated
+    if isinstance(parallel, Arc) and not compensated:
+        return (move,)
+    length = abs(end - start)
+    if compensated:
+        length = parallel.length_to(end, late=True) - parallel.length_to(start)
     if length < -SAME_POINT:
         contour.refuse(
             move.line,
@@ -235,18 +239,6 @@ def _trimmed(
         return (move._replace(curve=Line(start, end)),)
     sweep = copysign(length / parallel.radius, parallel.sweep)
     return (move._replace(curve=Arc(start, parallel.centre, sweep)),)
-
-
-def _uncompensated(move: PlaneMove, start: complex, end: complex) -> tuple[PathElement, ...]:
-    """Return a ramp, or a move without compensation, between the joints at its ends.
-
-    A ramp that is square to the contour and as long as the tool's radius shrinks to a point.
-    """
-    if isinstance(move.curve, Arc):
-        return (move,)
-    if abs(end - start) <= SAME_POINT:
-        return _move_of_z(move)
-    return (move._replace(curve=Line(start, end)),)
 
 
 def _move_of_z(move: PlaneMove) -> tuple[PathElement, ...]:
@@ -272,10 +264,10 @@ def without_short_moves(
             continue
         before = None if last is None else remaining[last]
         away = 0.0 if before is None else abs(element.end - before.end)
-        if before and _is_short(before, element, limit) and away <= limit:
+        compensated = before is not None and before.offset and element.offset
+        if compensated and max(element.length, away) <= limit:
             shift = max(shift, away)
-            if element.h0 != element.h1:
-                remaining.append(Plunge(element.line, element.feed, element.h0, element.h1))
+            remaining.extend(_move_of_z(element))
             continue
         if before and abs(element.start - before.end) > SAME_POINT:
             remaining[last], *between, element = _connected(before, element)
@@ -344,12 +336,14 @@ def with_arcs_of_the_tool(
 def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> tuple[int, float]:
     """Return the last of the elements that one line can replace, and its deviation from them."""
     one, most = elements[first], 0.0
-    if not _is_line(one):
+    if not _is_level_line(one) or not one.offset:
         return first, most
     lines = [one]
     for at in range(first + 1, min(len(elements), first + MOST_POINTS)):
         other = elements[at]
-        if not (_is_line(other) and _is_like(one, other)):
+        if not _is_level_line(other) or other.h1 != one.h1:
+            break
+        if (other.feed, other.offset) != (one.feed, one.offset):
             break
         chord = Line(one.start, other.end)
         if chord.length <= limit:
@@ -362,18 +356,10 @@ def _line_through(elements: Sequence[PathElement], first: int, limit: float) -> 
     return first + len(lines) - 1, most
 
 
-def _is_like(one: PlaneMove, other: PlaneMove) -> bool:
-    level = one.h0 == one.h1 == other.h1
-    alike = one.feed == other.feed and one.offset == other.offset
-    return one.offset != 0.0 and level and alike
-
-
-def _is_line(element: PathElement) -> TypeGuard[PlaneMove]:
-    return isinstance(element, PlaneMove) and isinstance(element.curve, Line)
-
-
-def _is_short(before: PlaneMove, move: PlaneMove, limit: float) -> bool:
-    return bool(before.offset and move.offset) and move.length <= limit
+def _is_level_line(element: PathElement) -> TypeGuard[PlaneMove]:
+    if isinstance(element, PlaneMove) and isinstance(element.curve, Line):
+        return element.h0 == element.h1
+    return False
 
 
 SHORT_SHARE = 0.3  # of the tolerance: a shorter move under compensation is rounding

@@ -23,7 +23,7 @@ refused only where they must be a mistake:
 - the cut is deeper than an allowance for finishing can be: a deliberately larger offset makes the
   channel between two contours narrower by twice the allowance.
 
-All other cuts between contours are for ``g12 verify`` to report. Program units.
+All other cuts between contours may be meant. Program units.
 """
 
 from __future__ import annotations

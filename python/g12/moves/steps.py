@@ -31,6 +31,7 @@ ends of segments: X reverses there, and a segment across would move C alone, or 
 Lengths are in program units.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import ceil, degrees, hypot
@@ -271,7 +272,7 @@ def segments_with_feed(
     return segments
 
 
-class StepMaker:
+class StepMaker(ABC):
     """Makes the steps of a plan, one element of the tool centre's path after the other.
 
     ``least`` is the least move of a slide together with the rotary axis.
@@ -283,6 +284,23 @@ class StepMaker:
         self.steps: list[Step] = []
         self.position, self.letters = position, letters
         self._contour, self._least = contour, least
+
+    @abstractmethod
+    def slide_at(self, point: complex) -> float:
+        """Return the slide's position for a point of the plane."""
+
+    @abstractmethod
+    def cut(self, move: PlaneMove, stop: bool) -> None:
+        """Make the steps of a move in the plane."""
+
+    def make(self, element: PathElement, stop: bool) -> None:
+        """Make the steps of an element; ``stop``: the tool stops at its end."""
+        if isinstance(element, PlaneMove):
+            self.cut(element, stop)
+        elif isinstance(element, Plunge):
+            self.plunge(element, stop)
+        else:
+            self.steps.append(element)
 
     def plunge(self, move: Plunge, stop: bool) -> None:
         there = self.position._replace(height=move.h1)
@@ -300,12 +318,14 @@ class StepMaker:
             self.steps.append(Segments(line, axes, segments, stop))
             self.position = MachinePosition(*segments[-1][:3])
 
-    def _add_remainder(self, path: Sequence[PathElement], slide: float) -> None:
+    def finish(self, path: Sequence[PathElement]) -> None:
         """Move the slides to the path's end, by the remainder of its last segments."""
         moves = [element for element in path if isinstance(element, Motion)]
         if not moves:
             return
         last, there = moves[-1], self.position
+        in_plane = [move.end for move in moves if isinstance(move, PlaneMove)]
+        slide = self.slide_at(in_plane[-1]) if in_plane else there.slide
         ends = (slide, self.letters.slide), (last.h1, self.letters.height)
         offs = zip(ends, (there.slide, there.height))
         axes = "".join(

@@ -6,13 +6,12 @@ Words are lengths in the flat X-C plane, and Z at right angles to it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from math import copysign, degrees, hypot, inf, pi, radians, remainder, sqrt
 from typing import NamedTuple
 
 from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge
+from g12.compensation.contour import Contour, Motion, PlaneMove, Plunge
 from g12.errors import number
 from g12.machine_ini import FaceAxes
 from g12.moves.exact_stops import Direction, stops
@@ -36,7 +35,6 @@ from g12.polar.face import FaceLimits, in_face, positions_along
 from g12.polar.pole import POLE, along_and_around, check_pole_distance, slide_at, through_pole
 from g12.polar.quickest import FaceStretch, quickest
 from g12.polar.segments import Law, split_move
-from g12.section.block_rules import NO_TOOL_CHANGE, OWN_RADIUS
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
 from g12.state import YZ
@@ -56,12 +54,8 @@ POLAR_WORDS = SectionWords(
     plain=plain_line_of("XCZIJRF"),
     planes=frozenset({170, 180}),
     plane_name="X-C",
-    centre=("I", "J"),
-    centre_name="I and J",
     refused={
         **dict.fromkeys("ABVW@^", "the section's words are X, C (or Y), Z, U and H"),
-        "T": NO_TOOL_CHANGE,
-        "D": OWN_RADIUS,
         "K": "the centre of an arc in the X-C plane is I and J",
     },
     own_block="Z needs a block of its own, or [G12] POLAR_Z = allow",
@@ -181,14 +175,11 @@ def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
         path, stopping, stretches = quickest(path, stopping, settings.face)
     for element, stop, face in zip(path, stopping, stretches):
         machine.switch(element.line, face)
-        if not isinstance(element, Motion):
-            machine.steps.append(element)
-        elif face:
+        if face and isinstance(element, Motion):
             machine.cut_on_face(element)
-        elif isinstance(element, Plunge):
-            machine.plunge(element, stop)
         else:
-            machine.cut(element, stop)
+            machine.make(element, stop)
+    machine.switch(path[-1].line if path else 0, None)
     machine.finish(path)
     return SectionPlan(machine.steps, machine.position, machine.angle, contour.notes)
 
@@ -226,16 +217,18 @@ class _SlideAndSpindle(StepMaker):
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
 
     def cut(self, move: PlaneMove, stop: bool) -> None:
-        ends = self._split(move, partial(self._split_move, move), self._settings.tolerance, stop)
+        settings, hold = self._settings, 0.5 / (move.feed / 60.0) ** 2
+        holds = hold * settings.x_acceleration, hold * radians(settings.c_acceleration)
+
+        def split(deviation: float) -> Split:
+            return split_move(move.curve, Law(deviation, RIPPLE, *holds), settings.beside)
+
+        ends = self._split(move, split, settings.tolerance, stop)
         if move.start == POLE:
             self._turn(move, ends.angles[0])
         turns = round((self.angle - ends.angles[0]) / (2 * pi))
         self.angle = ends.angles[-1] + 2 * pi * turns
         self._segments(move, ends, self._zero + 360.0 * turns, stop)
-
-    def _split_move(self, move: PlaneMove, deviation: float) -> Split:
-        law = self._law(move.feed, deviation)
-        return split_move(move.curve, law, self._settings.beside)
 
     def switch(self, line: int, stretch: FaceStretch | None) -> None:
         """Switch to the face for a stretch of the path, or back (None), if not there already."""
@@ -258,12 +251,8 @@ class _SlideAndSpindle(StepMaker):
         self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
         self.position = points[-1]
 
-    def finish(self, path: Sequence[PathElement]) -> None:
-        """Switch back from the face; add the remainder of the last segments in X and Z."""
-        self.switch(path[-1].line if path else 0, None)
-        ends = [element.end for element in path if isinstance(element, PlaneMove)]
-        slide = slide_at(ends[-1], self._settings.beside)[0] if ends else self.position.slide
-        self._add_remainder(path, slide)
+    def slide_at(self, point: complex) -> float:
+        return slide_at(point, self._settings.beside)[0]
 
     def _turn(self, move: PlaneMove, angle: float) -> None:
         """Rotate C at the pole by the shorter turn; half a turn in the direction that unwinds C."""
@@ -275,8 +264,3 @@ class _SlideAndSpindle(StepMaker):
             slide, _, height = self.position
             segment = (slide, self._zero + degrees(self.angle), height, self._settings.c_speed)
             self._run(move.line, "XC", [segment], True)
-
-    def _law(self, feed: float, deviation: float) -> Law:
-        settings, hold = self._settings, 0.5 / (feed / 60.0) ** 2
-        c_hold = hold * radians(settings.c_acceleration)
-        return Law(deviation, RIPPLE, hold * settings.x_acceleration, c_hold)

@@ -139,14 +139,18 @@ def _density(
         slide_square = square - beside * beside
         slide = sqrt(slide_square)
         along, around = (x * slide - y * beside) / square, (y * slide + x * beside) / square
-        sliding, turning, growth = x / slide, around / slide, x / slide_square
+        sliding, turning, growth = x / slide, around / slide, abs(x) / slide_square
         bulge = bulging * (turning * (1.0 + along * sliding) - own)
         change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
-        segments = max(sqrt(abs(bulge)), abs(growth), fewest)
-        cube = abs(flat * growth * change)
+        segments = sqrt(abs(bulge))
+        if growth > segments:
+            segments = growth
+        if fewest > segments:
+            segments = fewest
+        cube = flat * growth * abs(change)
         if cube > segments * segments * segments:
             segments = cube ** (1.0 / 3.0)
-        smooth = abs(even * growth) * around * around
+        smooth = even * growth * around * around
         if smooth > segments:
             segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))
         return segments, bulge / (segments * segments)

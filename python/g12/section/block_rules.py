@@ -48,7 +48,7 @@ TAKEN_G = frozenset(
 FEED_CODES = {940: False, 980: False, 950: True, 990: True}  # code: per revolution
 MOVING_WORDS = "XYZABCIJK"
 NO_TOOL_CHANGE = "the tool cannot change inside the section"
-OWN_RADIUS = "the radius is that of the loaded tool"
+REFUSED_WORDS = {"T": NO_TOOL_CHANGE, "D": "the radius is that of the loaded tool"}
 RAPID = (
     "a rapid leaves the contour. Is the section's end missing above? "
     "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"
@@ -134,9 +134,10 @@ def check_call(text: str, off_code: str, location: BlockLocation) -> None:
 
 def check_letters(line: TextLine, known: SectionWords, location: BlockLocation) -> None:
     """Refuse words that a section does not have, and two words for one axis."""
+    refused = REFUSED_WORDS | known.refused
     for letter in line.letters:
-        if letter in known.refused:
-            raise location.refuse(f"{letter} is refused: {known.refused[letter]}")
+        if letter in refused:
+            raise location.refuse(f"{letter} is refused: {refused[letter]}")
     for axis, letters in known.letters:
         given = [letter for letter in letters if letter in line.letters]
         if len(given) > 1:

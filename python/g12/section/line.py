@@ -62,18 +62,18 @@ class SectionWords(NamedTuple):
 
     plane: str
     axes: AxisLetters
-    turn_is_length: bool
-    letters: tuple[tuple[str, str], ...]
-    foreign: dict[str, str]
-    relative: dict[str, str]
     plain: Callable[[str], object]
     planes: frozenset[int]
     plane_name: str
-    centre: tuple[str, str]
-    centre_name: str
     refused: dict[str, str]
     own_block: str
     origin: str
+    foreign: dict[str, str]
+    relative: dict[str, str]
+    centre: tuple[str, str] = ("I", "J")
+    centre_name: str = "I and J"
+    turn_is_length: bool = False
+    letters: tuple[tuple[str, str], ...] = ()
 
 
 class BlockLocation(NamedTuple):
