@@ -23,7 +23,7 @@ from support.sim_machines import PROGRAMS, SIM
 INCH = 25.4
 TOLERANCE = {"metric": 0.005, "inch": 0.0002 * INCH}  # mm: the default of POLAR_TOLERANCE
 SAMPLING = 0.001  # mm, what it may add
-MANUAL_TOOLS = {1: 0.5, 8: 0.0}
+MANUAL_TOOLS = {1: 0.5}
 C_SPEED = 360
 
 
