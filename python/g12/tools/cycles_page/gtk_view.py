@@ -15,7 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[3]))
 import gi
 
 gi.require_version("Gtk", "3.0")
-from gi.repository import Gdk, GdkPixbuf, GLib, Gtk, Pango
+from gi.repository import Gdk, GdkPixbuf, GdkX11, GLib, Gtk, Pango  # noqa: F401 - GdkX11: xid
 
 from g12.tools.cycles_page.machine import open_in_linuxcnc
 from g12.tools.cycles_page.page import Page
@@ -24,6 +24,7 @@ from g12.tools.forms.table import CHOICE, TOOL, Entry
 
 THUMBNAIL, KEY, DASH = 56, 44, (4, 3)  # pixels: of a picture, of a key, of a rapid's dashes
 CAPTION, LETTERS = 22, 7  # letters of a line beside an entry, of an entry
+EMBEDDER = "QTVCP_FORWARD_EVENTS_TO"  # set by QtVCP
 STYLE = "entry, combobox button { min-height: 24px; padding: 0 4px; }" + "".join(
     f"#{state} {{ background: {COLOURS[state]}; color: white; padding: 4px; }}"
     for state in SENTENCES
@@ -151,7 +152,13 @@ def rgb(name: str) -> tuple[float, float, float]:
 
 
 def get_handlers(_halcomp, builder, _useropts) -> list:
-    """Fill in the window of GladeVCP, which asks for its handlers."""
+    """Fill in the window of GladeVCP, which asks for its handlers.
+
+    QtVCP waits for a line with the window's number, to embed it: GladeVCP 2.10 prints none.
+    """
     CyclesView(builder, os.environ["INI_FILE_NAME"], open_in_linuxcnc)
-    builder.get_object("window1").show_all()
+    window = builder.get_object("window1")
+    window.show_all()
+    if EMBEDDER in os.environ:
+        GLib.idle_add(lambda: print(window.get_window().get_xid(), flush=True))
     return []
