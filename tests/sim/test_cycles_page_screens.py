@@ -14,7 +14,8 @@ from g12.tools.cycles_page.interpreter import Sketcher
 from g12.tools.cycles_page.machine import machine_state
 from g12.tools.cycles_page.steps import read_program
 from g12.tools.machine.ini import read_ini
-from support.sim_machines import SIM
+from g12.tools.system import PYTHON
+from support.sim_machines import ROOT, SIM
 from support.x_screen import kept_display, launched
 
 screen = kept_display()
@@ -23,6 +24,14 @@ NGCGUI = re.compile(
     r"^(TKPKG|NGCGUI_|EMBED_TAB_NAME = Forms\nEMBED_TAB_LOCATION.*\nEMBED_TAB_COMMAND).*\n",
     re.MULTILINE,
 )
+PAGE_ALONE = """import sys
+sys.path.insert(0, "python")
+from g12.tools.cycles_page import gtk_view
+from gi.repository import Gtk
+builder = Gtk.Builder.new_from_file("configs/include/cycles.ui")
+gtk_view.get_handlers(None, builder, [])
+Gtk.main()
+"""
 LENGTH = 35.0  # mm, of T5
 NEAR = 0.15  # mm: blended corners (G64), and 0.1 mm from one sample to the next
 
@@ -74,3 +83,12 @@ def test_two_steps_are_made_opened_and_cut_as_drawn(name, screen, tmp_path):
     assert np.hypot(*cut.T)[cut[:, 0] < 30].max() == pytest.approx(24 - 6, abs=0.01)
     assert np.hypot(*(cut[cut[:, 0] > 30] - (60, 0)).T).max() == pytest.approx(9 - 6, abs=0.01)
     assert motion[:, 2].min() == pytest.approx(LENGTH - 2, abs=1e-3)
+
+
+def test_qtvcp_gets_the_number_of_the_window_that_it_embeds(screen):
+    """QtVCP waits for it: GladeVCP 2.10 does not print it, so the page has to."""
+    ini = SIM / "mill_mm.ini"
+    page = f"cd {ROOT} && {PYTHON} -c '{PAGE_ALONE}'"
+    embedded = f"export QTVCP_FORWARD_EVENTS_TO=1 INI_FILE_NAME={ini}; {page}"
+    with launched(ini, screen, embedded) as wait:
+        wait(lambda log, _folder: re.search(r"^\d+$", log, re.MULTILINE))
