@@ -243,6 +243,13 @@ def test_a_mistake_on_a_lathe(lathe, good, bad, kind, says):
     assert any(says in finding.text + finding.cure for finding in findings)
 
 
+def test_motion_that_is_loaded_with_one_spindle_has_none_for_a_live_tool(lathe):
+    hal_file = lathe.parent / "motion.hal"
+    hal_file.write_text(hal_file.read_text().replace("num_spindles=[TRAJ]SPINDLES ", ""))
+    (finding,) = found_of(lathe)
+    assert "SPINDLES is 2 and motion is loaded with 1" in finding.text
+
+
 def test_a_module_that_is_missing_or_older(lathe, module):
     module.write_bytes(b"%s.centre")
     (old,) = found_of(lathe)
@@ -308,6 +315,12 @@ def test_a_pin_that_no_module_makes_is_named(hal_findings, pin, name):
     (finding,) = hal_findings(f"net a own.x => \\\n  {pin} # it\n", name)
     line = f"motion.hal:8: net a own.x => {pin}"
     assert finding.text == f"{line}: there is no pin {pin}: LinuxCNC does not start"
+
+
+@pytest.mark.parametrize("line", ["net a own.x", "linkps own.x a", "linksp a own.x"])
+def test_a_pin_on_two_signals_is_named(hal_findings, line):
+    (finding,) = hal_findings(f"{line}\nnet b own.x\n")
+    assert finding.text.startswith("motion.hal:9: net b own.x: own.x is on a already")
 
 
 @pytest.mark.parametrize("line", ["setp {}", "unlinkp {}", "linkpp own.x {}", "linksp s {}",

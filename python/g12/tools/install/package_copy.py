@@ -63,14 +63,10 @@ def listed(folder: Path) -> dict[str, str]:
     return {name: value for value, name in MANIFEST_ENTRY.findall(text)}
 
 
-def missing(folder: Path) -> list[str]:
-    return [name for name in listed(folder) if not (folder / name).is_file()]
-
-
-def edited(folder: Path) -> list[str]:
-    """Return the files of a copy that the user has changed."""
-    there = ((name, value, folder / name) for name, value in listed(folder).items())
-    return [name for name, value, file in there if file.is_file() and value != digest_of(file)]
+def changed(folder: Path) -> dict[str, str]:
+    """Return the files of a copy that are not as installed, with their digests, "" of lost ones."""
+    now = {name: digest_of(folder / name) for name in listed(folder)}
+    return dict(now.items() - listed(folder).items())
 
 
 def digest_of(file: Path) -> str:
@@ -81,7 +77,8 @@ def is_current(folder: Path) -> bool:
     """Return whether a copy is one of this package, with all its files, or is this package."""
     if folder.exists() and folder.samefile(ROOT):
         return True
-    return listed(folder) == digests(package_files()) and not missing(folder)
+    is_whole = "" not in changed(folder).values()
+    return is_whole and listed(folder) == digests(package_files())
 
 
 def replace(copy: Path, files: Mapping[str, bytes]) -> list[str]:
