@@ -325,6 +325,11 @@ def loaded_tool(words: Words) -> Tool:
     return tool
 
 
+def opposite(arc: int) -> int:
+    """Return the G code of arcs in the other direction."""
+    return CLOCKWISE + COUNTERCLOCKWISE - arc
+
+
 def steps_between(first: float, last: float, step: float, tolerance: float) -> int:
     """Return how many steps, none longer than ``step``, lead from ``first`` to ``last``.
 

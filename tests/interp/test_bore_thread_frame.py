@@ -198,18 +198,3 @@ def test_verify_finds_what_is_wrong_with_one(tmp_path, old, new, code):
     program.write_text(HOLES.replace(old, new))
     proof = prove(program, read_ini(SIM / "mill_mm_headless.ini"), tools=hole_blocks.TOOLS)
     assert any(code in str(finding) for finding in proof.findings), proof.findings
-
-
-@pytest.mark.parametrize(
-    ("file", "old", "new"),
-    [("g12_thread", "X[#<x> + #<nx>]", "X[#<x> + 1.01 * #<nx>]"),
-     ("g12_frame", "[#<a> + #<grown>]", "[#<a> + #<grown> + .1]"),
-     ("g12_bore", "#<left> = #", "#<radius> = [.99 * #<radius>]\n  #<left> = #")],
-)  # fmt: skip
-def test_verify_judges_the_motion_of_a_wrong_sub(tmp_path, file, old, new):
-    text = (ROOT / "ngc" / f"{file}.ngc").read_text()
-    assert old in text
-    program = tmp_path / "holes.ngc"
-    program.write_text(f"{text.replace(old, new)}\n{HOLES}")  # its sub, not the file's
-    proof = prove(program, read_ini(SIM / "mill_mm_headless.ini"), tools=hole_blocks.TOOLS)
-    assert proof.findings

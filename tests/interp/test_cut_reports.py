@@ -58,7 +58,6 @@ def test_a_pocket_reports_the_state_that_linuxcnc_has():
     ("before", "cutter"),
     [
         ([], UsedCutter(5.0, "loaded", 1)),
-        (["G13 I6 D2"], UsedCutter(2.0, "last D", 2)),
         (["G13 I6 D2", "G10 L1 P2 R3"], UsedCutter(2.0, "last D", 2)),
         (["G13 I6 D2", "G41 D1 G1 X20", "G40 G1 X0", "G1 X0"], UsedCutter(5.0, "last D", 0)),
     ],
@@ -115,13 +114,6 @@ def test_what_follows_m66_continues_the_section():
     assert (cut.at, cut.end, cut.last_line) == (1, len(trace.moves) - 1, 10)
 
 
-def test_a_cut_in_a_file_of_its_own_names_it_and_the_line_of_its_call(tmp_path):
-    (tmp_path / "part.ngc").write_text("o<part> sub\nG13 I6 Z-1 D1\no<part> endsub\n")
-    own = {"RS274NGC": {"SUBROUTINE_PATH": f"{SIM.parent.parent / 'ngc'}:{tmp_path}"}}
-    (cut,) = reported("mill_mm", [*MILL, "o<part> call"], overrides=own).cuts
-    assert (cut.line, cut.report.file, cut.report.line, cut.last_line) == (6, "part.ngc", 2, 2)
-
-
 def test_a_section_in_a_file_of_its_own_names_it_and_its_own_lines(tmp_path):
     lines = ["o<flat> sub", "(the flat)", *SECTION, "o<flat> endsub"]
     (tmp_path / "flat.ngc").write_text("\n".join([*lines, ""]))
@@ -131,22 +123,13 @@ def test_a_section_in_a_file_of_its_own_names_it_and_its_own_lines(tmp_path):
     assert (cut.line, cut.report.file, cut.report.line, cut.last_line) == (6, "flat.ngc", 3, 7)
 
 
-def test_a_section_that_fails_on_its_way_ends_with_the_program():
-    lines = [*LATHE, "G12.1", "G1 X20", "M66 P0 L0", "G1 X20 C500", "G13.1"]
-    with Tracer(SIM / "lathe_mm.ini", tools=TOOLS, reports=True) as tracer:
-        trace = tracer.trace_text([*lines, "M2"])
-    assert trace.error and trace.cuts[0].end == len(trace.moves)
-
-
 # ---------------------------------------------------------------- what comes with them
 
 
 @pytest.mark.parametrize(
     ("between", "how"),
     [
-        ([], ""),
         (["G0 Z5"], ""),
-        (["G0 C0"], "angle"),
         (["G0 C[2*15]"], "angle"),
         (["G28", "G0 X30 Z2"], "angle"),
         (["G91 G0 C30", "G90"], "increment"),

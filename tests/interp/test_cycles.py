@@ -119,12 +119,8 @@ OFFSET = "needs a move after G40: the tool is still beside the programmed point"
 PLACE = "X1 Y2 Z-.5 I.1 R1.5"
 POCKET_CALL = call(x=0, y=0, z=0, w=0.1, r=1, c=2)
 REFUSED = [  # what a block says by itself is in unit/test_cycles.py
-    ("haas inch", AT, "G12 I.5 Z-1 D3", "D3 has the negative diameter -0.25 in the tool table"),
-    ("haas inch", AT, "G12 I.5 Z-1", "D is missing, none was commanded before and no tool"),
     ("haas inch", [IN_INCHES, "T3 M6"], "G12 I.75 Z-.1", "T3 in the spindle has the negative"),
     ("haas inch", AT, "G93 G12 I.5 Z-1 D1 F1", "needs G94 or G95, not G93"),
-    ("haas inch", AT, "G95 S0 F.1 G12 I.5 Z-1 D1",
-     "needs a spindle speed for feed per revolution (G95)"),
     ("haas helix", AT, "G12 I.13 Z-2 D1", "a helix of radius 0.005 needs "),
     *(("haas inch", AT, f"{other} G12 I.5 K1 Z-1 D1{more}",
        f"{other.split()[0]} cannot be in the same block")

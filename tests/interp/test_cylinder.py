@@ -13,7 +13,7 @@ import pytest
 from g12.tools.preview.tracer import Tracer
 from support import polar_programs
 from support.polar_programs import FIRST, feed_moves, refused, tracer
-from support.sim_machines import PROGRAMS, SIM, kept_tracer
+from support.sim_machines import SIM, kept_tracer
 
 R = 20.0
 X, Z, C = 0, 2, 5
@@ -67,11 +67,6 @@ def test_z_is_a_length_and_c_an_angle_and_a_line_is_one_move(lathe):
     assert len(feed_moves(traced)) == 4
 
 
-def test_c_is_where_the_program_has_it_wherever_the_section_begins(lathe):
-    traced = lathe.trace_text(section("G1 C30", "G91 C5 Z1", "C-10", start="G0 X22 C370"))
-    assert [end[2] for end in ends(traced)] == [30, 35, 25]
-
-
 def test_w_h_and_u_are_increments(lathe):
     traced = lathe.trace_text(section("G1 W-5 C10", "H-30 Z-7", "W1 H1", "U-4", "G91 W1", "H2"))
     assert ends(traced) == [
@@ -79,10 +74,8 @@ def test_w_h_and_u_are_increments(lathe):
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name", ["#5422 #5425", "#<_z> #<_c>"])
-def test_position_parameters_show_the_programmed_position(lathe, name):
-    z, c = name.split()
-    body = ["G41 G1 Z-20", f"G1 Z[{z}-1] C[{c}+15]", f"C[{c}+15]", "G40 Z0"]
+def test_position_parameters_show_the_programmed_position(lathe):
+    body = ["G41 G1 Z-20", "G1 Z[#5422-1] C[#<_c>+15]", "C[#5425+15]", "G40 Z0"]
     traced = lathe.trace_text(section(*body, start="G0 X22 Z0 C33"))
     plain = ["G41 G1 Z-20", "G1 Z-21 C48", "C63", "G40 Z0"]
     assert ends(traced) == ends(lathe.trace_text(section(*plain, start="G0 X22 Z0 C33")))
@@ -93,23 +86,12 @@ def test_codes_and_words_behind_the_section_mean_what_they_meant(lathe):
     assert ends(traced)[-2:] == [(22, -5, 5), (22, -4, 5)]
 
 
-def test_off_outside_a_section_does_nothing(lathe):
-    traced = lathe.trace_text([FIRST, "G07.1 C0", "G1 Z5 F100", "M2"])
-    assert ends(traced) == [(0, 5, 0)]
-
-
 def test_rapids_as_feeds_where_they_are_allowed():
     with tracer(POLAR_G0="feed", POLAR_G0_FEED="4000") as lathe:
         moves = feed_moves(lathe.trace_text(section("G0 C90", "G1 C0")))
     assert [seconds(move) for move in moves] == pytest.approx(
         [math.pi / 2 * R / feed * 60 for feed in (4000, 250)]
     )
-
-
-def test_the_sample_of_the_simulated_lathe_is_the_cam_groove(lathe):
-    texts_of = [SIM / "samples/lathe_mm_cylinder.ngc", PROGRAMS / "cylinder/cam_groove.ngc"]
-    there, here = (feed_moves(lathe.trace(text)) for text in texts_of)
-    assert [move.end for move in there] == [move.end for move in here]
 
 
 # ---------------------------------------------------------------- refusals
@@ -121,10 +103,8 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
     ("G12.1", "G12.1 is refused: only G1, G2 and G3 move inside the section"),
     ("G7.1 C30", "the section is already on: G7.1 C0 ends it"),
     ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
-    ("G7.1 C0 G0 Z5", "G7.1 must be alone in its block"),
     ("G18 G7.1 C30", "G7.1 must be alone in its block"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
-    ("G2 Z5 K2 R3", "G2: either R or J and K, not both"),
     ("G41", "G41 needs a G1 with C or Z in its own block"),
     ("G1 Z501", "the Z axis would go to 501 mm, beyond its limit 500 mm"),
 ]  # fmt: skip
@@ -133,23 +113,7 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
 @pytest.mark.parametrize(("block", "why"), INSIDE)
 def test_refused_inside(lathe, block, why):
     text, line = refused(lathe, section("G1 Z0", "C1", "C0", block, "G1 Z1"))
-    why = why.replace(" (radius)", "")
     assert (text, line) == (f"G7.1 line 9: {why}", 9)
-
-
-@pytest.mark.parametrize(
-    ("body", "line", "why"),
-    [
-        (["G1 C-90", "G41 C-60", "C0", "Z1", "C60", "G40 C90"], 9,
-         "the tool of radius 3 cannot reach both lines 8 and 9: their corner is too tight"),
-        (["G1 C-90", "G41 C-60", "C0", "G3 C11.459155902616466 R2", "G1 G40 C90"], 9,
-         "the arc of radius 2 is smaller than the tool radius 3 (between lines 8 and 10)"),
-        (["G41 G1 Z9", "C90"], 8, "G41 of line 6 is still on: G40 is missing"),
-    ],
-)  # fmt: skip
-def test_what_the_tool_cannot_cut_is_refused(lathe, body, line, why):
-    text, at = refused(lathe, section(*body))
-    assert at == line and text.startswith(f"G7.1 line {line}: ") and text.endswith(why)
 
 
 @pytest.mark.parametrize(
@@ -163,9 +127,8 @@ def test_refused_to_begin(lathe, given, why):
     assert refused(lathe, section("G1 Z5", **given)) == (f"G7.1 line 5: {why}", 5)
 
 
-@pytest.mark.parametrize("words", ["X7", "K3", "D5"])
-def test_words_beside_the_code_that_ends_no_section(lathe, words):
-    traced = lathe.trace_text([FIRST, f"G7.1 C0 {words}", "M2"])
+def test_words_beside_the_code_that_ends_no_section(lathe):
+    traced = lathe.trace_text([FIRST, "G7.1 C0 K3", "M2"])
     assert traced.error.text == "G7.1 line 2: C0 must be alone in its block"
 
 

@@ -61,22 +61,12 @@ def test_a_fault_in_a_handler_is_named(tmp_path, machine, program):
 
 
 SECTION = ["G18 G8 F100", "G0 X20 Z5 C0", "G12.1", "G1 X15", "G13.1", "M2"]
-END_FAILS = """
-from g12.host.program_lines import ProgramLines
-ProgramLines.catch_up = broken
-"""
 RESTORING_FAILS = """
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.section_output import SectionOutput
 kinematics_switch.leave = lambda interp: messages.message("off the face")
 SectionOutput._move_on_face = borrowed.restore = broken
 """
-
-
-def test_an_end_that_fails_names_the_fault_and_gives_back_once(tmp_path):
-    with tracer_of(tmp_path, "lathe_mm", RAISING + END_FAILS) as tracer:
-        error = tracer.trace_text(SECTION).error
-    assert error.text.endswith("KeyError: 'wire'")
 
 
 def test_the_face_is_left_even_if_the_modes_cannot_be_restored(tmp_path):

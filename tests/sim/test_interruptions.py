@@ -56,8 +56,10 @@ def lathe():
 
 def standing(machine):
     machine.abort()
-    for block in ("G13.3", "G21 G18 G8 G90 G94 G64 P0.01", "F1000", "G0 Z5", "G0 X30 C0"):
+    modes = "G21 G18 G8 G90 G94 G64 P0.01"
+    for block in ("G13.3", "M52 P0", modes, "F1000", "G0 Z5", "G0 X30 C0"):
         machine.mdi(block)
+    machine.wait_for(lambda now: not now.adaptive)
     machine.errors(), machine.messages()
 
 
@@ -104,6 +106,7 @@ def test_without_a_handler_g13_1_in_mdi_restores_all(lathe):
     before = lathe.stat().modes
     aborted_on_the_face(lathe, INCREMENTAL)
     lathe.mdi("G13.3")
+    assert lathe.errors() == []
     lathe.wait_for(lambda now: not now.adaptive)  # the next block reads it from motion
     lathe.mdi("M3")
     found = lathe.stat().modes

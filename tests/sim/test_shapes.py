@@ -80,15 +80,3 @@ def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
     lathe.mdi("G0 Z5")
     proof = lathe.proof_of_run([*START, CALLS["flats"], "M2"])
     assert proof.findings == [] and len(proof.shapes) == 1
-
-
-def test_a_coarse_g64_does_not_shorten_a_ramp():
-    """LinuxCNC rounds a corner of X and Z by all of P where C stands, at any speed."""
-    lines = [*START, "G64 P0.1", "o<polar_slot> call [6] [10] [1] [-9999] [-9999] [2000] [240] [0]"]
-    with Machine(SIM / "lathe_mm.ini") as lathe:
-        axes = lathe.run_text("\n".join([*lines, "G0 Z5", "M2", ""])).samples.axes
-    x, z = axes["X"], axes["Z"]
-    sloping = (z[1:-1] > -0.9) & (z[1:-1] < 0.5) & (x[1:-1] > 1.0)
-    turning = sloping & (x[1:-1] >= x[:-2]) & (x[1:-1] > x[2:])
-    assert turning.any()
-    assert np.abs(x[1:-1][turning] - 2.0).max() < 0.005

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from g12.tools.commands import check, install, run, uninstall
-from g12.tools.preview.tracer import Tracer
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -77,13 +76,6 @@ def turn_to_c(samples, change):
     return np.ptp(turns[stood:])
 
 
-def test_c_follows_its_command(lathe):
-    samples = lathe.motion_of([*FIRST, "M254", "G0 C90", "G1 C0 F3000", "M255", "M2"])
-    error = np.abs(samples.axes["E"])
-    assert 0.01 < error.max() < 0.5
-    assert error[-1] == 0
-
-
 def test_threads_and_flats_are_the_same_after_ten_changes(lathe):
     turned = ["S500 M4", "G4 P0.5", "M5"]
     thread = ["S400 M3", "G0 X20 Z5", f"G33 Z-8 K{PITCH}", "G0 X25", "M5"]
@@ -118,10 +110,7 @@ def test_everything_in_one_program(lathe):
     ("program", "refusal"),
     [
         (["G12.1", "G1 X30 F100", "G13.1"], f"G12.1 {NOT_C}"),
-        (["G7.1 C20", "G1 Z1 F100", "G7.1 C0"], f"G7.1 {NOT_C}"),
-        (["o<polar_slot> call [8] [20] [1]"], f"polar_slot {NOT_C}"),
         ([f"o<face_holes> call [3] [30] [0] [-9999] {HOLE}"], f"face_holes {NOT_C}"),
-        ([f"o<side_holes> call [3] [-9] [0] [-9999] [40] {HOLE}"], f"side_holes {NOT_C}"),
         (
             ["M254", "G12.1", "G1 X30 F100", "M255", "G13.1"],
             "G12.1 line 6: M255 line 6: the section needs C to its end",
@@ -135,10 +124,6 @@ def test_refused_while_it_is_the_spindle(lathe, program, refusal):
     assert run.error.text == refusal
     assert np.ptp(run.samples.axes["C"]) == 0
     assert run.samples.axes["X"][-1] == pytest.approx(40)
-
-
-def test_a_c_word_where_c_stands_is_none(lathe):
-    lathe.motion_of([*FIRST, "M254", "G0 C123.456", "M255", "G0 X30 C123.456", "M2"])
 
 
 def test_a_jog_of_c_does_not_move_the_spindle(lathe):
@@ -166,15 +151,6 @@ def test_m3_turns_nothing_while_it_is_c(lathe, word):
     assert lathe.get("axis.x.pos-cmd") == pytest.approx(30)
 
 
-def test_m3_on_the_screen_while_it_is_c_turns_nothing_afterwards(lathe):
-    as_c(lathe)
-    lathe.mdi("M3 S300")
-    lathe.mdi("M65 P2")
-    lathe.wait_for(lambda _: not lathe.is_c())
-    time.sleep(0.5)
-    assert abs(lathe.get("spindle-rps")) < 0.001
-
-
 def test_a_spindle_that_cannot_become_c(tmp_path):
     paths = f"{tmp_path}:../../ngc:subs"
     slow = {
@@ -197,14 +173,6 @@ def test_a_spindle_that_cannot_become_c(tmp_path):
             ("G21\no<change> call\nM2", "3 of change.ngc"),
         ):
             assert machine.run_text(text.splitlines()).error.text == f"M254 line {line}: {rule}"
-
-
-@pytest.mark.parametrize("time", ["0", "", "soon", "-5"])
-def test_a_timeout_that_cannot_be_is_refused_at_the_start(time):
-    rule = "must be a number" if time in ("", "soon") else "must be above 0, 3600 at most"
-    with Tracer(SPINDLE_LATHE, overrides={"SPINDLE_C": {"TIMEOUT": time}}) as lathe:
-        traced = lathe.trace_text(["G21", "M254", "M2"])
-    assert traced.error.text == f"[SPINDLE_C] TIMEOUT = {time}: {rule}"
 
 
 @pytest.mark.parametrize("interrupt", INTERRUPTS)
@@ -242,23 +210,6 @@ def test_holes_with_the_live_tool(lathe):
     tapped = axes["Z"][np.abs(axes["X"] - 10) < 1e-3]
     assert tapped.min() == pytest.approx(-3, abs=0.2)
     assert line.max() > 0
-
-
-def test_aborts_in_holes_leave_it_c(lathe):
-    chance = random.Random(28)
-    face = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [900] [1.5] [0.1] [0]"
-    for _ in range(4):
-        lathe.open_text([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", "S300 M3 $1", face, "M2"])
-        lathe.start()
-        depth = chance.uniform(-4, 5)
-        lathe.wait_for(lambda status: lathe.is_c() and status.actual[2] < depth)  # noqa: B023
-        lathe.abort()
-        lathe.errors()
-        assert lathe.is_c() and lathe.get("spindle-c-holds")
-        lathe.mdi("G90 G0 Z20")
-        assert lathe.errors() == []
-    samples = lathe.motion_of([*FIRST, "T1 M6", "M254", "G0 X40 Z5 C0", face, "M255", "M2"])
-    assert samples.axes["Z"].min() == pytest.approx(-4, abs=0.002)
 
 
 def test_the_manuals_program_switches_c_on_by_m35():

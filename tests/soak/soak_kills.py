@@ -1,18 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`install`, `uninstall` and `regress` are killed; a second run completes what they began."""
+"""`regress` is killed; a second run completes what it began."""
 
 import random
 import shutil
 import subprocess
-import sys
 import time
-
-import pytest
 
 from g12.tools.regress.recording_text import read_recording
 from g12.tools.system import PYTHON
 from soak import SEED, tries
-from support.killed_installs import CASES, KilledInstalls
 from support.sim_machines import PROGRAMS, ROOT, SIM
 
 COMMAND = [PYTHON, ROOT / "python" / "g12"]
@@ -35,14 +31,6 @@ def seconds_of(*words, **options):
     started = time.monotonic()
     assert g12(*words, **options).returncode == 0
     return time.monotonic() - started
-
-
-@pytest.mark.parametrize(("feature", "command"), CASES)
-def test_installs(tmp_path, feature, command):
-    installs, chance = KilledInstalls(tmp_path, feature, command), random.Random(SEED)
-    tried = tries(f"kills of {command}, {feature}, completed by it")
-    for _, point in zip(tried, installs.sample(chance, sys.maxsize)):
-        installs.kill(point)
 
 
 def test_recordings(tmp_path):

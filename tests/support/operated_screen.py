@@ -9,7 +9,7 @@ from g12.tools.headless.operator_panel import GRACE, TASK_MODES, Panel
 from g12.tools.headless.recording_screen import RecordingScreen, modes_of, signals_by_pin
 
 AXIS_JOG = 0  # of an axis, not of a joint
-PATIENCE = 60.0  # s, for milltask to come up
+PATIENCE = 20.0  # s, for milltask to come up
 CYCLES = 20  # of milltask: more than an abort has queued
 STEP_CYCLES = 4  # of it, within which a step begins to move
 INTERPRETER = {
@@ -22,6 +22,11 @@ INTERPRETER = {
 
 class OperatedPanel(Panel):
     """All that an operator does."""
+
+    def enable(self):
+        """Switch the machine on; what its last abort has queued is done then."""
+        super().enable()
+        self.settle()
 
     def estop(self):
         self._do(self._command.state, linuxcnc.STATE_ESTOP)

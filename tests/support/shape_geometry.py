@@ -5,14 +5,11 @@ Nothing here knows the planners: a polygon is what half planes leave, corners ar
 it in and out. Lengths are millimetres, angles degrees, areas are shapely's.
 """
 
-import numpy as np
 from shapely.affinity import rotate
 from shapely.geometry import LineString, Point, box
 
 FAR = 500.0
 SEGMENTS = 180  # of a quarter circle of a drawing
-CUTTER_SEGMENTS = 48
-CHORD_ERROR = 5e-4
 PART = 8  # lines of a path whose area is worked out at once
 
 
@@ -37,14 +34,6 @@ def slot(width, length, angle=0.0):
 def disc(x, c, diameter):
     """Return a round pocket, or a bar."""
     return Point(x, c).buffer(diameter / 2, SEGMENTS)
-
-
-def swept_by(points, radius):
-    """Yield the areas that a cutter sweeps along parts of a path; a whole one takes long."""
-    line = LineString(np.column_stack([points.real, points.imag])).simplify(CHORD_ERROR)
-    corners = line.coords
-    for first in range(0, len(corners) - 1, PART):
-        yield LineString(corners[first : first + PART + 1]).buffer(radius, CUTTER_SEGMENTS)
 
 
 def area_off(area, expected, tolerance):

@@ -5,8 +5,8 @@ By polar.md and cylinder.md:
 
 1. Without compensation the tool's centre follows the contour.
 2. An element under compensation is followed on its parallel, a tool radius away.
-3. At an outside corner an arc about it joins two parallels, part of the element that follows; at an
-   inside corner each ends where they cross.
+3. At an outside corner an arc about it joins two parallels, part of the element that follows. The
+   random valid programs have no inside corner under compensation.
 4. The line that switches compensation on ends square to the start of the next element, a tool
    radius away from it; the one that switches it off begins square to the end of the last one.
 5. A move at right angles to the plane is made where the tool's centre is.
@@ -18,20 +18,17 @@ import cmath
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from g12.cut_report import CutReport, SectionCut
-from g12.geometry.curve import FULL_TURN, Arc, Curve, Line, crossings
+from g12.geometry.curve import Arc, Curve, Line
 from support.contour_geometry import shape_of, spaced
 
 NO_LENGTH = 1e-6  # mm
 SPACING = 0.05  # mm of points
-BACK = math.pi - 1e-6  # radians: the contour goes back on itself
-COINCIDENT = 0.005  # mm: ends of parallels so near to each other meet in the middle
-ON_CURVE = 1e-5  # mm, of a crossing
+ROUNDED = 0.005  # mm: ends of parallels so near to each other meet
 
 
 @dataclass(frozen=True)
@@ -84,14 +81,6 @@ def start_of(report: CutReport, cut: SectionCut) -> complex:
     return next((each.start for each in cut.elements if each.start is not None), here)
 
 
-class Corner(NamedTuple):
-    """Where one curve of the tool's centre ends and the next begins, about which corner."""
-
-    leave: complex
-    meet: complex
-    corner: complex | None = None
-
-
 class Step(NamedTuple):
     """A move of the tool's centre: its curve, its levels, and its element's line and feed."""
 
@@ -119,119 +108,45 @@ def contour_path(elements: Iterable[Element], height: float, radius: float) -> l
     ``radius`` is the tool's.
     """
     elements = list(elements)
-    is_compensated = radius and any(each.side for each in elements)
-    path = parallel_path(elements, height, radius) if is_compensated else None
-    if path is None:
-        levels = [height, *(each.depth for each in elements)]
-        path = [step_of(each, each.curve, *ends) for each, ends in zip(elements, pairwise(levels))]
+    at, path = elements[0].start, []
+    moves = [each for each in elements if each.length > NO_LENGTH]
+    every = followed_curves(moves, radius)
+    for element in elements:
+        curves = next(every) if element.length > NO_LENGTH else [Line(at, at)]
+        for curve in curves:
+            level = element.depth if curve is curves[-1] else height  # a corner's arc is level
+            path.append(Step(curve, height, level, element.line, element.feed))
+            at, height = curve.end, level
     return [step for step in path if step.length > NO_LENGTH]
 
 
-def step_of(element: Element, curve: Curve, start: float, end: float) -> Step:
-    return Step(curve, start, end, element.line, element.feed)
-
-
-def is_cut(element: Element) -> bool:
+def is_cut(element: Element | None) -> bool:
     """Tell whether an element is followed on its parallel."""
-    return bool(element.side) and not element.ramp
+    return element is not None and bool(element.side) and not element.ramp
 
 
-def parallel_path(elements: Sequence[Element], height: float, radius: float) -> list[Step] | None:
-    """Return the path of the tool's centre; None if a line is too short for its inside corners."""
-    moves = [each for each in elements if each.length > NO_LENGTH]
-    curves = [
-        each.curve.offset(each.side * radius) if is_cut(each) else each.curve for each in moves
+def followed_curves(moves: Sequence[Element], radius: float) -> Iterator[list[Curve]]:
+    """Yield the curves of the tool's centre for each move: a corner's arc and the parallel."""
+    parallels = [
+        each.curve.offset(each.side * radius) if radius and is_cut(each) else each.curve
+        for each in moves
     ]
-    joints = [None, *map(joint_of, zip(moves, moves[1:]), zip(curves, curves[1:])), None]
-    if any(joint is TIGHT for joint in joints):
-        return None
-    path: list[Step] = []
-    at, index = elements[0].start, 0
-    for element in elements:
-        if element.length > NO_LENGTH:
-            found = followed_part(curves[index], joints[index], joints[index + 1], element)
-            if found is None:
-                return None
-            path += placed(element, found, height)
-            at, index = found[-1].end, index + 1
+    nothing = (None, None)
+    pairs = [nothing, *zip(moves, parallels), nothing]
+    for (before, last), (move, own), (after, following) in zip(pairs, pairs[1:], pairs[2:]):
+        if is_cut(move):
+            yield [*corner(before, move, last, own, radius), own]
+        elif move.centre is None:
+            start = last.end if is_cut(before) else move.start
+            yield [Line(start, following.start if is_cut(after) else move.end)]
         else:
-            path.append(step_of(element, Line(at, at), height, element.depth))
-        height = element.depth
-    return path
+            yield [own]
 
 
-TIGHT = Corner(0j, 0j)
-
-
-def joint_of(moves: tuple[Element, Element], curves: tuple[Curve, Curve]) -> Corner:
-    """Return where the tool's centre goes from one element to the next, TIGHT if nowhere."""
-    (one, other), (before, after) = moves, curves
-    if not is_cut(one):
-        return Corner(after.start, after.start)
-    if not is_cut(other):
-        return Corner(before.end, before.end)
-    turned = cmath.phase(other.curve.direction(0.0) / one.curve.direction(1.0))
-    gap = abs(after.start - before.end)
-    outside = turned * one.side < 0.0 or abs(turned) > BACK
-    if outside and gap > NO_LENGTH:
-        return Corner(before.end, after.start, other.start)
-    if outside or (gap < COINCIDENT and abs(turned) < math.pi / 2):
-        middle = (before.end + after.start) / 2
-        return Corner(middle, middle)
-    shared = [
-        place
-        for place in crossings(before, after)
-        if max(before.distance(place), after.distance(place)) < ON_CURVE
-    ]
-    nearest = min(shared, key=lambda place: trimmed_by(before, after, place), default=None)
-    return TIGHT if nearest is None else Corner(nearest, nearest)
-
-
-def trimmed_by(before: Curve, after: Curve, place: complex) -> float:
-    """Return the length of two curves that is not followed if they are joined at a place."""
-    last, first = last_share(before, place), first_share(after, place)
-    return (1.0 - last) * before.length + first * after.length
-
-
-def first_share(curve: Curve, place: complex) -> float:
-    """Return the share of a curve at which it begins, near its start; of a circle both are."""
-    share = curve.share_of(place)
-    return share if share < 0.5 or not _is_full_circle(curve) else 0.0
-
-
-def last_share(curve: Curve, place: complex) -> float:
-    """Return the share of a curve at which it ends, near its end."""
-    share = curve.share_of(place)
-    return share if share > 0.5 or not _is_full_circle(curve) else 1.0
-
-
-def _is_full_circle(curve: Curve) -> bool:
-    """Tell whether a curve is a full circle, but for rounding."""
-    return isinstance(curve, Arc) and abs(curve.sweep) > FULL_TURN - 1e-6
-
-
-def followed_part(
-    curve: Curve, before: Corner | None, after: Corner | None, element: Element
-) -> list[Curve] | None:
-    """Return what is followed of a curve between two joints, with the arc of the first one.
-
-    None if nothing is: the second joint comes before the first.
-    """
-    start, end = before.meet if before else curve.start, after.leave if after else curve.end
-    if not is_cut(element):
-        return [Line(start, end)] if element.centre is None else [curve]
-    first, last = first_share(curve, start), last_share(curve, end)
-    if (last - first) * curve.length < -NO_LENGTH:
-        return None
-    followed = [curve.portion(first, max(first, last))]
-    if before and before.corner is not None:
-        turn = cmath.phase((before.meet - before.corner) / (before.leave - before.corner))
-        followed.insert(0, Arc(before.leave, before.corner, -element.side * abs(turn)))
-    return followed
-
-
-def placed(element: Element, curves: Sequence[Curve], height: float) -> Iterator[Step]:
-    """Yield the moves along an element: an arc about its corner is level."""
-    for curve in curves[:-1]:
-        yield step_of(element, curve, height, height)
-    yield step_of(element, curves[-1], height, element.depth)
+def corner(before, move, last, own, radius) -> list[Curve]:
+    """Return the arc about a corner of two parallels, none where they meet."""
+    if not radius or not is_cut(before) or abs(own.start - last.end) < ROUNDED:
+        return []
+    turn = cmath.phase((own.start - move.start) / (last.end - move.start))
+    assert turn * move.side < 0 or abs(turn) > math.pi - NO_LENGTH, f"inside corner: {move.line}"
+    return [Arc(last.end, move.start, -move.side * abs(turn))]

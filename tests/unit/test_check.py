@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `check` finds in a config, each finding once; without LinuxCNC."""
 
-import json
-
 import pytest
 
 from g12.tools.commands import check
@@ -245,6 +243,13 @@ def test_a_mistake_on_a_lathe(lathe, good, bad, kind, says):
     assert any(says in finding.text + finding.cure for finding in findings)
 
 
+def test_motion_that_is_loaded_with_one_spindle_has_none_for_a_live_tool(lathe):
+    hal_file = lathe.parent / "motion.hal"
+    hal_file.write_text(hal_file.read_text().replace("num_spindles=[TRAJ]SPINDLES ", ""))
+    (finding,) = found_of(lathe)
+    assert "SPINDLES is 2 and motion is loaded with 1" in finding.text
+
+
 def test_a_module_that_is_missing_or_older(lathe, module):
     module.write_bytes(b"%s.centre")
     (old,) = found_of(lathe)
@@ -312,6 +317,12 @@ def test_a_pin_that_no_module_makes_is_named(hal_findings, pin, name):
     assert finding.text == f"{line}: there is no pin {pin}: LinuxCNC does not start"
 
 
+@pytest.mark.parametrize("line", ["net a own.x", "linkps own.x a", "linksp a own.x"])
+def test_a_pin_on_two_signals_is_named(hal_findings, line):
+    (finding,) = hal_findings(f"{line}\nnet b own.x\n")
+    assert finding.text.startswith("motion.hal:9: net b own.x: own.x is on a already")
+
+
 @pytest.mark.parametrize("line", ["setp {}", "unlinkp {}", "linkpp own.x {}", "linksp s {}",
                                   "linkps {} s"])  # fmt: skip
 def test_each_command_that_names_a_pin_is_read(hal_findings, line):
@@ -352,12 +363,10 @@ def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     assert error.count("\n") == 1
 
 
-def test_the_report_for_programs_says_what_the_one_for_people_says(tmp_path):
+def test_the_report_says_what_is_there_and_what_is_wrong(tmp_path):
     config = config_of(write_config(tmp_path, GOOD + FILTER))
-    said = check.report_of(config, findings_of(config))
-    assert json.loads(json.dumps(said)) == said
-    assert said["codes"][0] == {"code": "G12", "feature": "haas", "line": "mill.ini:6"}
-    lines = "\n".join(check.lines_of(said))
-    assert said["findings"] and "  .nc    programs of haas-mill\n" in lines
-    for finding in said["findings"]:
-        assert finding["text"] in lines and finding["cure"] in lines
+    said = list(check.report_of(config, findings_of(config)))
+    meaning = "G12/G13 circular pocket, Haas words (mill.ini:6)"
+    assert said[1] == f"  G12    haas         {meaning}"
+    assert "  .nc    programs of haas-mill" in said
+    assert any(line.startswith("problem [filter]: ") for line in said)

@@ -169,20 +169,13 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
         assert put_in(ini, "haas") == []
 
 
-@pytest.mark.parametrize(
-    ("marker", "new", "says"),
-    [
-        (f"{END_MARK} ", "# gone ", "a marker of install without its other one"),
-        (f"{BEGIN_MARK} haas", "# gone", "a marker of install without its other one"),
-        (r"# <<< g12 install.*", "# <<< g12 install", "an earlier version wrote this"),
-    ],
-)
-def test_markers_that_are_not_both_there_are_refused(tmp_path, ini, capsys, marker, new, says):
-    ini.write_text(re.sub(marker, new, ini.read_text(), count=1))
-    before = content_of(tmp_path)
+@pytest.mark.parametrize("marker", [END_MARK, BEGIN_MARK])
+def test_markers_that_are_not_both_there_are_refused(tmp_path, ini, capsys, marker):
+    ini.write_text(ini.read_text().replace(marker, "# gone", 1))
+    before, says = content_of(tmp_path), r"mill\.ini:\d+: a marker of install without its other one"
     assert uninstall.main([str(ini)]) == 2
     (said,) = capsys.readouterr().err.splitlines()
-    assert re.search(r"mill\.ini:\d+: ", said) and says in said
+    assert re.search(says, said)
     with pytest.raises(IniError, match=says):
         put_in(ini, "haas")
     assert content_of(tmp_path) == before

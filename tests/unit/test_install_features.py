@@ -298,26 +298,6 @@ def test_what_the_kinematics_write(tmp_path):
     assert "[JOINT_0]\nMIN_LIMIT = -5\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACC" in text
 
 
-@pytest.mark.parametrize(
-    ("usual", "unusual", "says"),
-    [
-        ("trivkins coordinates=xzc kinstype=B", "trivkins", "is not trivkins coordinates=…"),
-        ("coordinates=xzc", "coordinates=xyzc", "without Y"),
-        ("COORDINATES =   X Z C", "COORDINATES = X Y Z C", "COORDINATES = X Y Z C is not"),
-        ("MAX_VELOCITY = 360\n", "", "[AXIS_C] has no MAX_VELOCITY"),
-        ("MAX_LIMIT = 200.0", "MAX_LIMIT = 150", "MAX_LIMIT 150 and 200"),
-        ("[AXIS_C]", "[AXIS_Y]\nMAX_LIMIT = 1\n[AXIS_C]", "there is an [AXIS_Y]"),
-        ("HALFILE = motion.hal", "HALFILE = motion.tcl", "motion.tcl is no HAL file"),
-    ],
-)
-def test_an_unusual_lathe_keeps_its_kinematics(tmp_path, usual, unusual, says):
-    assert usual in TURNING
-    findings = refused(lathe_in(tmp_path, TURNING.replace(usual, unusual, 1)), "polar",
-                       "polar-kinematics")  # fmt: skip
-    assert {finding.kind for finding in findings} == {"kinematics"}
-    assert any(says in finding.text for finding in findings)
-
-
 def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     ini = lathe_in(tmp_path)
     put_in(ini, "spindle-c", pins=pins_of(tmp_path))
@@ -339,20 +319,30 @@ def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     assert "VELOCITY_SCALE = 60\n" in ini.read_text() and found(ini) == []
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ("trivkins coordinates=xzc", "trivkins coordinates=xza", "no joint is C alone"),
-        ("encoder.position => spindle.0.revs", "a => b", "no HAL file connects spindle.0.revs"),
-        ("HALFILE = motion.hal", "HALFILE = LIB:basic_sim.tcl",
-         "no HAL file connects spindle.0.index-enable (LIB:basic_sim.tcl is Tcl"),
-        ("loadrt [KINS]", "loadrt pid names=drive\nloadrt [KINS]",
-         'velocity = "drive.velocity": there is no such pin: LinuxCNC would not start'),
-    ],
-)  # fmt: skip
-def test_a_spindle_is_refused_for_what_the_machine_has(tmp_path, old, new, said):
-    ini = lathe_in(tmp_path, TURNING.replace(old, new), TURNING_HAL.replace(old, new))
-    findings = refused(ini, "spindle-c", pins=pins_of(tmp_path))
+KINS, SPINDLE = ("polar", "polar-kinematics"), ("spindle-c",)
+UNUSUAL = [  # what is changed of a lathe, in its INI and its HAL file; features; what is said
+    ("trivkins coordinates=xzc kinstype=B", "trivkins", KINS, "is not trivkins coordinates=…"),
+    ("coordinates=xzc", "coordinates=xyzc", KINS, "without Y"),
+    ("COORDINATES =   X Z C", "COORDINATES = X Y Z C", KINS, "COORDINATES = X Y Z C is not"),
+    ("MAX_VELOCITY = 360\n", "", KINS, "[AXIS_C] has no MAX_VELOCITY"),
+    ("MAX_LIMIT = 200.0", "MAX_LIMIT = 150", KINS, "MAX_LIMIT 150 and 200"),
+    ("[AXIS_C]", "[AXIS_Y]\nMAX_LIMIT = 1\n[AXIS_C]", KINS, "there is an [AXIS_Y]"),
+    ("HALFILE = motion.hal", "HALFILE = motion.tcl", KINS, "motion.tcl is no HAL file"),
+    ("trivkins coordinates=xzc", "trivkins coordinates=xza", SPINDLE, "no joint is C alone"),
+    ("encoder.position => spindle.0.revs", "a => b", SPINDLE,
+     "no HAL file connects spindle.0.revs"),
+    ("HALFILE = motion.hal", "HALFILE = LIB:basic_sim.tcl", SPINDLE,
+     "no HAL file connects spindle.0.index-enable (LIB:basic_sim.tcl is Tcl"),
+    ("loadrt [KINS]", "loadrt pid names=drive\nloadrt [KINS]", SPINDLE,
+     'velocity = "drive.velocity": there is no such pin: LinuxCNC would not start'),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "names", "said"), UNUSUAL)
+def test_an_unusual_lathe_is_left_alone_and_named(tmp_path, old, new, names, said):
+    assert old in TURNING + TURNING_HAL
+    ini = lathe_in(tmp_path, TURNING.replace(old, new, 1), TURNING_HAL.replace(old, new))
+    findings = refused(ini, *names, pins=pins_of(tmp_path))
     assert said in "".join(finding.text for finding in findings)
 
 

@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""install, an update and uninstall, killed before each call that changes the file system.
-
-`soak/soak_kills.py` kills the real commands.
-"""
+"""install, an update and uninstall, killed before each call that changes the file system."""
 
 import os
 import shutil

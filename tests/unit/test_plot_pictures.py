@@ -26,9 +26,9 @@ from g12.tools.plot.scene import scene_of
 from g12.tools.plot.unrolled import unrolled
 from g12.tools.preview.moves import Event
 from g12.tools.units import MM, UNITS, clock, plain
+from g12.tools.verify.in_part import RAPID
 from g12.tools.verify.model.finding import Finding
 from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.rapids import RAPID
 from g12.tools.verify.remains import UNCUT, WALL
 from support.made_moves import Hand, samples_of
 

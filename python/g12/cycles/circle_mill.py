@@ -41,6 +41,7 @@ from g12.request import (
     CycleExtent,
     Words,
     loaded_tool,
+    opposite,
     steps_between,
 )
 from g12.state import XY, Tool
@@ -343,7 +344,7 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> di
     if 0 < entries.finish < smallest:
         rule = f"must be at least {number(smallest)}"
         raise entries.words.refuse_word(entries.letters.finish, entries.finish, rule)
-    other = CLOCKWISE + COUNTERCLOCKWISE - circle.finish_arc
+    other = opposite(circle.finish_arc)
     return {
         "side_finish": entries.finish > 0,
         "finish_radius": circle.radius + circle.side * tool.radius,

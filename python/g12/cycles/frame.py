@@ -12,15 +12,7 @@ from typing import NamedTuple
 from g12.cut_report import FrameCut
 from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, hole_of
 from g12.errors import number
-from g12.request import (
-    CLEARED,
-    CLOCKWISE,
-    COUNTERCLOCKWISE,
-    Cutter,
-    CycleExtent,
-    Words,
-    steps_between,
-)
+from g12.request import CLEARED, Cutter, CycleExtent, Words, opposite, steps_between
 from g12.state import XY
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
@@ -72,7 +64,7 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         "lead": lead,
         "side": frame.side,
         "arc": arc,
-        "lead_arc": CLOCKWISE + COUNTERCLOCKWISE - arc if frame.side > 0 else arc,
+        "lead_arc": opposite(arc) if frame.side > 0 else arc,
         "turns": turns_down(words, fall, lead, entry) if entry.helix else 0,
         "plunge_feed": plunge_feed,
         "feed": context.feed,

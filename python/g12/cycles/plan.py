@@ -11,7 +11,7 @@ from math import atan, ceil, cos, pi, radians, sin, tan
 from typing import NamedTuple
 
 from g12.cut_report import PlannedCut
-from g12.errors import number
+from g12.errors import Refusal, number
 from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, Words
 
 
@@ -132,9 +132,10 @@ def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> Non
         fits = f"{number(height * CLEARED * cutter / least)} down fits at most"
     else:
         fits = f"I from {number(cutter + least)} fits"
-    raise words.refuse(
+    raise Refusal(
         f"a helix of radius {number(helix.radius)} needs {turns // 2} turns for {number(height)}, "
-        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
+        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge",
+        words.code,
     )
 
 

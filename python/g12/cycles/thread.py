@@ -12,7 +12,7 @@ from typing import NamedTuple
 from g12.cut_report import ThreadCut
 from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLOCKWISE, COUNTERCLOCKWISE, Cutter, CycleExtent, Words, steps_between
+from g12.request import COUNTERCLOCKWISE, Cutter, CycleExtent, Words, opposite, steps_between
 from g12.state import XY
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
@@ -67,7 +67,7 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
         "ratio": ratio,
         "taper": thread.taper,
         "arc": arc,
-        "lead_arc": CLOCKWISE + COUNTERCLOCKWISE - arc if thread.outside else arc,
+        "lead_arc": opposite(arc) if thread.outside else arc,
     }
     widest = radius + abs(thread.taper) * hole.depth
     if thread.outside:

@@ -17,12 +17,12 @@ from typing import NamedTuple
 
 from g12.host import kinematics_switch
 from g12.host.interp import (
-    DIAMETER_ACTIVE,
     G7,
     PER_MINUTE,
     PER_REVOLUTION,
     PLANE_CODES,
     Interp,
+    diameter_active,
     kept,
     millimetres_per_unit,
     set_wrapped,
@@ -89,7 +89,7 @@ def modes_in_force(interp: Interp) -> Saved:
         motion=interp.motion_mode,
         distance=interp.distance_mode,
         centres=interp.ijk_distance_mode,
-        diameter=active[DIAMETER_ACTIVE] == G7,
+        diameter=diameter_active(interp),
         plane=PLANE_CODES.get(interp.plane, ""),
         feed_mode=interp.feed_mode,
         feed=interp.feed_rate,

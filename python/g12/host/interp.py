@@ -73,6 +73,11 @@ def set_wrapped(interp: Interp, wrapped: Iterable[bool]) -> None:
         setattr(interp, name, value)
 
 
+def diameter_active(interp: Interp) -> bool:
+    """Return whether G7 is active: before the block, as all active codes."""
+    return bool(interp.active_g_codes[DIAMETER_ACTIVE] == G7)
+
+
 def millimetres_per_unit(interp: Interp) -> float:
     """Return the length of the program's unit."""
     return MM_PER_INCH if interp.length_units == INCH_UNITS else 1.0

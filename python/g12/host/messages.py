@@ -12,16 +12,15 @@ from cmath import rect
 from collections.abc import Callable
 from math import radians
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import emccanon
 import linuxcnc
 from interpreter import INTERP_ERROR, INTERP_OK, MODE_INCREMENTAL
 
 from g12 import cut_report
-from g12.cut_report import CutReport, PlannedCut, ProgramFrame
 from g12.errors import LONGEST_MESSAGE, Refusal
-from g12.host import borrowed, messages
+from g12.host import borrowed
 from g12.host.interp import PER_REVOLUTION, Interp, kept, millimetres_per_unit
 from g12.host.program_lines import line_at, running_file
 
@@ -185,17 +184,16 @@ def main_program(interp: Interp) -> tuple[str, int] | None:
         return None
 
 
-if TYPE_CHECKING:  # sections load without the cycles
-    from g12.request import Words
-
 SECTION_BEGAN = "section"  # key: its first part has been reported
 
 
-def begin_cut(interp: Interp, words: Words, cut: Callable[[], PlannedCut]) -> None:
+def begin_cut(
+    interp: Interp, code: str, given: dict[str, float], cut: Callable[[], cut_report.PlannedCut]
+) -> None:
     """Report the cut of the block, or of the call of its sub."""
     if asked(interp) is not None:
-        line = messages.line_of(interp, words.code) or 0
-        report = report_of(interp, words.code, line, words.given, cut())
+        line = line_of(interp, code) or 0
+        report = report_of(interp, code, line, given, cut())
         emccanon.COMMENT(cut_report.report_text(report))
 
 
@@ -212,9 +210,9 @@ def asked(interp: Interp) -> dict[str, Any] | None:
 
 
 def report_of(
-    interp: Interp, code: str, line: int, words: dict[str, float], cut: PlannedCut
-) -> CutReport:
-    return CutReport(
+    interp: Interp, code: str, line: int, words: dict[str, float], cut: cut_report.PlannedCut
+) -> cut_report.CutReport:
+    return cut_report.CutReport(
         code,
         int(line),
         getattr(line, "file", ""),
@@ -228,7 +226,7 @@ def report_of(
     )
 
 
-def _frame(interp: Interp) -> ProgramFrame:
+def _frame(interp: Interp) -> cut_report.ProgramFrame:
     shift = complex(interp.axis_offset_x, interp.axis_offset_y)
     turned = shift * rect(1.0, radians(interp.rotation_xy))
     zero = (
@@ -238,4 +236,4 @@ def _frame(interp: Interp) -> ProgramFrame:
         interp.CC_origin_offset + interp.CC_axis_offset,
     )
     shifted = bool(shift or interp.axis_offset_z or interp.CC_axis_offset)
-    return ProgramFrame(millimetres_per_unit(interp), zero, interp.rotation_xy, shifted)
+    return cut_report.ProgramFrame(millimetres_per_unit(interp), zero, interp.rotation_xy, shifted)

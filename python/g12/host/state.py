@@ -7,7 +7,6 @@ import emccanon
 from interpreter import MODE_INCREMENTAL
 
 from g12.host.interp import (
-    DIAMETER_ACTIVE,
     G7,
     INCH_UNITS,
     INVERSE_TIME,
@@ -15,6 +14,7 @@ from g12.host.interp import (
     PLANE_CODES,
     Interp,
     ToolTableEntry,
+    diameter_active,
     millimetres_per_unit,
 )
 from g12.section.block_rules import NO_CODE, GGroup
@@ -80,5 +80,4 @@ def feed_spindle(interp: Interp) -> int:
 def _diameter_mode(interp: Interp) -> bool:
     """Return whether G7 is active (the active codes are those before this block)."""
     commanded = interp.blocks[interp.remap_level].g_modes[GGroup.DIAMETER]
-    active = interp.active_g_codes[DIAMETER_ACTIVE]
-    return (active if commanded == NO_CODE else commanded) == G7
+    return diameter_active(interp) if commanded == NO_CODE else bool(commanded == G7)

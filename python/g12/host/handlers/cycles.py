@@ -14,6 +14,7 @@ from interpreter import INTERP_OK
 
 from g12.cycles import bore, circle_mill, frame, haas, mitsubishi, thread, yasnac
 from g12.cycles.plan import CyclePlan, EventPlanes, PocketEntry
+from g12.errors import Refusal
 from g12.host import borrowed, messages
 from g12.host.call_frame import set_locals_at
 from g12.host.interp import (
@@ -44,13 +45,13 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     A form has the block refused where a program would be told.
     """
     if plan.message and is_strict(interp):
-        raise words.refuse(plan.message.removeprefix(f"{words.code}: "))
+        raise Refusal(plan.message.removeprefix(f"{words.code}: "), words.code)
     set_locals_at(interp, interp.call_level, {**plan.locals, **more})
     borrowed.begin(interp)
     remember(interp, plan, kept(interp, CommandedValues))
     if plan.message:
         messages.message(plan.message)
-    messages.begin_cut(interp, words, plan.cut)
+    messages.begin_cut(interp, words.code, words.given, plan.cut)
     return INTERP_OK
 
 

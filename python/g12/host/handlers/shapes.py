@@ -7,8 +7,6 @@ sets the locals of its motion. G13.4 restores the modes before G12.4.
 
 from __future__ import annotations
 
-from collections.abc import Container
-
 from interpreter import INTERP_OK
 
 from g12.errors import Refusal
@@ -60,7 +58,7 @@ def polar_shape(self, **words):
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
-    messages.begin_cut(self, entries, plan.cut)
+    messages.begin_cut(self, name, entries.given, plan.cut)
     borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
     return INTERP_OK
@@ -131,11 +129,10 @@ def shape_at_work(interp: Interp) -> tuple[str, int]:
     The code is in that sub, or in the one that moves for all holes; elsewhere it is refused.
     """
     level, code = interp.call_level - 1, messages.code_of_block(interp)
-    calls: Container[str] = SHAPE_CALLS
-    if interp.sub_context[level].subname == SUB_OF_HOLES:
-        level, calls = level - 1, HOLE_CALLS
+    moves_for_holes = interp.sub_context[level].subname == SUB_OF_HOLES
+    level -= moves_for_holes
     name = interp.sub_context[level].subname
-    if name not in calls:
+    if name not in (HOLE_CALLS if moves_for_holes else SHAPE_CALLS):
         *names, last = *SHAPE_CALLS, *HOLE_CALLS
         where = f"belongs in the subs {', '.join(names)} and {last}: call one of them"
         raise Refusal(where, code)

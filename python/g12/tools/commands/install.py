@@ -33,12 +33,11 @@ exit code: 0 done or nothing to do, 1 refused, 2 wrong use"""
 
 def command_parser() -> Parser:
     listed = "\n".join(f"  {name:24} {meaning}" for name, meaning in features.MEANING.items())
-    parser = Parser(
-        prog="g12 install",
-        description="Put the package into a machine config: a copy in the folder g12 beside the\n"
-        "INI, and the lines that name it. Shows what changes; keeps the old files.",
-        epilog=EXAMPLES.format(features=listed),
+    text = (
+        "Put the package into a machine config: a copy in the folder g12 beside the\n"
+        "INI, and the lines that name it. Shows what changes; keeps the old files."
     )
+    parser = Parser("g12 install", text, EXAMPLES.format(features=listed))
     parser.add_argument("ini", nargs="?", type=Path, help="INI file of the machine")
     words: dict[str, Any] = {"dest": "features", "nargs": "+", "default": [], "metavar": "FEATURE"}
     parser.add_argument("--with", **words, help="what to install (see below)")

@@ -20,11 +20,8 @@ exit code: 0 done or nothing to do, 2 wrong use"""
 
 
 def command_parser() -> Parser:
-    parser = Parser(
-        prog="g12 uninstall",
-        description="Take out of a machine config what install put in, and nothing else.",
-        epilog=EXAMPLES,
-    )
+    text = "Take out of a machine config what install put in, and nothing else."
+    parser = Parser("g12 uninstall", text, EXAMPLES)
     parser.add_argument("ini", type=Path, help="INI file of the machine")
     parser.add_argument("--dry-run", action="store_true", help="show the changes only")
     return parser

@@ -27,7 +27,7 @@ from g12.tools.machine.files import (
     backup_of,
     backups_of,
     difference,
-    drop_backups,
+    equal_backups,
     take_after,
     write,
 )
@@ -199,7 +199,8 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     for path, content in reversed(changes.items()):  # the codes first: they need the rest
         write(path, content)
     for path in text.files:
-        drop_backups(path, path.read_bytes())
+        for backup in equal_backups(path):
+            backup.unlink()
         backups = ", ".join(backup.name for backup in backups_of(path))
         if path in changes:
             yield f"{path}: changed" + f"; you changed it since, {backups} stays" * bool(backups)

@@ -16,30 +16,21 @@ from g12.tools.install.config.features import ROOT
 from g12.tools.machine.files import free_name, take_owner
 
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
-PAGE_FILES = (  # the pages that a machinist reads at the machine; they link only to each other
-    "ngc/*.md",
+FILES = (  # the code, and the pages that a machinist reads at the machine
+    "LICENSE",
+    "ngc/*.*",
     "ngc/pictures/*.png",
-    "configs/README.md",
-    "configs/spindle_c.md",
+    "configs/*.md",
+    "configs/include/*.*",
+    "configs/include/probe_basic/**/*.py",
     "configs/kinematics/README.md",
+    "configs/kinematics/polar_*",
     "python/README.md",
+    "python/**/*.py",
     "python/g12/tools/regress/README.md",
     "python/g12/tools/translate/README.md",
-)
-CODE_FILES = (
-    "ngc/*.ngc",
-    "ngc/*.png",
-    "configs/include/*.inc",
-    "configs/include/spindle_c*",
-    "configs/include/*.ui",
-    "configs/include/axis_face.py",
-    "configs/include/probe_basic/**/*.py",
-    "configs/kinematics/polar_*",
-    "python/*.py",
-    "python/g12/**/*.py",
     "python/g12/tools/translate/controls/*.toml",
 )
-FILES = ("LICENSE", *CODE_FILES, *PAGE_FILES)
 EDITED_SUFFIX = ".edited"
 MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)", re.MULTILINE)
 BESIDE, ASIDE = ".g12-new", ".g12-old"  # the new copy; the old one, where two cannot be exchanged
@@ -72,14 +63,10 @@ def listed(folder: Path) -> dict[str, str]:
     return {name: value for value, name in MANIFEST_ENTRY.findall(text)}
 
 
-def missing(folder: Path) -> list[str]:
-    return [name for name in listed(folder) if not (folder / name).is_file()]
-
-
-def edited(folder: Path) -> list[str]:
-    """Return the files of a copy that the user has changed."""
-    there = ((name, value, folder / name) for name, value in listed(folder).items())
-    return [name for name, value, file in there if file.is_file() and value != digest_of(file)]
+def changed(folder: Path) -> dict[str, str]:
+    """Return the files of a copy that are not as installed, with their digests, "" of lost ones."""
+    now = {name: digest_of(folder / name) for name in listed(folder)}
+    return dict(now.items() - listed(folder).items())
 
 
 def digest_of(file: Path) -> str:
@@ -90,7 +77,8 @@ def is_current(folder: Path) -> bool:
     """Return whether a copy is one of this package, with all its files, or is this package."""
     if folder.exists() and folder.samefile(ROOT):
         return True
-    return listed(folder) == digests(package_files()) and not missing(folder)
+    is_whole = "" not in changed(folder).values()
+    return is_whole and listed(folder) == digests(package_files())
 
 
 def replace(copy: Path, files: Mapping[str, bytes]) -> list[str]:

@@ -243,11 +243,12 @@ def filter_findings(config: Config) -> Iterator[ConfigFinding]:
 
 def changed_copy(config: Config) -> Iterator[ConfigFinding]:
     copy = config.folder / COPY
-    missing, edited = package_copy.missing(copy), package_copy.edited(copy)
+    changed = dict(sorted(package_copy.changed(copy).items()))
+    missing = [name for name, digest in changed.items() if not digest]
     if missing:
         more = f" and {len(missing) - MAX_NAMED} more" * (len(missing) > MAX_NAMED)
         yield problem("copy", f"{copy}: missing: {', '.join(missing[:MAX_NAMED])}{more}", MEND)
-    for name in edited:
+    for name in (name for name in changed if name not in missing):
         cure = "nothing if you did; install keeps it. Else delete this file and run install again"
         yield note("copy", f"{copy / name}: was changed after it was installed", cure)
 

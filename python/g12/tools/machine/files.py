@@ -48,8 +48,10 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
 def write(path: Path, content: bytes) -> None:
     """Write a file atomically; mode and owner stay."""
     path = path.resolve()  # replaces a link's target, not the link
-    remove_unfinished(path)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=unfinished(path))
+    unfinished = f".{path.name}.g12-"
+    for left in path.parent.glob(f"{glob.escape(unfinished)}????????"):  # by one that was killed
+        left.unlink(missing_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=unfinished)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
@@ -60,17 +62,6 @@ def write(path: Path, content: bytes) -> None:
     except BaseException:
         os.unlink(name)
         raise
-
-
-def unfinished(path: Path) -> str:
-    """Return how the names begin under which a file's new content is written."""
-    return f".{path.name}.g12-"
-
-
-def remove_unfinished(path: Path) -> None:
-    """Remove what a `write` left that was killed."""
-    for left in path.parent.glob(f"{glob.escape(unfinished(path))}????????"):
-        left.unlink(missing_ok=True)
 
 
 def take_after(new: Path, path: Path) -> None:
@@ -99,17 +90,12 @@ def free_name(path: Path) -> Path:
     return next(each for each in chain([path], numbered) if not os.path.lexists(each))
 
 
+def equal_backups(path: Path) -> list[Path]:
+    """Return the backups that equal the file."""
+    return [backup for backup in backups_of(path) if backup.read_bytes() == path.read_bytes()]
+
+
 def backup_of(path: Path) -> Path:
     """Return the backup that equals the file, or the place for one."""
-    equal = equal_backups(path, path.read_bytes())
+    equal = equal_backups(path)
     return equal[0] if equal else free_name(path.with_name(f"{path.name}{BACKUP}"))
-
-
-def equal_backups(path: Path, content: bytes) -> list[Path]:
-    return [backup for backup in backups_of(path) if backup.read_bytes() == content]
-
-
-def drop_backups(path: Path, content: bytes) -> None:
-    """Delete the backups of a file that gets their content back."""
-    for backup in equal_backups(path, content):
-        backup.unlink()

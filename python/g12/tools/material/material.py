@@ -9,7 +9,7 @@ The area of a sweep is computed at its first use. Lengths are mm.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -19,10 +19,13 @@ from shapely.affinity import translate
 from shapely.geometry import MultiLineString, Point, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
+from shapely.prepared import PreparedGeometry, prep
 
-from g12.tools.path.part import swept
+from g12.tools.path.part import disc, swept
 
 SAME_LEVEL = 1e-3
+SAME_CENTRE = 1e-3
+CHORD = 1e-3  # of a full circle
 ALLOWED = 0.05  # depth of a rapid into material that counts as none: blended corners of a run
 LEAST_AREA = 0.05  # mm²: a smaller area touched by a rapid counts as none
 RAPID_STEP = 0.5  # between the evaluated points of a rapid
@@ -64,15 +67,54 @@ class Sweep:
         return swept([self.line], self.radius)
 
     @property
-    def bounds(self) -> np.ndarray:
+    def bounds(self) -> Sequence[float]:
         ends = self.line.min(axis=0) - self.radius, self.line.max(axis=0) + self.radius
         return np.concatenate(ends)
+
+    def farthest(self, point: Sequence[float]) -> np.ndarray:
+        """Return where on its line the cutter is farthest from a point."""
+        return self.line[np.hypot(*(self.line - point).T).argmax()]
+
+
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """What a cutter of a radius removes along a full circle, whose radius is ``around``."""
+
+    centre: tuple[float, float]
+    around: float
+    radius: float
+    level: float
+    move: int
+
+    @cached_property
+    def shape(self) -> BaseGeometry:
+        inner, outer = (disc(self.centre, edge, CHORD) for edge in self.edges)
+        return outer.difference(inner)
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        return max(self.around - self.radius, 0.0), self.around + self.radius
+
+    @property
+    def bounds(self) -> Sequence[float]:
+        (x, y), reach = self.centre, self.edges[1]
+        return x - reach, y - reach, x + reach, y + reach
+
+    def farthest(self, point: Sequence[float]) -> np.ndarray:
+        """Return where on its circle the cutter is farthest from a point."""
+        away = np.subtract(self.centre, point)
+        length = math.hypot(*away)
+        along = away / length if length > 0 else np.array([1.0, 0.0])
+        return np.array(self.centre) + self.around * along
+
+
+Removed = Sweep | Ring
 
 
 class Material:
     def __init__(self, shape: BaseGeometry, top: float, period: float = 0.0) -> None:
         self.shape, self.top, self._period = shape, top, period
-        self._sweeps: list[Sweep] = []
+        self._sweeps: list[Removed] = []
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3), after those before."""
@@ -86,13 +128,19 @@ class Material:
                     self._sweeps.append(Sweep(line, radius, portion.low, move))
         self.__dict__.pop("_table", None)
 
+    def cut_ring(self, ring: Ring) -> None:
+        """Remove what a full circle sweeps, after what was removed before."""
+        if ring.level < self.top:
+            self._sweeps.append(ring)
+            self.__dict__.pop("_table", None)
+
     @cached_property
     def _table(self) -> np.ndarray:
         """The bounds, the level and the move of each sweep: rows (6, n)."""
         rows = [(*sweep.bounds, sweep.level, sweep.move) for sweep in self._sweeps]
         return np.ascontiguousarray(np.array(rows, float).reshape(-1, 6).T)
 
-    def sweeps_of(self, moves: range) -> list[Sweep]:
+    def sweeps_of(self, moves: range) -> list[Removed]:
         """Return what a range of moves removes, if that stands."""
         move = self._table[5]
         first, last = np.searchsorted(move, (moves.start, moves.stop))
@@ -100,10 +148,29 @@ class Material:
 
     def removes(self, moves: range) -> bool:
         """Return whether a range of moves removes anything that stands before them."""
-        return any(
-            self._standing(each.shape, each.level, moves.start).area > LEAST_AREA
-            for each in self.sweeps_of(moves)
-        )
+        return any(self._removes(each, moves.start) for each in self.sweeps_of(moves))
+
+    def _removes(self, sweep: Removed, before: int) -> bool:
+        near, _ = self._near(sweep.bounds, sweep.level + SAME_LEVEL, before)
+        if not near and self._whole.contains(box(*sweep.bounds)):
+            return True
+        return self._standing(sweep.shape, sweep.level, before).area > LEAST_AREA
+
+    @cached_property
+    def _whole(self) -> PreparedGeometry:
+        return prep(self.shape)
+
+    def has_cleared(
+        self, centre: Sequence[float], edges: tuple[float, float], level: float
+    ) -> bool:
+        """Return whether full circles about a centre removed all between two radii."""
+        (x, y), (reached, outer) = centre, edges
+        near, _ = self._near((x - outer, y - outer, x + outer, y + outer), level, math.inf)
+        rings = (ring for ring in near if isinstance(ring, Ring))
+        own = (ring.edges for ring in rings if math.dist(ring.centre, centre) < SAME_CENTRE)
+        for low, high in sorted(own):
+            reached = max(reached, high) if low <= reached else reached
+        return reached >= outer
 
     def is_under(self, line: np.ndarray, radius: float) -> bool:
         """Return whether a cutter along a line (n, 2) is over or in what was material at first."""
@@ -134,8 +201,8 @@ class Material:
         return region.difference(unary_union([each.shape for each in near])) if near else region
 
     def _near(
-        self, bounds: tuple[float, ...], level: float, before: float
-    ) -> tuple[list[Sweep], list[Sweep]]:
+        self, bounds: Sequence[float], level: float, before: float
+    ) -> tuple[list[Removed], list[Removed]]:
         """Return the sweeps before a move that may meet bounds, and those that may cover them."""
         low_x, low_y, high_x, high_y = bounds
         x0, y0, x1, y1, levels, move = self._table

@@ -15,7 +15,7 @@ from shapely.affinity import scale as scaled
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.tools.material.material import NOTHING, Material, Sweep
+from g12.tools.material.material import NOTHING, Material, Removed
 from g12.tools.path.follow import worst_of
 from g12.tools.path.part import paths
 from g12.tools.plot import style
@@ -83,7 +83,7 @@ def shade_at(scene: Scene, z: float) -> Shade:
     return style.shade(round(share, 2))
 
 
-def swept_by(scene: Scene) -> list[Sweep]:
+def swept_by(scene: Scene) -> list[Removed]:
     """Return what the cutters sweep, wherever material is."""
     material = Material(NOTHING, scene.depths[1] + SAME_DEPTH)
     for tool, own in groupby(scene.cutting, lambda index: scene.moves[index].tool):
@@ -95,7 +95,7 @@ def swept_by(scene: Scene) -> list[Sweep]:
     return material.sweeps_of(range(1))
 
 
-def floors_left(sweeps: Sequence[Sweep]) -> list[tuple[float, BaseGeometry]]:
+def floors_left(sweeps: Sequence[Removed]) -> list[tuple[float, BaseGeometry]]:
     """Return the levels that are left of what is swept, from the top down, each with its area.
 
     Very many are in bands.

@@ -170,6 +170,12 @@ class Tracer:
             self._process = None
 
     def _answer(self, timeout: float) -> dict:
+        moves: list[Move] = []
+        while isinstance(answer := self._received(timeout), list):
+            moves += (Move._make(map(_frozen, move)) for move in answer)
+        return {**answer, "moves": moves}
+
+    def _received(self, timeout: float) -> dict | list:
         try:
             answer = self._channel.receive() if self._channel.is_ready(timeout) else None
         except (EOFError, ConnectionError):
@@ -279,7 +285,7 @@ def _table_in_mm(sizes: Sequence[Sequence], mm: float) -> ToolTable:
 def _trace(answer: dict, mm: float) -> Trace:
     sizes = [*answer["tables"], (len(answer["moves"]), answer["tool_sizes"])]
     return Trace(
-        moves=[Move._make(map(_frozen, move)) for move in answer["moves"]],
+        moves=answer["moves"],
         events=[Event._make(event) for event in answer["events"]],
         error=Error._make(answer["error"]) if answer["error"] else None,
         modes=modes(answer["gcodes"], answer["mcodes"], answer["settings"]),

@@ -32,6 +32,7 @@ CURRENT = (
     "current_x", "current_y", "current_z", "AA_current", "BB_current", "CC_current",
     "u_current", "v_current", "w_current",
 )  # fmt: skip
+MOVES_OF_LINE = 1000
 CART_FUZZ = 1e-8  # mm, of the same name in LinuxCNC, which ignores shorter moves
 INCHES, METRIC = 1, 2
 ASKED, CUT, MORE, END = "g12_reports", "g12 cut ", "g12 more ", "g12 end"  # `g12.cut_report`
@@ -724,12 +725,16 @@ def start(machine: dict, tools: list[tuple]) -> dict:
     return {**answer, "no_end": no_end}
 
 
-def send(stream: IO[str], answer: dict) -> None:
+def send(stream: IO[str], answer: dict | list) -> None:
     stream.write(json.dumps(answer) + "\n")
     stream.flush()
 
 
 def reply(stream: IO[str], machine: dict, answer: dict) -> None:
+    """Send an answer; its moves first, as lists, so that no line is long."""
+    moves = answer.pop("moves", [])
+    for at in range(0, len(moves), MOVES_OF_LINE):
+        send(stream, moves[at : at + MOVES_OF_LINE])
     send(stream, {**answer, "printed": printed(machine["output"])})
 
 

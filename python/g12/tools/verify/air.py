@@ -5,14 +5,10 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from shapely.ops import unary_union
-
-from g12.tools.path.part import disc
-from g12.tools.verify.model.cut import NOTHING, Cut
+from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import TracedProgram, dialect_of
+from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.remains import LEAST_GONE
 
 LEVEL = 1e-3  # mm
 DEEPEST = 3.0  # times a cutter's radius: few pockets are milled so deep at once
@@ -20,10 +16,7 @@ THROUGH = 2.0  # mm below the block: more is no through hole
 AIR = kind("air", FINDING, "it cuts nothing: it stays {above:length} above the part{hint}")
 BESIDE = kind("no-stock-met", FINDING, "it meets nothing of the stock")
 BEFORE = kind("cut-before", WARNING, "all of it was cut before: a spring pass, or the wrong place?")
-EMPTY = kind("empty", WARNING, "{code} moves nothing")
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
-OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
-AIR_LEVELS = kind("air-levels", WARNING, "{n} of its {of} levels cut nothing, above the part")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 MINUS = ": a lost minus sign?"
@@ -32,8 +25,8 @@ MINUS = ": a lost minus sign?"
 def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     for cut in program.cuts:
         if cut.at >= cut.end:
-            yield cut.found(EMPTY, code=cut.code)
-        elif cut.upright:
+            continue
+        if cut.upright:
             yield cut.found(UPRIGHT)
         elif program.cutter(cut.at) > 0 and program.is_known(cut.at):
             yield from _judge(cut, solids)
@@ -42,22 +35,16 @@ def judge_air(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
     program, material, top = solids.program, solids.of(cut.surface), solids.top(cut.surface)
     place = program.tip(cut.at, cut.surface)[0]
-    tips = (program.tip(index, cut.surface) for index in program.fed(cut))
-    lowest = min((tip[:, 2].min() for tip in tips), default=math.inf)
-    if lowest > top - LEVEL or not material.sweeps_of(cut.moves):
-        yield cut.found(AIR, place, above=lowest - top, hint=MINUS if lowest > top + LEVEL else "")
+    if not material.sweeps_of(cut.moves):
+        tips = (program.tip(index, cut.surface) for index in program.fed(cut))
+        above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
+        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)
         elif not cut.is_tap:
             yield cut.found(BEFORE, place)
-    elif _lies_outside(cut, solids):
-        yield cut.found(OUTSIDE, place)
-    levels = [outline.level for outline in cut.outlines] if cut.is_section else cut.levels
-    high = sum(level > top - LEVEL for level in levels)
-    if high and lowest < top - LEVEL:
-        yield cut.found(AIR_LEVELS, place, n=high, of=len(levels))
-    if cut.levels and dialect_of(cut.code, solids.program.ini) != "bore":  # cuts by its helices
+    if cut.levels and program.dialects.get(cut.code) != "bore":  # cuts by its helices
         yield from _deep(cut, solids)
     if solids.bottom - cut.floor > THROUGH:
         yield cut.found(BELOW, place, below=solids.bottom - cut.floor)
@@ -73,15 +60,3 @@ def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
         steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
     if max(steps, default=0.0) > DEEPEST * radius:
         yield cut.found(DEEP, deep=max(steps), cutter=2 * radius)
-
-
-def _lies_outside(cut: Cut, solids: Solids) -> bool:
-    """Return whether a portion of a pocket or a hole is outside of a given stock."""
-    stock, radius = solids.stock, solids.program.cutter(cut.at)
-    if not stock or not (stock.is_whole or cut.places):
-        return False
-    if cut.surface:
-        return any(hole.imag + radius > solids.z0 for hole in cut.places)
-    holes = [disc((at.real, at.imag), radius) for at in cut.places]
-    goes = unary_union([cut.goes if cut.is_circle or cut.is_shape else NOTHING, *holes])
-    return bool(goes.difference(solids.unbored).area > LEAST_GONE)

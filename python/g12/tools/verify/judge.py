@@ -18,12 +18,11 @@ from g12.tools.progress import Report, silent
 from g12.tools.units import unit_of
 from g12.tools.verify.accept import Accepted, accepted, expectations
 from g12.tools.verify.air import judge_air
-from g12.tools.verify.in_part import judge_in_part
-from g12.tools.verify.model.deviation import judge_deviations
+from g12.tools.verify.in_part import judge_in_part, judge_rapids
+from g12.tools.verify.model.deviation import Deviation, deviation_of, judge_deviations
 from g12.tools.verify.model.finding import FINDING, Finding, once_a_line
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.rapids import judge_rapids
 from g12.tools.verify.remains import judge_remains
 from g12.tools.verify.rules import contour, feed, spindle, tool, whole  # noqa: F401  # the table
 from g12.tools.verify.rules.table import judge_rules
@@ -39,7 +38,6 @@ CAUSES = {  # a finding of one code is the cause of those of others at the same 
     "side": {"overcut", "bar-remains"},
     "place-unknown": {"deep-pass"},
     "no-tool": {"no-diameter"},
-    "offset-beside": {"off"},
 }
 
 
@@ -51,6 +49,7 @@ class Judgement:
     solids: Solids
     found: Sequence[Finding]
     accepted: Sequence[Finding]
+    deviations: Sequence[Deviation]  # of each cut
     tolerance: float | None = None
     opened: OpenedProgram | None = None
 
@@ -104,10 +103,12 @@ def judge_trace(
     given = read_stock(stock.text, program.turning or program.is_round, unit) if stock else None
     tell("looking for material")
     solids = Solids(program, given)
-    every = [*judged(program, solids, tell), *judge_deviations(program, tolerance)]
+    deviations = [deviation_of(cut, program) for cut in program.cuts]
+    every = [*judged(program, solids, tell), *judge_deviations(deviations, program, tolerance)]
     expected = [*expectations(program.file), *(Accepted(code, 0) for code in accept)]
     found, taken = accepted(once_a_cause(every, program), program.cuts, expected)
-    return Judgement(program, solids, once_a_line(found), once_a_line(taken), tolerance, opened)
+    kept, taken = once_a_line(found), once_a_line(taken)
+    return Judgement(program, solids, kept, taken, deviations, tolerance, opened)
 
 
 def judged(program: TracedProgram, solids: Solids, tell: Report) -> Iterator[Finding]:

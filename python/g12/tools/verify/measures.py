@@ -19,8 +19,8 @@ from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import track
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.cut import Cut
-from g12.tools.verify.model.deviation import allowed_off, circles_of, deviation_of, off_circles
-from g12.tools.verify.model.program import TracedProgram, dialect_of
+from g12.tools.verify.model.deviation import allowed_off, circles_of, off_circles
+from g12.tools.verify.model.program import TracedProgram
 
 SIDES = {1: "left of the contour (G41)", -1: "right of the contour (G42)", 0: "on the contour"}
 THIRD = {"G17": 2, "G18": 1, "G19": 0}
@@ -41,7 +41,7 @@ def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
     return {
         "code": cut.code,
         "cutter": 2 * (cut.cutter or max(map(cut.offset, cut.elements), default=0.0)) or None,
-        "deviation": deviation_of(cut, program).size,
+        "deviation": judgement.deviations[cut.index].size,
         "allowed": allowed_off(cut, program, judgement.tolerance),
         **_pace(cut, program),
         **own[kind_of(cut)](cut, program),
@@ -72,7 +72,7 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     rings = circles_of(cut, program)
     levels = cut.plan.levels
     return {
-        "dialect": dialect_of(cut.code, program.ini),
+        "dialect": program.dialects.get(cut.code),
         "centre": [value * cut.mm for value in cut.plan.centre[:2]],
         "radius": cut.circle.inner if cut.circle.is_boss else cut.circle.wall,
         "boss": cut.circle.inner if cut.circle.is_boss else None,
@@ -103,6 +103,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "segments": len(fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
+        "turn": AXIS_LETTERS[turn],
         "c_speed": max(_speeds_of_c(cut, program), default=0.0),
         "c_limit": limit if math.isfinite(limit) else None,
         "seconds_planned": times and times._asdict(),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The second question to the material: what remains inside a cut, what is gone outside of it."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -25,8 +26,6 @@ BAR = kind(
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
-BOSS = kind("boss", FINDING, "nothing of its boss remains")
-MEETS = kind("meets", WARNING, "it and the cut of line {other} go into each other's walls")
 
 
 def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -37,7 +36,6 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from too_far(cut, solids)
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
-    yield from meeting([cut for cut in program.cuts if cut.is_circle and not cut.upright])
 
 
 # ------------------------------------------------------------ what should be gone
@@ -46,7 +44,8 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
     radius, level = solids.program.cutter(cut.at), cut.floor - cut.zero[2]
-    left, core = left_of(cut.goes, cut, solids), left_of(cut.core, cut, solids)
+    left = NOTHING if _is_cleared(cut, solids) else left_of(cut.goes, cut, solids)
+    core = left_of(cut.core, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
         left, core = NOTHING, left.buffer(-radius / 2)
     if left.area > LEAST_GONE:
@@ -61,9 +60,16 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(BAR, place, area=beyond.area, level=level)
 
 
+def _is_cleared(cut: Cut, solids: Solids) -> bool:
+    """Return whether a circle's own rings clear it: seen without any geometry."""
+    edges = cut.circle.inner + SLACK, cut.circle.wall - SLACK
+    level = cut.floor + JUST_ABOVE
+    return cut.is_circle and solids.of(cut.surface).has_cleared(cut.centre, edges, level)
+
+
 def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
     """Return what stands of a region at a cut's floor, without what is narrower than two slacks."""
-    if solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
+    if region.is_empty or solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
         return NOTHING  # no more than a rim, of chords and rounding
     area = solids.standing(region, cut.floor, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
@@ -102,10 +108,10 @@ def too_far(cut: Cut, solids: Solids) -> Iterator[Finding]:
     if not cut.is_circle or cut.circle.is_boss:
         return
     for sweep in solids.of(cut.surface).sweeps_of(cut.moves):
-        away = np.hypot(*(sweep.line - cut.centre).T)
-        over = float(away.max()) + sweep.radius - cut.circle.wall
+        point = sweep.farthest(cut.centre)
+        over = math.dist(point, cut.centre) + sweep.radius - cut.circle.wall
         if over > SLACK:
-            place = (*sweep.line[away.argmax()], sweep.level)
+            place = (*point, sweep.level)
             at = solids.program.words(cut.at, place, cut.surface)
             yield cut.found(WALL, place, over=over, at=at)
             return
@@ -117,9 +123,6 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     What the planner compensated stays off its own contour. Its leads do not, nor do cuts round
     another island, or moves at feed that belong to no cut.
     """
-    if cut.circle.is_boss and _is_boss_gone(cut, solids):
-        yield cut.found(BOSS, (*cut.centre, cut.floor))
-        return
     if not cut.stays:
         return
     others = (each for each in program.cuts if each is not cut and each.surface == cut.surface)
@@ -137,16 +140,6 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             return
 
 
-def _is_boss_gone(cut: Cut, solids: Solids) -> bool:
-    boss, middle = cut.stays[0][0].buffer(-2 * SLACK), (cut.floor + solids.top(cut.surface)) / 2
-
-    def stands(level: float, before: float) -> bool:
-        return solids.standing(boss, level, cut.surface, before).area > LEAST_GONE
-
-    lowered = stands(middle, cut.at) and not stands(middle, np.inf)
-    return lowered or not stands(cut.floor, cut.at)
-
-
 def _cut_away(
     cut: Cut, region: BaseGeometry, program: TracedProgram, solids: Solids
 ) -> tuple[BaseGeometry, int | None]:
@@ -162,16 +155,3 @@ def _cut_away(
         kept_off = [i for i in cut.moves if program.moves[i].line not in loose]
         swept = swept.difference(solids.swept_in(swept, kept_off, cut.surface)[0])
     return swept, first if swept.area > LEAST_GONE else None
-
-
-def meeting(circles: list[Cut]) -> Iterator[Finding]:
-    """Yield pockets and bosses that go into each other's walls."""
-    heights = np.array([cut.zero[2] for cut in circles])
-    centres = np.array([complex(*cut.centre) for cut in circles])
-    walls = np.array([cut.circle.wall for cut in circles])
-    for index, cut in enumerate(circles):
-        apart, own = np.abs(centres[:index] - centres[index]), walls[index]
-        within = apart <= np.abs(walls[:index] - own) + SLACK
-        level = np.abs(heights[:index] - heights[index]) < SLACK
-        for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
-            yield cut.found(MEETS, other=circles[other].line)

@@ -41,9 +41,9 @@ FEATURES = {
     "frame": Feature("G12.7/G13.7 frame: a rectangle as pocket or wall", "frame.inc",
                      subs=("g12_frame_ring",)),
     "polar": Feature("G12.1/G13.1 polar coordinate interpolation on and off", "polar.inc", "XC",
-                     SECTION_SUBS, f"G13.1 {NOTHING}"),
+                     SECTION_SUBS, f"G13.1  {NOTHING}"),
     "polar-g12.3": Feature("G12.3/G13.3 polar coordinate interpolation on and off",
-                           "polar_g12_3.inc", "XC", SECTION_SUBS, f"G13.3 {NOTHING}"),
+                           "polar_g12_3.inc", "XC", SECTION_SUBS, f"G13.3  {NOTHING}"),
     "cylinder": Feature("G7.1 (G07.1) cylindrical interpolation on and off", "cylinder.inc", "XZC",
                         SECTION_SUBS, f"G7.1 C0 (on a mill A0 or B0) {NOTHING}"),
     POLAR_SHAPES: Feature(
@@ -111,8 +111,8 @@ def first_step(feature: str) -> str:
     if feature in CONTROLS:
         control = read_control(CONTROLS[feature])
         return f"open a .{control.extensions[0]} program of {control.name}"
-    missing_word = "is refused, a word is missing: it works"
-    return FEATURES[feature].first_step or f"{remaps_of(feature)[0].code} {missing_word}"
+    refused = "is refused, a word is missing: it works"
+    return FEATURES[feature].first_step or f"{remaps_of(feature)[0].code:6} {refused}"
 
 
 def axes_needed(feature: str, axes: str) -> str:

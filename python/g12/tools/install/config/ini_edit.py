@@ -57,7 +57,7 @@ def digest_of(text: str) -> str:
 
 def between_marks(words: str, lines: Sequence[str]) -> list[str]:
     """Return a block: lines between the markers, with the words of ``install``."""
-    digests = " ".join(map(digest_of, lines))
+    digests = " ".join(digest_of(line.rstrip("\r\n")) for line in lines)
     return [f"{BEGIN_MARK} {words}", *lines, f"{END_MARK} {digests}"]
 
 
@@ -162,29 +162,30 @@ class IniText:
                 header = self.headers("RS274NGC")[0]
                 point = header.file, header.row
         file, row = point
-        present, texts = self.files[file], between_marks(words, lines)
-        end = line_end(present)
-        new = [text + end for text in texts]
-        if row == len(present) and present and not present[-1].endswith("\n"):
-            present[-1] += end
-            new[-1] = texts[-1]
-        present[row:row] = new
+        self._put(file, slice(row, row), between_marks(words, lines))
 
     def replace(self, section: str, key: str, value: str, words: str) -> None:
-        """Replace the first value of a key by a block, in which the user's lines are comments."""
+        """Replace the first value of a key by a block, in which the user's lines are comments.
+
+        A second line of that key would be read by nobody, but LinuxCNC's check_config refuses it.
+        """
         (line, _), *_ = self.entries(section, key)
-        lines = self.files[line.file]
         extent = slice(line.row, self._after(line.file, line.row))
-        users = [text.rstrip("\r\n") for text in lines[extent]]
-        ends = [text[len(kept) :] for text, kept in zip(lines[extent], users)]
-        if max(map(len, users)) + len(WAS) > LONGEST_BLOCK:
+        users = [WAS + text for text in self.files[line.file][extent]]
+        if max(map(len, users)) > LONGEST_BLOCK:
             raise IniError(f"{line.location}: {key} is too long; break it with a backslash")
         ours = broken_line(f"{key} = {value}")
-        begin, *block, last = between_marks(words, [*(WAS + text for text in users), *ours])
-        end = line_end(lines)
-        kept_ends = [text_end or end for text_end in ends] + [end] * len(ours)
-        block = [text + text_end for text, text_end in zip(block, kept_ends)]
-        lines[extent] = [begin + end, *block, last + ends[-1]]
+        self._put(line.file, extent, between_marks(words, [*users, *ours]))
+
+    def _put(self, file: Path, extent: slice, texts: Sequence[str]) -> None:
+        """Put lines in place of others; a missing last line end remains missing."""
+        present = self.files[file]
+        end, at_end = line_end(present), extent.stop == len(present)
+        new = [text if text.endswith("\n") else text + end for text in texts]
+        if at_end and present and not present[-1].endswith("\n"):
+            present[-1] += end
+            new[-1] = texts[-1]
+        present[extent] = new
 
     def blocks(self) -> list[list[IniLine]]:
         """Return the blocks, markers included, of the INI and its included files."""
@@ -197,10 +198,6 @@ class IniText:
                 cure = "put it back, or take out what install wrote there"
                 text = f"a marker of install without its other one: {cure}"
                 raise IniError(f"{first.location}: {text}")
-            if last.text == END_MARK:
-                cure = f"by itself first: python3 g12/python/g12 uninstall {self.path}"
-                text = f"an earlier version wrote this: take it out {cure}"
-                raise IniError(f"{last.location}: {text}")
         return blocks
 
     def words(self) -> list[str]:

@@ -89,7 +89,7 @@ def _drills(draft: Draft) -> bool:
 
 
 def _ends_here(draft: Draft) -> bool:
-    returns = draft.returns and draft.state.section == _program_begun_in(draft)
+    returns = draft.returns and draft.state.section == draft.program[0][0]  # its first block
     changes = (
         "T" in draft.letters()
         or "M6" in draft.m_codes()
@@ -97,10 +97,6 @@ def _ends_here(draft: Draft) -> bool:
         or draft.start.units != draft.state.units
     )
     return changes or draft.ends or returns or _drills(draft)
-
-
-def _program_begun_in(draft: Draft) -> int:
-    return draft.program[0][0]
 
 
 def _write_move(draft: Draft) -> None:
@@ -147,7 +143,7 @@ def _begin_section(draft: Draft) -> None:
     draft.before += [first, *lines] if absolute else [f"G90 {first}", *lines, "G91"]
     draft.change(
         polar=surface_of(draft).section,
-        section=_program_begun_in(draft),
+        section=draft.program[0][0],
         waiting=(),
         own_motion="G1",
         own_feed="other",

@@ -19,6 +19,7 @@ WALL = 0.005  # of a circle: a tenth of what a tool's diameter is measured to
 RUN = 0.001  # added for a run: one servo period at a usual feed, and the joint's resolution
 ROUNDED = 0.03  # of a run beside its path where the material decides
 SAMPLES = 8  # of a move
+TOGETHER = 32  # moves that are compared with the contour at once
 AROUND = 0.2  # mm: a move that is off its contour by less is measured from what is near it
 SAME = 1e-3
 CHORD = 1e-4  # of arcs
@@ -38,9 +39,11 @@ class Deviation(NamedTuple):
     move: int = 0
 
 
-def judge_deviations(program: TracedProgram, tolerance: float | None) -> Iterator[Finding]:
-    for cut in program.cuts:
-        found, allowed = deviation_of(cut, program), allowed_off(cut, program, tolerance)
+def judge_deviations(
+    found_of: Sequence[Deviation], program: TracedProgram, tolerance: float | None
+) -> Iterator[Finding]:
+    for cut, found in zip(program.cuts, found_of):
+        allowed = allowed_off(cut, program, tolerance)
         beside = _of_run(program.fed(cut), program)
         if found.point is not None and found.size > allowed + LAST_DECIMAL:
             at = program.words(found.move, found.point, cut.surface)
@@ -131,13 +134,16 @@ def _chords(element: CutElement, cut: Cut) -> Iterable[tuple[complex, complex]]:
 
 def _of_section(cut: Cut, program: TracedProgram) -> Deviation:
     """Return how far the moves of a section's contour are off it, without those of leads."""
-    contour, worst = _Contour(cut), Deviation()
-    for index, points in _sideways(cut, program):
-        if program.moves[index].line in cut.contour_lines:
-            points = points[:: math.ceil(len(points) / SAMPLES)]
-            off = contour.off(points[:, :2])
-            if off.max() > worst.size:
-                worst = Deviation(float(off.max()), points[off.argmax()], index)
+    contour, worst, lines = _Contour(cut), Deviation(), cut.contour_lines
+    own = [each for each in _sideways(cut, program) if program.moves[each[0]].line in lines]
+    for first in range(0, len(own), TOGETHER):
+        indices, whole = zip(*own[first : first + TOGETHER])
+        paths = [points[:: math.ceil(len(points) / SAMPLES)] for points in whole]
+        points, moves = np.concatenate(paths), np.repeat(indices, [len(each) for each in paths])
+        off = contour.off(points[:, :2])
+        if off.max() > worst.size:
+            at = off.argmax()
+            worst = Deviation(float(off[at]), points[at], int(moves[at]))
     return worst
 
 
@@ -146,12 +152,10 @@ def _of_section(cut: Cut, program: TracedProgram) -> Deviation:
 
 def circles_of(cut: Cut, program: TracedProgram) -> dict[int, float]:
     """Return the arcs about a circle's centre by their moves: the radius of the tool's centre."""
-    centre, found = np.array(cut.centre), {}
-    for index in cut.moves:
-        move = program.moves[index]
-        if move.kind == "arc" and (cut.upright or np.abs(move.centre[:2] - centre).max() < SAME):
-            found[index] = move.radius
-    return found
+    arcs = [index for index in cut.moves if program.moves[index].kind == "arc"]
+    moves, centre = program.moves, None if cut.upright else cut.centre
+    own = (i for i in arcs if not centre or math.dist(moves[i].centre[:2], centre) < SAME)
+    return {index: moves[index].radius for index in own}
 
 
 def off_circles(cut: Cut, program: TracedProgram) -> Deviation:
@@ -167,7 +171,7 @@ def _of_wall(cut: Cut, program: TracedProgram) -> Deviation:
     index = (min if cut.circle.is_boss else max)(rings, key=rings.__getitem__)
     edge = rings[index] + (-cut.cutter if cut.circle.is_boss else cut.cutter)
     off = abs(edge - (cut.circle.inner if cut.circle.is_boss else cut.circle.wall))
-    return Deviation(off, program.tip(index, 0.0)[0], index)
+    return Deviation(off, program.moves[index].start[:3], index)
 
 
 def _of_shape(cut: Cut, program: TracedProgram) -> Deviation:

@@ -32,7 +32,9 @@ WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
 CHORD = 2e-3  # of the paths that are judged
 KEPT_TIPS = 16384  # moves
+ALONG_Z = np.eye(9)[Z]
 A, B = 3, 4
+DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
 
@@ -44,15 +46,6 @@ class State(NamedTuple):
     speed: float = 0.0
     user_code: bool = False  # an M1xx came, which may turn a spindle
     length_code: str = ""  # G43, G43.1, G43.2, G49; tool: none since M6
-
-
-def dialect_of(code: str, ini: Ini) -> str | None:
-    """Return the name of the cycles that a machine's code calls."""
-    for remap in remap_lines(ini.all):
-        if remap.code == code:
-            found = re.search(r"prolog=g1[23]_(\w+)", str(remap))
-            return found[1] if found else None
-    return None
 
 
 @dataclass(frozen=True)
@@ -73,6 +66,12 @@ class TracedProgram:
     @cached_property
     def cuts(self) -> list[Cut]:
         return cuts_of(self.trace)
+
+    @cached_property
+    def dialects(self) -> dict[str, str]:
+        """The names of the cycles that the machine's codes call."""
+        names = ((each.code, DIALECT.search(str(each))) for each in remap_lines(self.ini.all))
+        return {code: name[1] for code, name in names if name}
 
     @cached_property
     def turning(self) -> bool:
@@ -225,19 +224,23 @@ class TracedProgram:
 
     @cached_property
     def uses_lengths(self) -> bool:
-        return any(abs(move.tool_offset[axis]) > SIZE for move in self.moves for axis in (X, Z))
+        return any(abs(move.tool_offset[Z]) > SIZE for move in self.moves)
 
-    def missing_length(self, index: int, axis: int = Z) -> float:
+    def missing_length(self, index: int) -> float:
         """Return by how much the loaded tool is longer than the length in force."""
-        move, table = self.moves[index], self.trace.table_at(index)
-        sizes = table.lengths if axis == Z else table.offsets
-        return sizes.get(move.tool, 0.0) - move.tool_offset[axis]
+        move, lengths = self.moves[index], self.trace.table_at(index).lengths
+        return lengths.get(move.tool, 0.0) - move.tool_offset[Z]
 
     def chosen_length(self, index: int) -> bool:
         """Return whether the length in force is one that the program gives itself, and is safe."""
         code = self.state(index).length_code
         safe = code == "G43.1" and self.missing_length(index) < 0.0
         return code == "G43.2" or safe or (code == "G49" and self.turning)
+
+    def tip_short(self, index: int) -> float:
+        """Return by how much the tip is farther out than the length in force says."""
+        used = self.uses_lengths and self.moves[index].tool > 0
+        return self.missing_length(index) if used and not self.chosen_length(index) else 0.0
 
     @cached_property
     def tip(self) -> Callable[[int, float], np.ndarray]:
@@ -248,11 +251,7 @@ class TracedProgram:
         move, part = self.moves[index], self.part_at(radius, index)
         own = self.real.positions[self.real.during(index)] if self.real else ()
         positions = np.array(own) if len(own) else part.machine_points(move, CHORD)
-        if self.uses_lengths and move.tool > 0 and not self.chosen_length(index):
-            positions = positions.copy()
-            positions[:, Z] -= self.missing_length(index)
-            positions[:, X] -= self.missing_length(index, X) * self.turning
-        points = part.points(positions)
+        points = part.points(positions - self.tip_short(index) * ALONG_Z)
         return points - (0.0, 0.0, part.centre) if radius else points
 
     def tips(self, moves: Sequence[int], radius: float = 0.0) -> np.ndarray:

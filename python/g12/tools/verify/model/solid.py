@@ -17,9 +17,9 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cut_report import PolygonCut
-from g12.tools.material.material import Material
+from g12.tools.material.material import Material, Ring
 from g12.tools.material.stock import Stock
-from g12.tools.path.part import FLAT, disc, swept
+from g12.tools.path.part import FLAT, Z, disc, swept
 from g12.tools.preview.moves import Move
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.program import TracedProgram
@@ -97,11 +97,6 @@ class Solids:
         low, first = min(own, default=(math.inf, 0))
         return bool(low + program.cutter(first) + ALONG >= self.z0)
 
-    @cached_property
-    def unbored(self) -> BaseGeometry:
-        """The stock on the face without its bores."""
-        return self._stock(FACE, self.stock._replace(bore=0.0) if self.stock else None)
-
     def of(self, side: float) -> Material:
         return self._materials[side]
 
@@ -115,9 +110,23 @@ class Solids:
             if rapid or not sides or radius <= 0:
                 continue
             side = max(sides)
-            for _, own in groupby(run, lambda index: is_circle(program.moves[index]) and index):
+            material = self._materials[side]
+            circles = groupby(run, lambda index: is_circle(program.moves[index]) and index)
+            for circle, own in circles:
+                ring = circle and self._ring(circle, radius, run[-1])
+                if ring:
+                    material.cut_ring(ring)
+                    continue
                 for piece in pieces(program.tips(list(own), side)):
-                    self._materials[side].cut(run[-1], piece, radius)
+                    material.cut(run[-1], piece, radius)
+
+    def _ring(self, index: int, radius: float, last: int) -> Ring | None:
+        """Return a full circle at one level, as it is commanded on a mill."""
+        program, move = self.program, self.program.moves[index]
+        if program.turning or program.real or move.start[Z] != move.end[Z]:
+            return None
+        level = move.start[Z] - program.tip_short(index)
+        return Ring(move.centre[:2], move.radius, radius, level, last)
 
     def standing(
         self, region: BaseGeometry, level: float, side: float, before: float = math.inf

@@ -22,9 +22,6 @@ class Spindles(NamedTuple):
     is_c: bool = False
     turning: frozenset[int] | None = frozenset()
 
-    def turns(self, spindle: int) -> bool:
-        return spindle in (self.turning or ())
-
 
 def switching_codes(ini: Ini) -> tuple[set[str], set[str]]:
     """Return the codes that make the spindle C, and those that end it."""

@@ -3,17 +3,16 @@
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from shapely.geometry import Point, Polygon
+from shapely.geometry import Point
 
 from g12.cut_report import PocketCut
 from g12.tools.path.part import C
-from g12.tools.verify.model.cut import MOST_OF_A_TURN, Outline
+from g12.tools.verify.model.cut import Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE
-from g12.tools.verify.model.solid import FACE
 from g12.tools.verify.rules.table import Site, Values, rule
 
 ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
@@ -22,7 +21,6 @@ STAYED = 1e-6
 AT_EDGE = 0.01  # mm
 LEVELS_MEANT = 3  # L2 is a spring pass
 BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
-SIDE_CODE = re.compile(r"G4([0-2])(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
 
 
@@ -67,11 +65,9 @@ def _is_said(axis: str, lines: Sequence[str]) -> bool:
     return any(word.search(line) and not BY_MACHINE.search(line) for line in lines)
 
 
-@rule("side", FINDING, "the tool comes from the other side: {instead} in line {lead}?", plain=True)
+@rule("side", FINDING, "the tool comes from the other side: {instead} in line {lead}?")
 def wrong_side(site: Site) -> Values:
-    if not site.cut:
-        return _wrong_plain_side(site)
-    for outline in site.cut.outlines:
+    for outline in site.own.outlines:
         if _is_crossed(outline, site):
             instead = "G42" if outline.left else "G41"
             lead = outline.lines[0]
@@ -92,50 +88,6 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     return low and (beside if outline.left else -beside) < -AT_EDGE
 
 
-def _wrong_plain_side(site: Site) -> Values:
-    """Judge LinuxCNC's own compensation where the tool goes round at depth."""
-    program = site.program
-    for left, lead, end in _compensated(site):
-        start, path = program.tip(lead, FACE)[0], site.program.tips(range(lead + 1, end))
-        if len(path) < 4 or start[2] > site.solids.top(FACE) - SIZE:
-            continue
-        around = Polygon(path[:, :2]).buffer(0)
-        middle = around.centroid.coords[0] if around.area else start[:2]
-        away = (path[:, :2] - middle) @ (1, 1j)
-        turned = np.angle(away[1:] * np.conj(away[:-1])).sum()
-        inside, radius = (turned > 0) == left, program.cutter(lead)
-        reached = around.buffer(radius if inside else -radius)
-        if abs(turned) > MOST_OF_A_TURN and reached.contains(Point(start[:2])) != inside:
-            line = program.moves[lead].block
-            return {"instead": "G42" if left else "G41", "lead": line, "at_line": line}
-    return None
-
-
-def _compensated(site: Site) -> Iterator[tuple[bool, int, int]]:
-    """Yield G41 or G42 of plain moves: is it G41, the move that leads in, the move of G40."""
-    program, code, lead = site.program, "", site.at
-    line = program.moves[site.at].block - 1
-    for index in site.moves:
-        block = program.moves[index].block
-        codes = SIDE_CODE.findall("\n".join(program.texts[min(line, block - 1) : block]))
-        line = block
-        if codes and codes[-1] != code:
-            if code in ("1", "2"):
-                yield code == "1", lead, index
-            code, lead = codes[-1], index
-
-
-@rule("side-missing", WARNING, "G40 without G41 or G42: the tool's centre is on the contour")
-def side_missing(site: Site) -> Values:
-    cut = site.own
-    if not cut.is_section or cut.compensated or cut.file:
-        return None
-    lines = site.program.texts[cut.line : cut.last_line + 1]
-    cancels = (n for n, text in enumerate(lines, cut.line + 1) if re.search(r"G40(?!\d)", text))
-    line = next(cancels, 0)
-    return {"at_line": line} if line else None
-
-
 @rule(
     "far-beside",
     FINDING,
@@ -149,17 +101,6 @@ def far_beside(site: Site) -> Values:
     return {"reach": reach, "bar": bar} if reach > FAR * bar + site.loaded else None
 
 
-@rule("c-length", WARNING, "C goes to {c:length}, X to {x:mm}: C is a length here, no angle")
-def long_c(site: Site) -> Values:
-    cut, stock = site.own, site.solids.stock
-    if not cut.is_section or cut.surface or (stock and stock.diameter):
-        return None
-    ends = [at for each in cut.drawn for at in (each.start, each.end)]
-    x = max((abs(at.real) for at in ends), default=0.0) * cut.mm
-    c = max((abs(at.imag) for at in ends), default=0.0) * cut.mm
-    return {"c": c, "x": x} if x > site.loaded and c > FAR * x else None
-
-
 @rule("surface", FINDING, "its radius {radius:mm} is not the bar's, {bar:mm}: is C a radius here?")
 def other_surface(site: Site) -> Values:
     stock, radius = site.solids.stock, site.own.surface
@@ -167,22 +108,6 @@ def other_surface(site: Site) -> Values:
         return None
     bar = stock.diameter / 2
     return {"radius": radius, "bar": bar} if radius > WIDE * bar else None
-
-
-@rule("beyond-axis", WARNING, "its lowest X is {size:length} beyond the axis")
-def beyond_axis(site: Site) -> Values:
-    cut = site.own
-    return {"size": -cut.floor} if cut.surface and cut.floor < -SIZE else None
-
-
-@rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled")
-def undrilled(site: Site) -> Values:
-    cut = site.own
-    if not cut.is_tap:
-        return None
-    discs = (Point(at.real, at.imag).buffer(0.2) for at in cut.places)
-    standing = (site.solids.standing(each, cut.floor, cut.surface, before=cut.at) for each in discs)
-    return {} if any(each.area > 0.01 for each in standing) else None
 
 
 @rule("same-levels", WARNING, "its {n} levels are all at Z{level:mm}: L steps in G91 only")

@@ -67,20 +67,6 @@ def spindle_unseen(site: Site) -> Values:
     return None if states and states[line].turning is not None else {}
 
 
-@rule(
-    "main-spindle",
-    FINDING,
-    "M3 or M4 of the spindle that is C: {off} or $1 is missing",
-    program=True,
-)
-def main_spindle_turns(program: TracedProgram) -> Values:
-    for line, state in enumerate(program.spindles or ()):
-        if state.is_c and state.turns(MAIN):
-            off = min(switching_codes(program.ini)[1], default="the code that ends C")
-            return {"off": off, "at_line": line}
-    return None
-
-
 @rule("m-code", FINDING, "{code} is no program in USER_M_PATH or PROGRAM_PREFIX", program=True)
 def unknown_code(program: TracedProgram) -> Values:
     ini = program.ini
@@ -112,18 +98,6 @@ def clamp_closed(program: TracedProgram) -> Values:
             if not apart and move.start[C] != move.end[C]:
                 return {"opens": opens, "at_line": program.where(index)[0]}
     return None
-
-
-@rule(
-    "clamp-unseen",
-    NOT_JUDGED,
-    "the clamp of C: its codes need ngc= in their REMAP lines",
-    once=True,
-)
-def clamp_unseen(site: Site) -> Values:
-    events = site.program.trace.events
-    unseen = site.program.ini.settings.c_clamp and not any("clamp " in e.text for e in events)
-    return {} if unseen and site.own.places else None
 
 
 @rule("c-axis", FINDING, "the spindle is no C axis here: {code} is missing", program=True)

@@ -6,7 +6,7 @@ touched off Z with its tool; any other works with the lengths of the table.
 """
 
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, NO_CUTTER, FrameCut, PocketCut, ThreadCut
-from g12.tools.path.part import X, Z
+from g12.tools.path.part import Z
 from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR
 from g12.tools.verify.rules.table import Site, Values, rule
@@ -84,49 +84,27 @@ def length_higher(site: Site) -> Values:
     return {"tool": site.tool, "off": abs(off), "how": "higher" if off < 0 else "deeper"}
 
 
-def _off_length(site: Site, axis: int = Z) -> float:
+def _off_length(site: Site) -> float:
     """Return by how much the tool is longer than the length in force, 0 without any length."""
-    return site.program.missing_length(site.at, axis) if site.program.uses_lengths else 0.0
+    return site.program.missing_length(site.at) if site.program.uses_lengths else 0.0
 
 
 def _is_chosen(site: Site) -> bool:
     return site.program.chosen_length(site.at)
 
 
-@rule(
-    "length-not-used",
-    WARNING,
-    "T{tool}'s length of {off:fine} is not used (G43): was Z touched off with it?",
-    once=True,
-    plain=True,
-)
+@rule("length-not-used", WARNING, "T{tool} is {off:fine} {how}, without G43", plain=True)
 def length_not_used(site: Site) -> Values:
-    off = site.program.missing_length(site.at)
-    if site.program.uses_lengths or abs(off) <= SIZE:
-        return None
-    return {"tool": site.tool, "off": off}
-
-
-@rule(
-    "length-mixed",
-    FINDING,
-    "T{tool} is {off:fine} {how} than T{first}, without G43: one Z0 cannot fit both",
-    plain=True,
-)
-def length_mixed(site: Site) -> Values:
+    """Compare a tool with the first one: Z may be touched off with each, else one Z0 fits one."""
     program, moves = site.program, site.program.moves
-    if program.turning or program.uses_lengths or site.tool <= 0:
+    if program.uses_lengths or site.tool <= 0:
         return None
     first = next(i for i, move in enumerate(moves) if move.kind != "rapid" and move.tool > 0)
-    off = program.missing_length(site.at) - program.missing_length(first)
-    if abs(off) <= SIZE or program.zero_at(first)[Z] != program.zero_at(site.at)[Z]:
+    own, of_first = (program.missing_length(index) for index in (site.at, first))
+    other = moves[first].tool
+    if other == site.tool:
+        return {"tool": other, "off": own, "how": "long"} if abs(own) > SIZE else None
+    if abs(own - of_first) <= SIZE or program.zero_at(first)[Z] != program.zero_at(site.at)[Z]:
         return None
-    how = "longer" if off > 0 else "shorter"
-    return {"tool": site.tool, "off": abs(off), "how": how, "first": moves[first].tool}
-
-
-@rule("offset-beside", FINDING, "it cuts {off:fine} beside: the offset in X is not T{tool}'s")
-def offset_beside(site: Site) -> Values:
-    off = _off_length(site, X)
-    beside = site.program.turning and abs(off) > SIZE and not _is_chosen(site)
-    return {"tool": site.tool, "off": abs(off)} if beside else None
+    how = f"{'longer' if own > of_first else 'shorter'} than T{other}"
+    return {"tool": site.tool, "off": abs(own - of_first), "how": how}

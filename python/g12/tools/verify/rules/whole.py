@@ -3,14 +3,14 @@
 
 import math
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
 from g12.machine_ini import face_joints
 from g12.tools.machine.stored_positions import shift_at_start
 from g12.tools.path.part import turning_points
-from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
+from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
 
@@ -48,13 +48,14 @@ def _positions(program: TracedProgram) -> tuple[np.ndarray, np.ndarray]:
 
     They are those of the moves that a work offset places.
     """
-    positions, moves = [np.empty((0, 3))], []
+    positions, moves = [], []
     for index, move in enumerate(program.moves):
         if program.is_placed or not move.by_machine:
-            own = turning_points(move)[int(index > 0) :, :3] + move.tool_offset[:3]
-            positions.append(own)
+            ends = turning_points(move) if move.kind == "arc" else (move.start, move.end)
+            own = [np.add(at[:3], move.tool_offset[:3]) for at in ends[int(index > 0) :]]
+            positions += own
             moves += [index] * len(own)
-    return np.concatenate(positions), np.array(moves, int)
+    return np.reshape(positions, (-1, 3)), np.array(moves, int)
 
 
 def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
@@ -105,30 +106,3 @@ def left_rotation(program: TracedProgram) -> Values:
 def _last_line(code: re.Pattern, program: TracedProgram) -> int:
     lines = [number for number, text in enumerate(program.texts, 1) if code.search(text)]
     return lines[-1] if lines else 0
-
-
-@rule(
-    "block-delete",
-    NOT_JUDGED,
-    "the program with block delete off: lines with / are skipped",
-    program=True,
-)
-def block_delete(program: TracedProgram) -> Values:
-    return _first_line(lambda text: text.lstrip().startswith("/"), program)
-
-
-@rule(
-    "tool-table-set",
-    NOT_JUDGED,
-    "cuts with the sizes of this G10 L1: a random tool changer",
-    program=True,
-)
-def table_set(program: TracedProgram) -> Values:
-    swaps = program.ini.swaps_pockets
-    return _first_line(lambda text: swaps and "G10" in text and "L1" in text, program)
-
-
-def _first_line(applies: Callable[[str], bool], program: TracedProgram) -> Values:
-    lines = (number for number, text in enumerate(program.texts, 1) if applies(text))
-    line = next(lines, 0)
-    return {"at_line": line} if line else None
