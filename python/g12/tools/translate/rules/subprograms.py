@@ -174,9 +174,9 @@ def unset_variables(draft: Draft, macro: int) -> Iterator[str]:
     if macro:
         for number in sorted(block.read.intersection(LOCAL_VARIABLES) - draft.start.given):
             letter = ARGUMENT_LETTERS.get(number)
-            word = f" ({letter} of the call)" if letter else ""
+            named = f" ({letter} of the call)" if letter else ""
             yield (
-                f"O{macro} reads #{number}{word}, which not every G65 P{macro} gives: it would "
+                f"O{macro} reads #{number}{named}, which not every G65 P{macro} gives: it would "
                 "be 0 on LinuxCNC"
             )
         return
