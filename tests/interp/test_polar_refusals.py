@@ -36,6 +36,8 @@ INSIDE = [  # unit/test_section_block_rules.py has every code
     ("o<s> sub", "a sub cannot be defined inside the section"),
     ("o<s> endsub", "G13.1 is missing: endsub comes before it"),
     ("M99", "G13.1 is missing: M99 comes before it"),
+    ("X12 M99", "M99 is refused: it needs a block of its own"),
+    ("X12 M98 P99", "M98 is refused: it needs a block of its own"),
     ("%", "G13.1 is missing: the program ends before it"),
     ("o<nowhere> call", "there is no sub for o<nowhere>call, in the program or as a file"),
     ("M98 P99", "there is no sub for m98p99, in the program or as a file"),

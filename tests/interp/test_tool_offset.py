@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.plot.face import programmed_history
+from g12.tools.plot.face import history_of
 from g12.tools.plot.scene import scene_of_judgement
 from support.judged_programs import prove
 from support.polar_programs import lines, section, tracer
@@ -36,7 +36,7 @@ def test_verify_finds_a_tool_that_is_elsewhere(monkeypatch):
 
 @pytest.mark.parametrize("name", WAYS)
 def test_a_picture_shows_where_slide_and_c_are(name):
-    history = programmed_history(scene_of_judgement(prove(HEXAGON, ini_of(name)).judgement))
+    history = history_of(scene_of_judgement(prove(HEXAGON, ini_of(name)).judgement))
     assert history.x[0] == pytest.approx(30)
     assert history.x.max() == pytest.approx(math.sqrt(30**2 + 18**2 - 8**2), abs=0.01)
     end = math.sqrt(30**2 + 7.7942**2 - 8**2)

@@ -308,6 +308,7 @@ ELSEWHERE = [  # control, text, the line and the beginning of its sentence
     (HAAS, "M98 P5\nM30\nO5\nG0 X[#1+1.]\nZ-#3\nWHILE[#1LT2]DO1\n#3=1.\nEND1\nM99", 5, "Z-#3: n"),
     (HAAS, "/#1=5.\nG0 X#1", 2, "X#1: nothing sets #1 before, LinuxCNC takes 0"),
     (HAAS, "G65 P5 A1.\nM30\nO5\nIF[#1EQ2]THEN#2=1\nX#2\nM99", 5, "O5 reads #2 (B of"),
+    (HAAS, "G65 P5 A1.\nM30\nO5\nX#30\nM99", 4, "O5 reads #30, which not every G65 P5 gives"),
     (HAAS, "M98 P7\nM30\nN7 M99", 1, "O7 is not in this file: put the subprogram into"),
     (HAAS, "M97 P9\nM98 P2\nM30\nN9 X1.\nM99\nO2\nM97 P9\nM99\nN9 X2.\nM99", 1,
      "N9 is in this file twice"),

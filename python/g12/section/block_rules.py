@@ -73,7 +73,9 @@ REASONS_OF_G = (
     ("{0.origin}", (520, *range(540, 600, 10), 591, 592, 593, *range(920, 924))),
 )
 REFUSED_G = {code: reason for reason, codes in REASONS_OF_G for code in codes}
-REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE)
+REASON_OF_M = dict.fromkeys((6, 61), NO_TOOL_CHANGE) | dict.fromkeys(
+    (98, 99), "it needs a block of its own"
+)
 NEEDED_WORD = {62: "P", 63: "P", 64: "P", 65: "P", 67: "E", 68: "E"}
 ORIENT = 19  # M19
 WAIT_FOR_INPUT, AT_ONCE = 66, 0  # M66, and the L that does not wait

@@ -241,6 +241,11 @@ class Material:
             return False
         return any(self._without_holes.intersects(each) for each, _ in self._turned(region))
 
+    def beyond(self, region: BaseGeometry) -> float:
+        """Return the area of a region that was never material, nor a hole of it."""
+        portions = (portion for portion, _ in self._turned(region))
+        return sum(portion.difference(self._without_holes).area for portion in portions)
+
     @cached_property
     def _without_holes(self) -> BaseGeometry:
         polygons = getattr(self.shape, "geoms", [self.shape])

@@ -5,10 +5,15 @@ import math
 from collections.abc import Iterator
 from itertools import pairwise
 
-from g12.tools.verify.model.cut import Cut
+from shapely.geometry.base import BaseGeometry
+from shapely.ops import unary_union
+
+from g12.tools.path.part import disc
+from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
+from g12.tools.verify.remains import LEAST_GONE
 
 LEVEL = 1e-3  # mm
 DEEPEST = 3.0  # times a cutter's radius: few pockets are milled so deep at once
@@ -17,6 +22,7 @@ AIR = kind("air", FINDING, "it cuts nothing: it stays {above:length} above the p
 BESIDE = kind("no-stock-met", FINDING, "it meets nothing of the stock")
 BEFORE = kind("cut-before", WARNING, "all of it was cut before: a spring pass, or the wrong place?")
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
+OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 MINUS = ": a lost minus sign?"
@@ -44,6 +50,8 @@ def _judge(cut: Cut, solids: Solids) -> Iterator[Finding]:
             yield cut.found(BESIDE, place)
         elif not cut.is_tap:
             yield cut.found(BEFORE, place)
+    elif solids.stock and material.beyond(_wanted(cut, solids)) > LEAST_GONE:
+        yield cut.found(OUTSIDE, place)
     if cut.levels and program.dialects.get(cut.code) != "bore":  # cuts by its helices
         yield from _deep(cut, solids)
     if solids.bottom - cut.floor > THROUGH:
@@ -60,3 +68,10 @@ def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
         steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
     if max(steps, default=0.0) > DEEPEST * radius:
         yield cut.found(DEEP, deep=max(steps), cutter=2 * radius)
+
+
+def _wanted(cut: Cut, solids: Solids) -> BaseGeometry:
+    """Return what a pocket, a shape or holes are to remove."""
+    radius = solids.program.cutter(cut.at)
+    holes = [disc((at.real, at.imag), radius) for at in cut.places]
+    return unary_union([NOTHING if cut.is_section else cut.goes, *holes])

@@ -11,10 +11,9 @@ from g12.tools.material.material import ALLOWED, Touch
 from g12.tools.path.part import X, Y, Z, disc
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import TracedProgram, straight_down
+from g12.tools.verify.model.program import TracedProgram, straight_down, turns_part
 from g12.tools.verify.model.solid import FACE, Solids
 
-BELOW = 1e-3  # mm
 RAPID = kind(
     "rapid", FINDING, "a rapid goes {how} {area:mm2} of material, at {at:xyz}{to:to}{hint}"
 )
@@ -33,6 +32,7 @@ PER_TURN = 0.6  # mm: no tool plunges so fast
 CHANGE = kind("change-in-part", FINDING, "the tool is changed in the part")
 STOP = kind("stop-in-part", FINDING, "the spindle stops (M5) in the part")
 START = kind("start-in-part", WARNING, "the spindle starts ({code}) in the part")
+ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
 END = kind("ends-in-part", FINDING, "the program ends with the tool in the part")
 KINDS = {"tool": CHANGE, "M5": STOP, "M3": START, "M4": START}
 PLUNGE = kind(
@@ -125,6 +125,10 @@ def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from _event(code, event, program, solids)
     if last >= 0:
         yield from (program.found(END, last, tip) for tip in in_part(last, program, solids))
+    turned = program.turned_at
+    if turned and turns_part(program.moves[turned]):
+        tips = in_part(turned - 1, program, solids)
+        yield from (program.found(ROTARY_IN_PART, turned, tip) for tip in tips)
     yield from plunges(program, solids)
 
 

@@ -173,9 +173,10 @@ def unset_variables(draft: Draft, macro: int) -> Iterator[str]:
     block = draft.block
     if macro:
         for number in sorted(block.read.intersection(LOCAL_VARIABLES) - draft.start.given):
-            letter = f" ({ARGUMENT_LETTERS[number]} of the call)" * (number in ARGUMENT_LETTERS)
+            letter = ARGUMENT_LETTERS.get(number)
+            named = f" ({letter} of the call)" if letter else ""
             yield (
-                f"O{macro} reads #{number}{letter}, which not every G65 P{macro} gives: it would "
+                f"O{macro} reads #{number}{named}, which not every G65 P{macro} gives: it would "
                 "be 0 on LinuxCNC"
             )
         return

@@ -409,8 +409,7 @@ class TracedProgram:
             return None
         if self.is_round:
             return next(filter(self._is_elsewhere, range(len(self.moves))), None)
-        turns = (i for i, m in enumerate(self.moves) if any(m.start[k] != m.end[k] for k in (A, B)))
-        return next(turns, None)
+        return next((index for index, move in enumerate(self.moves) if turns_part(move)), None)
 
     def _is_elsewhere(self, index: int) -> bool:
         """Return whether a move cuts what a round part's sections do not say."""
@@ -451,3 +450,8 @@ class TracedProgram:
 
 def straight_down(points: np.ndarray) -> bool:
     return bool(np.ptp(points[:, :2], axis=0).max() < 0.05)
+
+
+def turns_part(move: Move) -> bool:
+    """Return whether A or B turns a mill's part."""
+    return bool(move.start[A : B + 1] != move.end[A : B + 1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A section's zero line of C, its side of compensation and its place, levels that are the same."""
+"""A section's zero line of C, side and place; what is drilled; levels that are the same."""
 
 import math
 import re
@@ -19,6 +19,7 @@ ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
 SAME_ANGLE = 1e-2
 STAYED = 1e-6
 AT_EDGE = 0.01  # mm
+MIDDLE = 0.2  # mm: the radius of a hole's middle
 LEVELS_MEANT = 3  # L2 is a spring pass
 BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
@@ -108,6 +109,16 @@ def other_surface(site: Site) -> Values:
         return None
     bar = stock.diameter / 2
     return {"radius": radius, "bar": bar} if radius > WIDE * bar else None
+
+
+@rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled")
+def undrilled(site: Site) -> Values:
+    cut = site.own
+    if not cut.is_tap:
+        return None
+    middles = (Point(at.real, at.imag).buffer(MIDDLE) for at in cut.places)
+    left = (site.solids.standing(each, cut.floor, cut.surface, before=cut.at) for each in middles)
+    return {} if any(each.area > MIDDLE**2 for each in left) else None
 
 
 @rule("same-levels", WARNING, "its {n} levels are all at Z{level:mm}: L steps in G91 only")

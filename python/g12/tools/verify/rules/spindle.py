@@ -67,6 +67,20 @@ def spindle_unseen(site: Site) -> Values:
     return None if states and states[line].turning is not None else {}
 
 
+@rule(
+    "main-spindle",
+    FINDING,
+    "M3 or M4 of the spindle that is C: {off} or $1 is missing",
+    program=True,
+)
+def main_spindle_turns(program: TracedProgram) -> Values:
+    for line, state in enumerate(program.spindles or ()):
+        if state.is_c and MAIN in (state.turning or ()):
+            off = min(switching_codes(program.ini)[1], default="the code that ends C")
+            return {"off": off, "at_line": line}
+    return None
+
+
 @rule("m-code", FINDING, "{code} is no program in USER_M_PATH or PROGRAM_PREFIX", program=True)
 def unknown_code(program: TracedProgram) -> Values:
     ini = program.ini

@@ -10,7 +10,7 @@ import numpy as np
 from g12.machine_ini import face_joints
 from g12.tools.machine.stored_positions import shift_at_start
 from g12.tools.path.part import turning_points
-from g12.tools.verify.model.finding import FINDING, WARNING
+from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
 
@@ -106,3 +106,15 @@ def left_rotation(program: TracedProgram) -> Values:
 def _last_line(code: re.Pattern, program: TracedProgram) -> int:
     lines = [number for number, text in enumerate(program.texts, 1) if code.search(text)]
     return lines[-1] if lines else 0
+
+
+@rule(
+    "block-delete",
+    NOT_JUDGED,
+    "the program with block delete off: lines with / are skipped",
+    program=True,
+)
+def block_delete(program: TracedProgram) -> Values:
+    deleted = (n for n, text in enumerate(program.texts, 1) if text.lstrip().startswith("/"))
+    line = next(deleted, 0)
+    return {"at_line": line} if line else None
