@@ -24,7 +24,6 @@ from g12.tools.forms.table import CHOICE, TOOL, Entry
 
 THUMBNAIL, KEY, DASH = 56, 44, (4, 3)  # pixels: of a picture, of a key, of a rapid's dashes
 CAPTION, LETTERS = 22, 7  # letters of a line beside an entry, of an entry
-EMBEDDER = "QTVCP_FORWARD_EVENTS_TO"  # set by QtVCP
 STYLE = "entry, combobox button { min-height: 24px; padding: 0 4px; }" + "".join(
     f"#{state} {{ background: {COLOURS[state]}; color: white; padding: 4px; }}"
     for state in SENTENCES
@@ -57,8 +56,7 @@ class CyclesView(View):
         self._show_form()
 
     def _show_form(self) -> None:
-        for child in self.grid.get_children():
-            self.grid.remove(child)
+        self.grid.foreach(self.grid.remove)
         for row, entry in enumerate(self.page.entries):
             caption = entry.caption(self.page.unit)
             label = Gtk.Label(label=caption, xalign=0, wrap=True, max_width_chars=CAPTION)
@@ -108,8 +106,7 @@ class CyclesView(View):
         self.drawing.queue_draw()
 
     def _say(self, state: str, text: str) -> None:
-        self.said.set_name(state)
-        self.said.set_text(text)
+        self.said.set_properties(name=state, label=text)
 
     def _draw(self, area: Gtk.DrawingArea, cairo) -> None:
         size = area.get_allocated_width(), area.get_allocated_height()
@@ -128,8 +125,7 @@ class CyclesView(View):
             cairo.stroke()
 
     def _list_steps(self, titles: list[str], row: int) -> None:
-        for child in self.steps.get_children():
-            self.steps.remove(child)
+        self.steps.foreach(self.steps.remove)
         for title in titles:
             self.steps.add(Gtk.Label(label=title, xalign=0))
         self.steps.show_all()
@@ -152,13 +148,10 @@ def rgb(name: str) -> tuple[float, float, float]:
 
 
 def get_handlers(_halcomp, builder, _useropts) -> list:
-    """Fill in the window of GladeVCP, which asks for its handlers.
-
-    QtVCP waits for a line with the window's number, to embed it: GladeVCP 2.10 prints none.
-    """
+    """Fill in the window of GladeVCP, which asks for its handlers."""
     CyclesView(builder, os.environ["INI_FILE_NAME"], open_in_linuxcnc)
     window = builder.get_object("window1")
     window.show_all()
-    if EMBEDDER in os.environ:
+    if "QTVCP_FORWARD_EVENTS_TO" in os.environ:  # QtVCP waits for it, GladeVCP 2.10 is silent
         GLib.idle_add(lambda: print(window.get_window().get_xid(), flush=True))
     return []
