@@ -9,6 +9,7 @@ The area of a sweep is computed at its first use. Lengths are mm.
 """
 
 import math
+from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -115,6 +116,8 @@ class Material:
     def __init__(self, shape: BaseGeometry, top: float, period: float = 0.0) -> None:
         self.shape, self.top, self._period = shape, top, period
         self._sweeps: list[Removed] = []
+        self._effective: list[Removed] = []
+        self._deepest: dict[bytes, float] = {}  # level of a line and a radius
 
     def cut(self, move: int, points: np.ndarray, radius: float) -> None:
         """Remove the area swept by a cutter of a radius along points (n, 3), after those before."""
@@ -125,30 +128,36 @@ class Material:
         for portion in _portions(points):
             if portion.low < self.top:
                 for line in self._unrolled(portion.line, radius):
-                    self._sweeps.append(Sweep(line, radius, portion.low, move))
-        self.__dict__.pop("_table", None)
+                    self._add(Sweep(line, radius, portion.low, move), line)
 
     def cut_ring(self, ring: Ring) -> None:
         """Remove what a full circle sweeps, after what was removed before."""
         if ring.level < self.top:
-            self._sweeps.append(ring)
+            self._add(ring, np.array([*ring.centre, ring.around]))
+
+    def _add(self, sweep: Removed, line: np.ndarray) -> None:
+        """Add a sweep; one that an equal line made as deep before has no effect."""
+        self._sweeps.append(sweep)
+        key = np.append(line, sweep.radius).round(5).tobytes()
+        if sweep.level < self._deepest.get(key, math.inf):
+            self._deepest[key] = sweep.level
+            self._effective.append(sweep)
             self.__dict__.pop("_table", None)
 
     @cached_property
     def _table(self) -> np.ndarray:
-        """The bounds, the level and the move of each sweep: rows (6, n)."""
-        rows = [(*sweep.bounds, sweep.level, sweep.move) for sweep in self._sweeps]
+        """The bounds, the level and the move of each effective sweep: rows (6, n)."""
+        rows = [(*sweep.bounds, sweep.level, sweep.move) for sweep in self._effective]
         return np.ascontiguousarray(np.array(rows, float).reshape(-1, 6).T)
 
     def sweeps_of(self, moves: range) -> list[Removed]:
         """Return what a range of moves removes, if that stands."""
-        move = self._table[5]
-        first, last = np.searchsorted(move, (moves.start, moves.stop))
-        return self._sweeps[first:last]
+        return _of_moves(self._sweeps, moves)
 
     def removes(self, moves: range) -> bool:
         """Return whether a range of moves removes anything that stands before them."""
-        return any(self._removes(each, moves.start) for each in self.sweeps_of(moves))
+        sweeps = _of_moves(self._effective, moves)
+        return any(self._removes(each, moves.start) for each in sweeps)
 
     def _removes(self, sweep: Removed, before: int) -> bool:
         near, _ = self._near(sweep.bounds, sweep.level + SAME_LEVEL, before)
@@ -210,7 +219,7 @@ class Material:
         found = found[(y0[found] <= high_y) & (y1[found] >= low_y)]
         wider = found[(x0[found] <= low_x + NEXT) & (x1[found] >= high_x - NEXT)]
         wider = wider[(y0[wider] <= low_y + NEXT) & (y1[wider] >= high_y - NEXT)]
-        return [self._sweeps[n] for n in found], [self._sweeps[n] for n in wider]
+        return [self._effective[n] for n in found], [self._effective[n] for n in wider]
 
     def _unrolled(self, line: np.ndarray, radius: float) -> list[np.ndarray]:
         """Return a path (n, 2) for each turn of a surface that it cuts, moved to the first turn."""
@@ -261,6 +270,14 @@ class Material:
                 found.append(area)
                 where += _points_in(area, portion, radius)
         return Touch(unary_union(found).area, np.array(where)) if where else None
+
+
+def _of_moves(sweeps: list[Removed], moves: range) -> list[Removed]:
+    first, last = (
+        bisect_left(sweeps, move, key=lambda sweep: sweep.move)
+        for move in (moves.start, moves.stop)
+    )
+    return sweeps[first:last]
 
 
 def _below(top: float, points: np.ndarray) -> Iterator[Portion]:
