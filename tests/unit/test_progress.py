@@ -2,6 +2,7 @@
 """What is said while long work goes on, on a terminal and elsewhere."""
 
 import re
+import threading
 import time
 
 import pytest
@@ -43,8 +44,9 @@ def test_short_work_is_not(capsys):
 def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch, tick):
     monkeypatch.setattr(progress, "LINE_TICK", tick)
     with progress.working("running", clock=True):
+        told = until_told(capsys, "running\n")
         time.sleep(0.2)
-    assert capsys.readouterr().err == "running\n"
+    assert told + capsys.readouterr().err == "running\n"
 
 
 def test_on_a_terminal_it_is_told_for_how_long(capsys, monkeypatch):
@@ -53,6 +55,19 @@ def test_on_a_terminal_it_is_told_for_how_long(capsys, monkeypatch):
     with progress.working("running", clock=True):
         err = until_told(capsys, " s")
     assert re.search(rf"{re.escape(progress.HIDDEN)}running \d+ s", err)
+
+
+def test_an_interrupt_as_the_telling_starts_ends_it(monkeypatch):
+    class Interrupted(threading.Thread):
+        def start(self):
+            super().start()
+            raise KeyboardInterrupt
+
+    before = threading.active_count()
+    monkeypatch.setattr(threading, "Thread", Interrupted)
+    with pytest.raises(KeyboardInterrupt), progress.working("running", clock=True):
+        pass
+    assert threading.active_count() == before
 
 
 def test_an_error_ends_the_telling(capsys, monkeypatch):

@@ -30,12 +30,13 @@ def working(text: str, clock: bool = False) -> Iterator[Report]:
     now, done = [text], threading.Event()
     tick = _tick_on_terminal if sys.stderr.isatty() else _tick_in_lines
     ticker = threading.Thread(target=tick, args=(now, done, clock))
-    ticker.start()
     try:
+        ticker.start()  # an interrupt may come before it returns
         yield lambda text: now.__setitem__(0, text)
     finally:
         done.set()
-        ticker.join()
+        if ticker.is_alive():
+            ticker.join()
 
 
 def counted(items: Sequence[Item], what: str, report: Report) -> Iterator[Item]:
