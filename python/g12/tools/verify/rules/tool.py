@@ -93,18 +93,33 @@ def _is_chosen(site: Site) -> bool:
     return site.program.chosen_length(site.at)
 
 
-@rule("length-not-used", WARNING, "T{tool} is {off:fine} {how}, without G43", plain=True)
+@rule(
+    "length-not-used",
+    WARNING,
+    "T{tool}'s length of {off:fine} is not used (G43): was Z touched off with it?",
+    once=True,
+    plain=True,
+)
 def length_not_used(site: Site) -> Values:
-    """Compare a tool with the first one: Z may be touched off with each, else one Z0 fits one."""
+    off = site.program.missing_length(site.at)
+    if site.program.uses_lengths or abs(off) <= SIZE:
+        return None
+    return {"tool": site.tool, "off": off}
+
+
+@rule(
+    "length-mixed",
+    FINDING,
+    "T{tool} is {off:fine} {how} than T{first}, without G43: one Z0 cannot fit both",
+    plain=True,
+)
+def length_mixed(site: Site) -> Values:
     program, moves = site.program, site.program.moves
-    if program.uses_lengths or site.tool <= 0:
+    if program.turning or program.uses_lengths or site.tool <= 0:
         return None
     first = next(i for i, move in enumerate(moves) if move.kind != "rapid" and move.tool > 0)
-    own, of_first = (program.missing_length(index) for index in (site.at, first))
-    other = moves[first].tool
-    if other == site.tool:
-        return {"tool": other, "off": own, "how": "long"} if abs(own) > SIZE else None
-    if abs(own - of_first) <= SIZE or program.zero_at(first)[Z] != program.zero_at(site.at)[Z]:
+    off = program.missing_length(site.at) - program.missing_length(first)
+    if abs(off) <= SIZE or program.zero_at(first)[Z] != program.zero_at(site.at)[Z]:
         return None
-    how = f"{'longer' if own > of_first else 'shorter'} than T{other}"
-    return {"tool": site.tool, "off": abs(own - of_first), "how": how}
+    how = "longer" if off > 0 else "shorter"
+    return {"tool": site.tool, "off": abs(off), "how": how, "first": moves[first].tool}
