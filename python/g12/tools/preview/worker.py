@@ -3,8 +3,8 @@
 
 It imports nothing of the package, because the machine's INI decides which copy of ``g12`` the
 interpreter imports. A request is a line of JSON with ``program``, ``setup`` and ``parameter_file``,
-the answer one that ``trace`` converts to a Trace.  Every program gets a new interpreter object,
-as in a GUI that opens a program again.
+the answer lines of moves and one of the rest of a Trace.  Every program gets a new interpreter
+object, as in a GUI that opens a program again.
 """
 
 import bisect
