@@ -8,7 +8,7 @@ import numpy as np
 
 from g12.cut_report import ThreadCut
 from g12.tools.material.material import ALLOWED, Touch
-from g12.tools.path.part import X, Y, Z, disc
+from g12.tools.path.part import C, X, Y, Z, disc
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram, straight_down, turns_part
@@ -19,6 +19,7 @@ RAPID = kind(
 )
 BY_MACHINE = kind("rapid-by-machine", NOT_JUDGED, "low rapids by G53, G28 or G30")
 ROTARY = kind("rotary", NOT_JUDGED, "what follows: A or B has turned what was solid")
+C_OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed outside of a section")
 OTHER_TOOL = kind(
     "rapid-other-tool",
     NOT_JUDGED,
@@ -51,6 +52,17 @@ def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     for index, move in enumerate(program.moves):
         if move.kind == "rapid" and program.is_known(index):
             yield from _judge(index, program, solids)
+        elif move.kind == "feed" and _turns_in_bar(index, program, solids):
+            yield program.found(C_OUTSIDE, index)
+
+
+def _turns_in_bar(index: int, program: TracedProgram, solids: Solids) -> bool:
+    """Return whether C turns at feed, outside of a section, with the tool in the bar."""
+    move = program.moves[index]
+    if not program.turning or move.start[C] == move.end[C] or move.remap:
+        return False
+    slide = min(move.start[X], move.end[X]) - program.zero[X] - program.cutter(index)
+    return (not solids.bar or slide < solids.bar) and min(move.start[Z], move.end[Z]) < program.z0
 
 
 def _judge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Finding]:

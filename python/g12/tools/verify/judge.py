@@ -38,6 +38,7 @@ CAUSES = {  # a finding of one code is the cause of those of others at the same 
     "side": {"overcut", "bar-remains"},
     "place-unknown": {"deep-pass"},
     "no-tool": {"no-diameter"},
+    "offset-beside": {"off"},
 }
 
 

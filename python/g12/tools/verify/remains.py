@@ -25,6 +25,7 @@ BAR = kind(
 )
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
+BOSS = kind("boss", FINDING, "nothing of its boss remains")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
 
 
@@ -123,6 +124,9 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     What the planner compensated stays off its own contour. Its leads do not, nor do cuts round
     another island, or moves at feed that belong to no cut.
     """
+    if cut.circle.is_boss and _is_boss_gone(cut, solids):
+        yield cut.found(BOSS, (*cut.centre, cut.floor))
+        return
     if not cut.stays:
         return
     others = (each for each in program.cuts if each is not cut and each.surface == cut.surface)
@@ -138,6 +142,16 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             where = f"{line} of {file}" if file else line
             yield cut.found(OVERCUT, (at.x, at.y, level), area=swept.area, by=where)
             return
+
+
+def _is_boss_gone(cut: Cut, solids: Solids) -> bool:
+    boss, middle = cut.stays[0][0].buffer(-2 * SLACK), (cut.floor + solids.top(cut.surface)) / 2
+
+    def stands(level: float, before: float) -> bool:
+        return solids.standing(boss, level, cut.surface, before).area > LEAST_GONE
+
+    lowered = stands(middle, cut.at) and not stands(middle, np.inf)
+    return lowered or not stands(cut.floor, cut.at)
 
 
 def _cut_away(

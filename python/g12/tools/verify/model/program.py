@@ -32,7 +32,7 @@ WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
 CHORD = 2e-3  # of the paths that are judged
 KEPT_TIPS = 16384  # moves
-ALONG_Z = np.eye(9)[Z]
+ALONG_X, ALONG_Z = np.eye(9)[[X, Z]]
 A, B = 3, 4
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
@@ -224,12 +224,13 @@ class TracedProgram:
 
     @cached_property
     def uses_lengths(self) -> bool:
-        return any(abs(move.tool_offset[Z]) > SIZE for move in self.moves)
+        return any(abs(move.tool_offset[axis]) > SIZE for move in self.moves for axis in (X, Z))
 
-    def missing_length(self, index: int) -> float:
+    def missing_length(self, index: int, axis: int = Z) -> float:
         """Return by how much the loaded tool is longer than the length in force."""
-        move, lengths = self.moves[index], self.trace.table_at(index).lengths
-        return lengths.get(move.tool, 0.0) - move.tool_offset[Z]
+        move, table = self.moves[index], self.trace.table_at(index)
+        sizes = table.lengths if axis == Z else table.offsets
+        return sizes.get(move.tool, 0.0) - move.tool_offset[axis]
 
     def chosen_length(self, index: int) -> bool:
         """Return whether the length in force is one that the program gives itself, and is safe."""
@@ -237,10 +238,13 @@ class TracedProgram:
         safe = code == "G43.1" and self.missing_length(index) < 0.0
         return code == "G43.2" or safe or (code == "G49" and self.turning)
 
-    def tip_short(self, index: int) -> float:
-        """Return by how much the tip is farther out than the length in force says."""
+    def tip_beyond(self, index: int) -> np.ndarray:
+        """Return by how much the tip (9,) is farther out than the length in force says."""
         used = self.uses_lengths and self.moves[index].tool > 0
-        return self.missing_length(index) if used and not self.chosen_length(index) else 0.0
+        if not used or self.chosen_length(index):
+            return np.zeros(9)
+        beside = self.missing_length(index, X) if self.turning else 0.0
+        return self.missing_length(index) * ALONG_Z + beside * ALONG_X
 
     @cached_property
     def tip(self) -> Callable[[int, float], np.ndarray]:
@@ -251,7 +255,7 @@ class TracedProgram:
         move, part = self.moves[index], self.part_at(radius, index)
         own = self.real.positions[self.real.during(index)] if self.real else ()
         positions = np.array(own) if len(own) else part.machine_points(move, CHORD)
-        points = part.points(positions - self.tip_short(index) * ALONG_Z)
+        points = part.points(positions - self.tip_beyond(index))
         return points - (0.0, 0.0, part.centre) if radius else points
 
     def tips(self, moves: Sequence[int], radius: float = 0.0) -> np.ndarray:

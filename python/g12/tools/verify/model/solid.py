@@ -125,7 +125,7 @@ class Solids:
         program, move = self.program, self.program.moves[index]
         if program.turning or program.real or move.start[Z] != move.end[Z]:
             return None
-        level = move.start[Z] - program.tip_short(index)
+        level = move.start[Z] - program.tip_beyond(index)[Z]
         return Ring(move.centre[:2], move.radius, radius, level, last)
 
     def standing(

@@ -6,7 +6,7 @@ touched off Z with its tool; any other works with the lengths of the table.
 """
 
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, NO_CUTTER, FrameCut, PocketCut, ThreadCut
-from g12.tools.path.part import Z
+from g12.tools.path.part import X, Z
 from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR
 from g12.tools.verify.rules.table import Site, Values, rule
@@ -84,9 +84,9 @@ def length_higher(site: Site) -> Values:
     return {"tool": site.tool, "off": abs(off), "how": "higher" if off < 0 else "deeper"}
 
 
-def _off_length(site: Site) -> float:
+def _off_length(site: Site, axis: int = Z) -> float:
     """Return by how much the tool is longer than the length in force, 0 without any length."""
-    return site.program.missing_length(site.at) if site.program.uses_lengths else 0.0
+    return site.program.missing_length(site.at, axis) if site.program.uses_lengths else 0.0
 
 
 def _is_chosen(site: Site) -> bool:
@@ -123,3 +123,10 @@ def length_mixed(site: Site) -> Values:
         return None
     how = "longer" if off > 0 else "shorter"
     return {"tool": site.tool, "off": abs(off), "how": how, "first": moves[first].tool}
+
+
+@rule("offset-beside", FINDING, "it cuts {off:fine} beside: the offset in X is not T{tool}'s")
+def offset_beside(site: Site) -> Values:
+    off = _off_length(site, X)
+    beside = site.program.turning and abs(off) > SIZE and not _is_chosen(site)
+    return {"tool": site.tool, "off": abs(off)} if beside else None
