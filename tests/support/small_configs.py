@@ -137,10 +137,10 @@ def planned(ini: Path, *names: str, pins: Pins | None = None, options: str = "",
 
 def put_in(ini: Path, *names: str, **options) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
-    has_backups, plan = bool(IniText(ini).words()), planned(ini, *names, **options)
+    plan = planned(ini, *names, **options)
     copy = ini.parent / features.COPY
     files = {} if package_copy.is_current(copy) else package_copy.package_files()
-    return list(installation.write_all(plan.text.changes(), copy, files, has_backups))
+    return list(installation.write_all(plan.text.changes(), copy, files))
 
 
 def take_out(ini: Path) -> list[str]:

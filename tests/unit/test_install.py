@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What `install` writes and `uninstall` takes out; without LinuxCNC."""
 
+import os
 import re
 import shutil
 import subprocess
@@ -208,6 +209,7 @@ def test_machines_share_the_copy_and_an_included_path_until_the_last_goes(tmp_pa
     with restored(other):
         put_in(ini, "haas")
         put_in(other, "haas")
+        assert sorted(tmp_path.glob("other.ini.*")) == [tmp_path / "other.ini.before-g12"]
         said = take_out(ini)
         assert any("another INI of this folder uses it" in line for line in said)
         assert IniText(other).ini().get("RS274NGC", "SUBROUTINE_PATH") == "a:g12/ngc"
@@ -310,17 +312,24 @@ def test_the_copy_stays_while_the_users_lines_need_it(tmp_path, ini):
 # Writing.
 
 
-def test_modes_links_and_old_versions_are_kept(tmp_path):
+def test_modes_links_and_old_versions_are_kept(tmp_path, monkeypatch):
     target, link = tmp_path / "real.ini", tmp_path / "mill.ini"
     target.write_text(MILL)
-    target.chmod(0o640)
+    target.chmod(0o600)
     link.symlink_to("real.ini")
     (tmp_path / "mill.ini.before-g12").write_text("an older one\n")
+    seen, put = set(), os.replace
+
+    def watched(new, path):
+        put(new, path)
+        seen.add((os.path.basename(path), os.stat(path).st_mode))
+
+    monkeypatch.setattr(os, "replace", watched)
     with restored(link):
         said = put_in(link, "haas")
         assert any(line.endswith("as it was: mill.ini.before-g12.2") for line in said)
-        modes = {path.stat().st_mode for path in (target, tmp_path / "mill.ini.before-g12.2")}
-        assert link.is_symlink() and modes == {0o100640}
+        assert seen == {(name, 0o100600) for name in ("real.ini", "mill.ini.before-g12.2")}
+        assert link.is_symlink()
     target.write_text("two\n")
     assert files.backup_of(target) == tmp_path / "real.ini.before-g12"
 

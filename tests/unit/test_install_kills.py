@@ -29,6 +29,8 @@ OLD = {
 NEW = {**{name: OLD[name] for name in OLD if "gone" not in name},
        "ngc/g12_mitsubishi.ngc": b"(two)\n"}  # fmt: skip
 CHANGES = {f"os.{name}" for name in ("mkdir", "rename", "remove", "rmdir", "chmod", "chown")}
+RS274NGC = "[RS274NGC]\nPARAMETER_FILE = mill.var\n"
+TWO_FILES = MILL.replace(RS274NGC, "[PYTHON]\nPATH_APPEND = own\n") + "#INCLUDE codes.inc\n"
 EDITED = "g12/ngc/g12_mitsubishi.ngc"
 small_package = package_of(OLD)
 
@@ -66,7 +68,7 @@ def test_every_file_is_old_or_new_and_a_second_run_completes_it(
 ):
     folder, kept = tmp_path / "mill", tmp_path / "kept"
     folder.mkdir()
-    ini = write_config(folder, MILL)
+    ini = write_config(folder, TWO_FILES, codes_inc=f"{RS274NGC}[EMCMOT]\n")
     work = take_out if command == "uninstall" else install
     if not exchanges:  # as on NFS
         monkeypatch.setattr(package_copy.LIBC, "renameat2", lambda *_: -1)
@@ -82,7 +84,8 @@ def test_every_file_is_old_or_new_and_a_second_run_completes_it(
     renew(folder, kept)
     while killed_at(number, lambda: work(ini)):
         now = content_of(folder)
-        assert now[ini.name] in (before[ini.name], after[ini.name])
+        for name in (ini.name, "codes.inc"):
+            assert now[name] in (before[name], after[name])
         if exchanges:
             assert copy_in(now) in (copy_in(before), copy_in(after))
         work(ini)

@@ -17,7 +17,7 @@ from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.features import COPY
 from g12.tools.install.config.findings import WARNING, ConfigFinding, refuse, refuse_problems
-from g12.tools.install.config.ini_edit import IniLine, IniText, other_inis
+from g12.tools.install.config.ini_edit import BEGIN_MARK, IniLine, IniText, other_inis
 from g12.tools.install.config.loaded import codes_of, load_config, remaps_in
 from g12.tools.install.config.screen import HERE
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
@@ -28,7 +28,6 @@ from g12.tools.machine.files import (
     backups_of,
     difference,
     equal_backups,
-    take_after,
     write,
 )
 from g12.tools.machine.ini import broken_line
@@ -74,7 +73,7 @@ def install(
     if dry_run:
         yield "dry run: nothing was written"
         return
-    yield from write_all(changes, copy, files, has_backups=bool(earlier))
+    yield from write_all(changes, copy, files)
     yield "next: restart LinuxCNC, then try in MDI or with a program:"
     yield from (f"  {features.first_step(feature)}" for feature in requested)
     yield f"to take it out again: {COMMAND} uninstall {text.path}"
@@ -108,20 +107,23 @@ def question_of(control: Control, words: str) -> Iterator[str]:
 
 
 def write_all(
-    changes: Mapping[Path, bytes], copy: Path, files: Mapping[str, bytes], has_backups: bool
+    changes: Mapping[Path, bytes], copy: Path, files: Mapping[str, bytes]
 ) -> Iterator[str]:
-    """Put a new copy and the changed files in place, a backup of the user's first."""
+    """Put a new copy and the changed files in place, a backup of the user's first.
+
+    A file with lines of an earlier installation has one.
+    """
     for path in changes:  # its owner may protect it
         path.open("r+b").close()
     for name in package_copy.replace(copy, files) if files else ():
         yield f"{copy / name}: your version, kept beside the new one"
     for path, content in changes.items():
-        backup = path if has_backups else backup_of(path)
+        present = path.read_bytes()
+        backup = path if BEGIN_MARK.encode() in present else backup_of(path)
         if not backup.exists():
-            write(backup, path.read_bytes())
-            take_after(backup, path)
+            write(backup, present, model=path)
         write(path, content)
-        yield f"{path}: changed" + f"; as it was: {backup.name}" * (not has_backups)
+        yield f"{path}: changed" + f"; as it was: {backup.name}" * (backup != path)
 
 
 # The trial.

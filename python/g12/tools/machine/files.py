@@ -45,8 +45,8 @@ def difference(path: Path, content: bytes) -> Iterator[str]:
     return difflib.unified_diff(old, new, str(path), f"{path} (new)", lineterm="", n=2)
 
 
-def write(path: Path, content: bytes) -> None:
-    """Write a file atomically; mode and owner stay."""
+def write(path: Path, content: bytes, model: Path | None = None) -> None:
+    """Write a file atomically; mode and owner stay, or are those of another file."""
     path = path.resolve()  # replaces a link's target, not the link
     unfinished = f".{path.name}.g12-"
     for left in path.parent.glob(f"{glob.escape(unfinished)}????????"):  # by one that was killed
@@ -57,7 +57,7 @@ def write(path: Path, content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        take_after(Path(name), path)
+        take_after(Path(name), model or path)
         os.replace(name, path)
     except BaseException:
         os.unlink(name)
