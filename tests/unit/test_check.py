@@ -100,6 +100,7 @@ ONE_FINDING = [  # an INI, what else is there, what is found and a part of what 
     (GOOD, {"remap": {**HANDLERS, "cycle_done": "remap"}}, "no-import", "has no cycle_done"),
     (GOOD + "[G12]\nCLEARING = squares\n", {}, "setting",
      "[G12] CLEARING = squares: must be rings or spiral"),
+    (GOOD + "[G12]\nLIVE_SPINDLE = inf\n", {}, "setting", "[G12] LIVE_SPINDLE = inf: must be "),
     (GOOD + "[G12]\n[G12]\nPOLAR_Z = allow\n", {}, "setting", "[G12] occurs twice"),
     (GOOD + "[g12]\nPOLAR_Z = allow\n", {}, "setting", "[g12]"),
     (GOOD + "[G12]\nC_CLAMP = M8 M9\nC_CLAMP_SHAPES = M110\n", {"files": {"nc_files__M110": ""}},

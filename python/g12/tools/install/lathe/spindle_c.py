@@ -290,8 +290,8 @@ def live_spindle_missing(config: Config) -> Iterator[ConfigFinding]:
 
     One whose spindle becomes C may have no live tool.
     """
-    named = leading_number(config.ini.get(INI_SECTION, LIVE_SPINDLE) or "") or 0
-    live = int(named or any(PROLOG in remap.handlers for _, remap in config.remaps))
+    named = int((config.settings and config.ini.get(INI_SECTION, LIVE_SPINDLE)) or 0)
+    live = named or int(any(PROLOG in remap.handlers for _, remap in config.remaps))
     spindles = leading_number(config.ini.get("TRAJ", "SPINDLES") or "") or 1
     loading = (LOADS_MOTION.match(substituted(line.text, config)) for line in all_hal(config))
     loaded = next((int(found[1] or 1) for found in loading if found), spindles)
