@@ -131,6 +131,18 @@ CONTOURS = [  # control's blocks P to Q, the same as LinuxCNC's, start, cycle, d
         "G0 X52. Z2.", "G72 W1.5 R.5\nG72 P10 Q20 U.4 W.2 F.3", 1.5, 0.2 + 0.2j, True, True,
         id="facing",
     ),
+    pytest.param(  # the way back is over the collar, which is higher than the start
+        "N10 G0 X22.\nG1 Z-10.\nX60.\nZ-20.\nX52. Z-25.\nN20 X56.",
+        "G0 X22 Z2\nG1 Z-10\nX60\nZ-20\nX52 Z-25\nX56",
+        "G0 X50. Z2.", "G71 U2. R.5\nG71 P10 Q20 U.4 W0 F.3", 2.0, 0.2j, False, True,
+        id="collar",
+    ),
+    pytest.param(  # a level at the top of an arc, which rounding puts beyond it
+        "N10 G0 X12.6\nG1 Z-9.\nG3 X12.6 Z-21. R7.5\nG1 Z-24.\nN20 X32.6",
+        "G0 X12.6 Z2\nG1 Z-9\nG3 X12.6 Z-21 R7.5\nG1 Z-24\nX32.6",
+        "G0 X30.6 Z2.", "G71 U1.5 R.5\nG71 P10 Q20 U0 W0 F.3", 1.5, 0.0, False, True,
+        id="crest",
+    ),
 ]  # fmt: skip
 
 
@@ -145,6 +157,7 @@ def test_roughing_leaves_the_allowance_and_finishing_is_the_contour(
     moves = moves_of(tracer, f"{HEAD['fanuc-lathe']}{start}\n{cycle}\n{blocks}")[1:]
     part = Part(tracer, f"{start}\n{drawn}", allowance, along_x, outside)
     uncut = check_roughing(part, moves, depth, corner)
+    assert moves[-1].end == near(first)
     high = beside(part.high, np.maximum)
     assert (uncut - high <= depth + SLIP).all()
     assert (uncut - high > depth / 2).any()  # the last level does not lie on the contour
@@ -159,6 +172,10 @@ def test_roughing_leaves_the_allowance_and_finishing_is_the_contour(
             assert move.centre == pytest.approx(there.centre, abs=0.001)
             assert move.turns == there.turns
     assert finished[-1].end == near(first)
+    back = [points_of(move) for move in finished[len(moves) + len(own) :]]
+    cells, depths = part.seen(np.concatenate(back) + allowance)
+    inside = (cells >= 0) & (cells < len(part.low))
+    assert (depths[inside] >= beside(part.low, np.minimum)[cells[inside]] - SLIP).all()
 
 
 @pytest.mark.parametrize("seed", range(8))

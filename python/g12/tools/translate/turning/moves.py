@@ -169,18 +169,19 @@ def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
         at, code = move.end, move.code if words else code
 
 
-def return_by(start: complex, end: complex, side: int) -> list[CycleMove]:
-    """Return the rapids from a contour's end to the start, first away from the part in X.
+def return_by(start: complex, ends: Sequence[complex], side: int) -> list[CycleMove]:
+    """Return the rapids from the last of a contour's ends to the start, clear of all of them.
 
     ``side`` is 1 where the tool is outside of the part, -1 in a bore.
     """
-    clear = side * max(side * start.imag, side * end.imag)
+    end, clear = ends[-1], side * max(side * point.imag for point in (start, *ends))
     ways = [complex(end.real, clear), complex(start.real, clear), start]
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
 def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
-    return [*moves_along(contour, True), *return_by(start, contour[-1].end, _tool_side(contour))]
+    ends = [move.end for move in contour]
+    return [*moves_along(contour, True), *return_by(start, ends, _tool_side(contour))]
 
 
 def _tool_side(contour: Sequence[ContourMove]) -> int:
@@ -297,7 +298,7 @@ def thread_pass(start: complex, thread: Thread, up: float = 0.0) -> list[CycleMo
     if chamfer > SAME:
         out = complex(end.real, turning.imag + side * chamfer)
         moves.append(CycleMove("G33", out, None, pitch_along(out - turning, thread.lead)))
-    return [*moves, *return_by(start, moves[-1].end, side)]
+    return [*moves, *return_by(start, [moves[-1].end], side)]
 
 
 def pitch_along(path: complex, lead: float) -> float:
