@@ -38,6 +38,9 @@ CONSTRUCTS = [
     ("haas-mill", "G65 P5 A2.\nG65 P5 A3.\nM30\nO5\nIF[#1EQ2]M99\nX#1\nM99", "X3"),
     # drilling cycles
     ("haas-mill", "G81 Z.5 R.9 L0\nX2.\nG80", "G81 X2 Z.5 R.9\nG80\nG0"),
+    ("haas-mill", "G81 Z.5 R.9 L0\n#1=0\nWHILE[#1LT3]DO1\nX[2.+.5*COS[120.*#1]] "
+     "Y[.5*SIN[120.*#1]]\n#1=#1+1\nEND1\nG80",
+     "G81 X2.5 Y0 Z.5 R.9\nX1.75 Y.4330127\nY-.4330127\nG80\nG0"),
     ("haas-mill", "G81 X2. Z.5\nG80", "G81 X2 Z.5 R1\nG80\nG0"),
     ("haas-mill", "G91 G81 X.5 Z-.4 L2\nG80 G90", "G91 G81 X.5 Z-.4 R0 L2\nG80\nG90 G0"),
     ("haas-mill", "G83 X2. Z.5 R.9 Q.2\nG81 X3.\nG80",

@@ -228,6 +228,8 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G54 G154 P1", "G54 and G154 in one block"),
     (HAAS, "G154", "G154 needs P and a whole number"),
     (HAAS, "G10 L5 P1 X1.", "G10 needs L2"),
+    (HAAS, "G71 I1. J15. K9. L6", "G71: holes on an arc: a block for each, X centre + I*COS["),
+    (HAAS, "G72 I1. J15. L6", "G72: holes in a row: a block for each, X start + n*I*COS[J], Y st"),
     (HAAS, "M98", "M98 needs P"),
     (HAAS, "M98 P5 Q7", "M98 P with Q7: a program is called from its beginning"),
     (HAAS, "M99 P5", "M99 P5: LinuxCNC has no jumps: write IF […] before each block, or WHILE"),
@@ -608,6 +610,7 @@ REFUSED_OFTEN = [
     (LATHE, "T0101|G90 X9. Z1. F.1", "this begins at the tool's position"),
     (FANUC, "#1=#4001", "#4001 means something else"),
     (FANUC, "GOTO10", "GOTO10 is a jump"),
+    (HAAS, "G70 I1. J15. L6", "G70: holes on a circle"),
     (FANUC, "G31 Z1.", "G31: a skip function"),
     (LATHE, "G68", "G68: mirror image"),
 ]
@@ -627,6 +630,12 @@ CURES = [  # a control of one's own: what it is based on and says; a program of 
     ("fanuc-mill", '[variables]\n4001 = "#500"', "#1=#4001"),
     ("fanuc-mill", "", "M98 P9810\nM30\nO9810\nM99"),
     ("fanuc-mill", "", "#1=0\nWHILE[#1LT2]DO1\nIF[#1EQ1]G0 X1.\n#1=#1+1\nEND1"),
+    (
+        "haas-mill",
+        "",
+        "G81 Z-1. R.1 F9. L0\n#1=0\nWHILE[#1LT6]DO1\n"
+        "X[50.+30.*COS[60.*#1]] Y[40.+30.*SIN[60.*#1]]\n#1=#1+1\nEND1\nG80",
+    ),
     ("fanuc-lathe", '[tools]\npatterns = ["TTTOO"]', "T30303"),
     ("fanuc-lathe-b", "", "G90\nG0 X40. Z1.\nG95\nG77 X9. Z1. F.1"),
     ("fanuc-lathe", "", "T0101|G0 X50. Z5.\nG90 X9. Z1. F.1"),
