@@ -16,13 +16,11 @@ from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import TYPE_CHECKING, NamedTuple, Self
+from typing import NamedTuple, Self
 
 from g12.cut_report import CutReport
 from g12.machine_ini import AXIS_LETTERS
-
-if TYPE_CHECKING:  # it needs patiencediff, which a screen's Python may lack
-    from g12.tools.machine.filter import OpenedProgram
+from g12.tools.machine.filter import OpenedProgram
 
 MESSAGE = "message "  # begins the text of an event
 G92_OFF_CODE = 922  # 2.9 lists G92.2 where no G92 offset is active, 2.10 nothing
