@@ -25,6 +25,7 @@ BAR = kind(
 )
 CORE = kind("core", WARNING, "a core of {area:mm2} remains in its middle")
 OVERCUT = kind("overcut", FINDING, "{area:mm2} of what it leaves are cut away in line {by}")
+MEETS = kind("meets", WARNING, "it and the cut of line {other} go into each other's walls")
 BOSS = kind("boss", FINDING, "nothing of its boss remains")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
 
@@ -37,6 +38,7 @@ def judge_remains(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from too_far(cut, solids)
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
+    yield from meeting([cut for cut in program.cuts if cut.is_circle and not cut.upright])
 
 
 # ------------------------------------------------------------ what should be gone
@@ -169,3 +171,16 @@ def _cut_away(
         kept_off = [i for i in cut.moves if program.moves[i].line not in loose]
         swept = swept.difference(solids.swept_in(swept, kept_off, cut.surface)[0])
     return swept, first if swept.area > LEAST_GONE else None
+
+
+def meeting(circles: list[Cut]) -> Iterator[Finding]:
+    """Yield pockets and bosses that go into each other's walls."""
+    heights = np.array([cut.zero[2] for cut in circles])
+    centres = np.array([complex(*cut.centre) for cut in circles])
+    walls = np.array([cut.circle.wall for cut in circles])
+    for index, cut in enumerate(circles):
+        apart, own = np.abs(centres[:index] - centres[index]), walls[index]
+        within = apart <= np.abs(walls[:index] - own) + SLACK
+        level = np.abs(heights[:index] - heights[index]) < SLACK
+        for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
+            yield cut.found(MEETS, other=circles[other].line)
