@@ -40,6 +40,13 @@ def test_wrong_words_are_reported_in_one_line(name, capsys):
     assert said.count("\n") == 1
 
 
+@pytest.mark.parametrize("words", [["--list", "--control", "haas-mill"], ["part.nc"]])
+def test_translate_needs_a_control_and_a_program_or_lists_the_controls(words, capsys):
+    code, said = ends(capsys, "translate", *words)
+    assert code == 2
+    assert "--control and a program are needed, or --list alone" in said
+
+
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_is_plain_text_with_examples(name, capsys):
     sub = ["record"] if name == "regress" else []

@@ -83,8 +83,9 @@ def command_parser() -> Parser:
 def parsed(arguments: list[str]) -> argparse.Namespace:
     parser = command_parser()
     options = parser.parse_args(arguments)
-    if not options.list and not (options.control and options.program):
-        parser.error("--control and a program are needed, or --list")
+    given = options.control, options.program
+    if any(given) if options.list else not all(given):
+        parser.error("--control and a program are needed, or --list alone")
     return options
 
 
