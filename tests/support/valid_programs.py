@@ -380,7 +380,8 @@ def _free(text, *_):
 # ---------------------------------------------------------------- sections on a cylinder
 
 
-ROUND_A_MILLS = {"a": tuple("AXZ"), "reversed": tuple("AXZ"), "b": tuple("BYZ")}  # angle, along its axis, height
+# The letters of the angle, along its axis, and of the height.
+ON_MILL = {"a": ("A", "X", "Z"), "reversed": ("A", "X", "Z"), "b": ("B", "Y", "Z")}
 
 
 def cylinder_program(chance, unit, count, kind=""):
@@ -388,8 +389,8 @@ def cylinder_program(chance, unit, count, kind=""):
 
     ``kind`` sloping: the height may change along lines, and G7.1 has diameters; a, b: on a mill.
     """
-    text = Text(chance, unit, polar=kind not in ROUND_A_MILLS)
-    text.turn, text.along, text.height = ROUND_A_MILLS.get(kind, tuple("CZX"))
+    text = Text(chance, unit, polar=kind not in ON_MILL)
+    text.turn, text.along, text.height = ON_MILL.get(kind, ("C", "Z", "X"))
     text.sloping, text.reversed = kind == "sloping", kind == "reversed"
     text.diameter, text.shifts = text.polar and chance.random() < 0.5, text.shifts[:1]
     tools = (AXIAL if text.polar else CUTTERS)[unit]
