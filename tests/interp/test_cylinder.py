@@ -105,7 +105,6 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
     ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
     ("G18 G7.1 C30", "G7.1 must be alone in its block"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
-    ("G41", "G41 needs a G1 with C or Z in its own block"),
     ("G1 Z501", "the Z axis would go to 501 mm, beyond its limit 500 mm"),
 ]  # fmt: skip
 

@@ -133,22 +133,6 @@ def ends(traced):
 # Positions and feeds.
 
 
-def test_positions_are_mm_whatever_the_program_uses(mill):
-    metric = mill.trace_text("G21\nG1 X25.4 Y-12.7 F254\nG2 X50.8 I12.7")
-    inch = mill.trace_text("G20\nG1 X1 Y-.5 F10\nG2 X2 I.5")
-    assert [move.end for move in metric.moves] == [near(move.end) for move in inch.moves]
-    assert [move.feed for move in metric.moves + inch.moves] == near([254.0] * 4)
-    assert metric.moves[1].centre == near((38.1, -12.7, 0.0))
-    assert metric.moves[1].turns == -1
-    assert {*metric.moves} == {*metric.moves[::-1]}  # moves are values: no list in them
-
-
-def test_an_inch_machine_gives_the_same(ini, mill):
-    blocks = "G21 G1 X10 F100\nG20 X1\nG3 X2 R.5"
-    inch = trace_text(blocks, ini, overrides={"TRAJ": {"LINEAR_UNITS": "inch"}})
-    assert ends(mill.trace_text(blocks)) == list(map(near, ends(inch)))
-
-
 def test_work_offset_g92_and_rotation_are_resolved(mill):
     offsets = {5221: 100.0, 5222: 50.0, 5230: 90.0}
     assert ends(mill.trace_text("G1 X10 Y5 F100", parameters=offsets)) == [near((95.0, 60.0, 0.0))]
@@ -290,27 +274,7 @@ def test_messages_come_with_their_line(mill):
     assert traced.messages == expected
 
 
-def test_what_is_printed_is_kept_apart(mill):
-    for text, printed in (("(print,one #<_metric>)", "one 1.000000\n"), ("G1 X1 F1", "")):
-        assert mill.trace_text(text).printed == printed
-
-
 # State.
-
-
-def test_modes_and_variables_after_the_program(mill):
-    traced = mill.trace_text("G20\nG91 G18 G61 G95 F.1 S500\nG0 X1")
-    for code in ("G0", "G20", "G91", "G18", "G61", "G95"):
-        assert code in traced.modes.gcodes
-    assert (traced.modes.feed, traced.modes.speed) == (0.1, 500.0)
-    assert traced.state["distance_mode"] == 1
-    assert traced.position[0] == near(25.4)
-    assert "G90" in mill.trace_text("G91 G0 X1\nM2").modes.gcodes
-
-
-def test_parameters_are_reported(mill):
-    traced = mill.trace_text("#<_mine> = 3\n(print,#5221)", parameters={5221: 7.0})
-    assert (traced.globals, traced.printed) == ({"_mine": 3.0}, "7.000000\n")
 
 
 def test_setup_comes_first_and_is_not_reported(mill):
@@ -391,11 +355,3 @@ def test_a_plane_of_u_v_and_w_is_refused_by_its_line(code, mill):
     assert error.line == 3
     assert error.text.startswith(f"{code}: ")
     assert mill.trace_text("G17\nG1 X1 F1\nM2").error is None
-
-
-def test_an_interpreter_that_was_killed_meanwhile_is_started_again(ini):
-    with Tracer(ini) as tracer:
-        tracer.kill()
-        with pytest.raises(TraceFailure, match="died"):
-            tracer.trace_text("G1 X1 F1")
-        assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]

@@ -128,24 +128,6 @@ def test_a_comment_that_stops_the_program_leaves_the_programs_modes(stop):
         assert "wrapped" in lathe.errors()[0].text.lower()
 
 
-def test_abort_then_mdi_then_the_program_again(lathe):
-    lathe.feed_override(0.1)
-    lathe.open_text(part())
-    lathe.start()
-    lathe.wait_for(lambda status: status.motion_line == 8)
-    lathe.abort()
-    lathe.feed_override(1.0)
-    assert {"G90", "G94", "G64", "G40"} <= set(lathe.stat().modes.gcodes)
-    lathe.mdi("G0 X25")
-    assert lathe.stat().position[0] == pytest.approx(25)
-    lathe.mdi("G0 X20 C0")
-    assert lathe.errors() == []
-    again = lathe.run_text(part())
-    assert again.error is None
-    assert on_the_part(again.samples)
-    assert set(again.samples.line[again.samples.kind == FEED].tolist()) == {6, 7, 8, 9, 10}
-
-
 @pytest.mark.parametrize(("start", "cut"), [(6, {7, 8}), (10, {11, 13})])
 def test_run_from_a_line_before_and_behind_a_section(lathe, start, cut):
     program = [FIRST, "G0 X20 Z5 C0", "T1 M6", "F1500", "G1 X19", "G12.1", "X15", "C3", "G13.1",
@@ -187,6 +169,16 @@ def test_waiting_for_an_input(lathe):
     lathe.wait_idle()
     assert lathe.errors() == []
     assert Cut(lathe.samples()).points[-1] == pytest.approx((10, 5), abs=1e-4)
+
+
+@pytest.mark.parametrize(("on", "x"), [(True, 12), (False, 9)])
+def test_block_delete_is_the_operators_inside_too(lathe, on, x):
+    lathe.block_delete(on)
+    lathe.motion_of(
+        section("G1 X12", "/X9", "o1 if [1]", "/ G1 C1", "o1 endif", "C0", feed="F3000")
+    )
+    lathe.block_delete(False)
+    assert lathe.stat().position[0] == pytest.approx(x)
 
 
 def test_program_stops_inside(lathe):
