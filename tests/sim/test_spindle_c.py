@@ -225,7 +225,8 @@ def test_holes_with_the_live_tool(lathe):
 
 def test_an_abort_in_a_hole_leaves_the_spindle_as_c_and_the_modes(lathe):
     holes = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [120] [0] [0] [0]"
-    lathe.open_text([*FIRST, "T1 M6", "M254", "G7 G0 X80 Z5 C0", holes, "M2"])
+    start = [*FIRST, "T1 M6", "M254", "G7 G0 X80 Z5 C0"]
+    lathe.open_text(["%", *start, *[holes] * 200, "%"])  # LinuxCNC is still reading holes
     lathe.start()
     lathe.wait_for(lambda status: status.position[2] < 0)
     lathe.abort()
