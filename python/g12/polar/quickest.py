@@ -79,7 +79,7 @@ class _Span(NamedTuple):
         return (self.last - self.first) * self.element.length
 
 
-def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimits) -> OnFace:
+def quickest(path: Sequence[PathElement], stopping: Sequence[bool], limits: FaceLimits) -> OnFace:
     """Return a path with its moves divided so that it takes the least time.
 
     ``stopping``, given and returned, holds for each element whether it ends in a stop.
