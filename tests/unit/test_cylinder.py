@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, PlaneNames, Start
+from g12.compensation.contour import Contour, Start
 from g12.cylinder import (
     CYLINDER_WORDS,
     CYLINDERS,
@@ -20,7 +20,7 @@ from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock
-from g12.section.effects import codes_with_word
+from g12.section.effects import codes_of_section
 from g12.section.line import BlockLocation
 from g12.settings import Settings
 from support import planned_moves
@@ -46,9 +46,8 @@ START = with_found(
 
 def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
-    names = PlaneNames(*CYLINDER_WORDS.plane, centre=CYLINDER_WORDS.centre_name)
     start = Start(z, math.radians(c), x)
-    return Contour(math.radians(c) * RADIUS, z, x, names=names, start=start)
+    return Contour(math.radians(c) * RADIUS, z, x, plane=CYLINDER_WORDS.plane, start=start)
 
 
 def runs(contour, tolerance=0.005, **accelerations):
@@ -158,7 +157,7 @@ def test_where_no_section_begins(found, rule):
 
 
 def test_one_code_switches_on_and_off():
-    codes = codes_with_word("G7.1", [], "cylinder_mode", "C")
+    codes = codes_of_section("G7.1", [], "cylinder_mode", "cylinder_mode", "C")
 
     def block(g=71, **words):
         return SectionBlock((-1, g), (), g, words)

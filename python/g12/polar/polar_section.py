@@ -189,15 +189,15 @@ class PolarSteps(StepMaker):
         if not limits:
             super().make_all(path, stopping)
             return
-        path, stopping, stretches = quickest(path, stopping, limits)
-        for element, stop, stretch in zip(path, stopping, stretches):
+        divided = list(quickest(path, stopping, limits))
+        for element, stop, stretch in divided:
             self._switch(element.line, stretch)
             if stretch and isinstance(element, Motion):
                 self._cut_on_face(element)
             else:
                 self.make(element, stop)
         self._switch(path[-1].line if path else 0, None)
-        self.finish(path)
+        self.finish([element for element, _, _ in divided])
 
     def _switch(self, line: int, stretch: FaceStretch | None) -> None:
         """Switch to the face for a stretch of the path, or back (None), if not there already."""

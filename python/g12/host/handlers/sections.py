@@ -33,7 +33,7 @@ from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
 from g12.section.block_rules import alone
-from g12.section.effects import SectionCodes, SectionStart, codes_of_section, codes_with_word
+from g12.section.effects import SectionCodes, SectionStart, codes_of_section
 from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
 
@@ -291,4 +291,5 @@ def _rotary_axis() -> str:
 
 
 def _cylinder_codes(letter: str, code: str) -> SectionCodes:
-    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, letter)
+    handler = cylinder_mode.__name__
+    return codes_of_section(code, MACHINE.remaps.values(), handler, handler, letter)
