@@ -4,7 +4,7 @@
 from math import hypot, pi, radians
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from g12.polar.face import FaceLimits, MoveDemands
@@ -74,6 +74,7 @@ circles = st.builds(
 
 @settings(max_examples=100)
 @given(st.one_of(ways, circles), st.sampled_from([QUICK, SLOW]))
+@example([circle(28, 26.75, 463.0)], QUICK)  # C accelerates most between two points
 def test_all_of_the_path_is_made_and_followed(path, limits):
     made, _, shares = made_of(path, limits)
     assert length_of(made) == pytest.approx(length_of(path))

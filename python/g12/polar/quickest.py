@@ -88,7 +88,8 @@ def quickest(
             best, least, chosen = spans, seconds, share
         if len(spans) == len(path) and all(span.feed for span in spans):
             break  # all of it at the programmed feed: a lower acceleration is slower
-    for on_face, run in _stretches(best):
+    best = [one if _is_followed(one, limits, chosen) else one._replace(feed=0.0) for one in best]
+    for on_face, run in _stretches(_worth_it(best)):
         moves = [_move_of(span) for span in run]
         in_plane = [move for move in moves if isinstance(move, PlaneMove)]
         stretch = _highest(in_plane, limits, chosen) if on_face else None
@@ -179,6 +180,14 @@ def _stretches(spans: list[_Span]) -> Iterator[tuple[bool, list[_Span]]]:
 
 def _joined(run: list[_Span]) -> _Span:
     return run[0]._replace(last=run[-1].last)
+
+
+def _is_followed(span: _Span, limits: FaceLimits, share: float) -> bool:
+    """Return whether C and the slide follow a portion also between the points of its move."""
+    move = _move_of(span)
+    if not span.feed or span.length == span.element.length or not isinstance(move, PlaneMove):
+        return True
+    return MoveDemands(move, limits).can_be_followed(share)
 
 
 def _move_of(span: _Span) -> PathElement:
