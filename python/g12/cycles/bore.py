@@ -36,7 +36,7 @@ def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
         rule = f"is longer than the hole, {number(hole.depth)} from its top to Z: it is no feed"
         raise words.refuse_word("P", pitch, rule)
     check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
-    if opened < 2 * cutter.radius:
+    if opened < first:  # the end of the cutter is over material up to its centre
         check_slope(words, pitch, first, settings.entry_angle)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
     words.check_count(circles, "P, Q and L make")
