@@ -22,8 +22,7 @@ from g12.tools.commands.arguments import (
 )
 from g12.tools.commands.cut import run_text
 from g12.tools.errors import ProgramError
-from g12.tools.headless.machine import Run
-from g12.tools.headless.run import run_anyhow
+from g12.tools.headless.machine import Run, run_anyhow
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.ended import block_at, explained_text
