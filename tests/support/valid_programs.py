@@ -56,6 +56,10 @@ class Text:
         at = " ".join(f"{letter}{self.n(self.between(*ends))}" for letter, *ends in words)
         self.add("G10 L2 P1" if self.polar else self.one_of("G10 L2 P1", "G10 L2 P1", "G52"), at)
 
+    def height(self, k):
+        """Return a shift of Z before the first cut; later the part would stand higher or lower."""
+        return [("Z", -3, 3)] * (k == 0)
+
     def wrapped(self, first, name):
         """Put the lines from ``first`` on into a sub, a condition or a loop, as often as not."""
         body, kind = self.lines[first:], self.one_of("sub", "if", "repeat", "", "", "")
@@ -85,8 +89,7 @@ def pocket_program(chance, unit, count, add_pocket):
         x, y = (PITCH * (place - (ROWS - 1) / 2) for place in (k % ROWS, k // ROWS))
         if chance.random() < 0.15:
             text.add("G90 G0", f"Z{text.n(20)}")
-            height = [("Z", -3, 3)] * (k == 0)  # later on others would stand higher than a rapid
-            text.shift(("X", -20, 20), ("Y", -20, 20), *height)
+            text.shift(("X", -20, 20), ("Y", -20, 20), *text.height(k))
         first = len(text.lines)
         text.add("G90 G0", f"Z{text.n(20)}")
         add_pocket(text, loaded, CUTTERS[unit][loaded] / 2, x, y)
@@ -249,7 +252,7 @@ def polar_program(chance, unit, count, kind=""):
             text.add(f"S{SPEED} M3")
         in_sub, times = chance.random() < 0.3, chance.choice([1, 1, 2, 3])
         if chance.random() < 0.15:
-            text.shift(("X", 0, 8), ("Z", -3, 3))
+            text.shift(("X", 0, 8), *text.height(k))
         if in_sub:
             text.add(f"o{100 + k} sub")
             text.add(f"G0 Z{text.n(5)}")  # zero may have been moved up to the tool
@@ -467,7 +470,7 @@ def shapes_program(chance, unit, count, _kind=""):
             text.add(f"T{loaded} M6 G43")
             text.add(f"S{SPEED} M3")
         if chance.random() < 0.15:
-            text.shift(("X", 0, 8), ("Z", -3, 3), ("C", 0, 1))
+            text.shift(("X", 0, 8), *text.height(k), ("C", 0, 1))
         text.add(f"G0 X{_x(text, 60)} Z{text.n(5)}")
         first = len(text.lines)
         name, entries = chance.choice([_polygon_call, _slot_call, _pocket_call])(
