@@ -17,10 +17,6 @@ from support.made_moves import Hand
 MILL, FACE = Part(turning=False), Part(turning=True)
 
 
-def position(x=0.0, y=0.0, z=0.0, c=0.0):
-    return np.array([[x, y, z, 0, 0, c, 0, 0, 0]], float)
-
-
 @pytest.mark.parametrize(
     ("centre", "unit", "place"), [(12.7, UNITS["mm"], "X12.7"), (-12.7, UNITS["inch"], "X−0.5")]
 )
@@ -28,11 +24,6 @@ def test_where_x0_lies(centre, unit, place):
     shifted = Part(turning=True, centre=centre)
     assert part.x0_text(shifted, unit) == f"X0, the spindle's axis, is at machine {place}"
     assert part.x0_text(FACE, unit) == ""
-
-
-def test_the_face_turns_counterclockwise_with_c():
-    assert np.allclose(FACE.points(position(x=10, z=-5, c=90)), [[0, 10, -5]])
-    assert np.allclose(FACE.points(position(x=10, c=-30)), [[10 * math.cos(math.pi / 6), -5, 0]])
 
 
 @given(radius=st.floats(0.01, 500), sweep=st.floats(0.01, 2 * math.pi), error=st.floats(1e-5, 0.1))
@@ -69,12 +60,6 @@ def test_chords_of_a_spiral_stay_within_the_error(x, turn, start):
     share = (np.arange(len(line) - 1) + 0.5) / (len(line) - 1)
     middle = (start + (x - start) * share) * np.exp(1j * np.radians(turn) * share)
     assert np.abs(middle - (line[1:] + line[:-1]) / 2).max() < 1.5 * part.CHORD_ERROR
-
-
-def test_paths_join_moves_and_break_at_gaps():
-    hand = Hand().line(x=10).line(x=10, y=10).rapid(x=50).line(x=60)
-    cutting = [move for move in hand.moves if move.kind != "rapid"]
-    assert [len(line) for line in part.paths(MILL, cutting)] == [3, 2]
 
 
 def ring(radius):
