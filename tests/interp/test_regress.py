@@ -331,37 +331,43 @@ def wrong(shop, *words):
     return errors[0][len("g12 regress: ") :]
 
 
-def test_wrong_uses_of_an_empty_directory(shop):
-    program = shop.write("plain.ngc", PLAIN)
-    empty = shop.programs / "empty"
-    empty.mkdir()
-    where = f"{shop.recordings}: nothing is recorded there"
-    assert wrong(shop, "check") == f"{where} (no regress.json)"
-    assert wrong(shop, "record", "--ini", INI) == f"{where}; name the programs"
-    assert wrong(shop, "record", program) == f"{where}; name the machine, --ini"
-    assert wrong(shop, "record", "no.ngc", "--ini", INI) == "no.ngc: no such file or folder"
-    assert wrong(shop, "record", program, "--ini", "no.ini") == "no.ini: no such file"
-    assert wrong(shop, "record", empty, "--ini", INI) == (
-        f"{empty}: no programs in this folder (.ngc, .nc, .tap, .gcode, .min, .eia)"
-    )
-    assert wrong(shop, "record", program, "--ini", INI, "--tools", "no.tbl") == (
-        "no.tbl: no such file"
-    )
-    assert not shop.recordings.exists()
-    shop.recordings.write_text("a file")
-    assert wrong(shop, "record", program, "--ini", INI) == f"{shop.recordings}: not a directory"
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        ("check", "REGRESS: nothing is recorded there (no regress.json)"),
+        (f"record --ini {INI}", "REGRESS: nothing is recorded there; name the programs"),
+        ("record PLAIN", "REGRESS: nothing is recorded there; name the machine, --ini"),
+        (f"record no.ngc --ini {INI}", "no.ngc: no such file or folder"),
+        ("record PLAIN --ini no.ini", "no.ini: no such file"),
+        (f"record EMPTY --ini {INI}",
+         "EMPTY: no programs in this folder (.ngc, .nc, .tap, .gcode, .min, .eia)"),
+        (f"record PLAIN --ini {INI} --tools no.tbl", "no.tbl: no such file"),
+        (f"record PLAIN --ini {INI} -d PLAIN", "PLAIN: not a directory"),
+    ],
+)  # fmt: skip
+def test_wrong_uses_of_an_empty_directory(shop, words, problem):
+    names = {"PLAIN": shop.write("plain.ngc", PLAIN), "EMPTY": shop.programs / "empty"}
+    names["EMPTY"].mkdir()
+    if words.endswith("-d PLAIN"):
+        shop.recordings, words = names["PLAIN"], words.removesuffix(" -d PLAIN")
+    said = wrong(shop, *(names.get(word, word) for word in words.split()))
+    for name, path in {**names, "REGRESS": shop.recordings}.items():
+        problem = problem.replace(name, str(path))
+    assert said == problem and not (shop.folder / "regress").exists()
 
 
 def test_wrong_uses_of_a_recorded_directory(pocket):
     elsewhere = pocket.write("other.ngc", PLAIN, pocket.folder / "elsewhere")
-    assert "use another -d" in wrong(pocket, "record", elsewhere)
-    program = pocket.programs / "pocket.ngc"
-    assert "is recorded on" in wrong(pocket, "record", program, "--ini", SIM / "mill_mm.ini")
-    assert wrong(pocket, "check", "no.ngc") == f"no.ngc: not recorded in {pocket.recordings}"
-    assert wrong(pocket, "check", "--programs", "no") == "no: no such file or folder"
-    assert wrong(pocket, "check", "--tools", "no.tbl") == "no.tbl: no such file"
-    assert wrong(pocket, "check", "--ini", "no.ini") == "no.ini: no such file"
-    about = pocket.recordings / "regress.json"
+    program, about = pocket.programs / "pocket.ngc", pocket.recordings / "regress.json"
+    for words, problem in (
+        (["record", elsewhere], "; use another -d for it"),
+        (["record", program, "--ini", SIM / "mill_mm.ini"], ": name no programs to record it"),
+        (["check", "no.ngc"], f"no.ngc: not recorded in {pocket.recordings}"),
+        (["check", "--programs", "no"], "no: no such file or folder"),
+        (["check", "--tools", "no.tbl"], "no.tbl: no such file"),
+        (["check", "--ini", "no.ini"], "no.ini: no such file"),
+    ):
+        assert wrong(pocket, *words).endswith(problem)
     text = about.read_text(encoding="utf-8")
     without = (json.dumps({**json.loads(text), key: None}) for key in ("ini", "programs"))
     other = text.replace('"format": 1', '"format": 2')
@@ -372,16 +378,14 @@ def test_wrong_uses_of_a_recorded_directory(pocket):
 
 
 def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
-    path = pocket.trace("pocket.ngc")
+    path, other = pocket.trace("pocket.ngc"), pocket.trace("sub/plain.ngc")
     path.write_text("<<<<<<< mine\n", encoding="utf-8")
     assert wrong(pocket, "check") == (
         f"{path}: not a trace, or one that was edited: line 1: not 'g12 trace 1'"
     )
-    other = pocket.trace("sub/plain.ngc")
     other.write_text(other.read_text(encoding="utf-8") + "junk\n", encoding="utf-8")
     assert "something after the end" in wrong(pocket, "check", "sub/plain.ngc")
-    assert pocket.run("record")[0] == 0
-    assert pocket.check()[0] == 0
+    assert pocket.run("record")[0] == pocket.check()[0] == 0
 
 
 def test_a_machine_that_does_not_load_is_one_line(shop):

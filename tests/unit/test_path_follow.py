@@ -95,6 +95,19 @@ def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     assert real.deviation[places > 2].max() < 1e-6
 
 
+def test_a_line_that_linuxcnc_names_late_or_early_has_its_neighbours_path():
+    """Blended: the tool is 2 mm beyond the move of the line."""
+    hand = Hand().line(x=40).next_block().arc(1, 40, 10, x=50, y=10).next_block().line(y=50)
+    along = np.linspace(0, 40 + 5 * math.pi + 40, 2000)
+    for shift in (2.0, -2.0):
+        ends = [40 + shift, 40 + 5 * math.pi + shift]
+
+        def named(samples, ends=ends):
+            samples.line[:] = 1 + np.searchsorted(ends, along)
+
+        assert run_of(hand, change=named).deviation.max() < 1e-3
+
+
 def test_the_tool_length_offset_is_taken_off():
     hand = Hand().line(x=20)
     hand.offset = (0, 0, 30.0, *HOME[3:])

@@ -62,6 +62,12 @@ def test_chords_of_a_spiral_stay_within_the_error(x, turn, start):
     assert np.abs(middle - (line[1:] + line[:-1]) / 2).max() < 1.5 * part.CHORD_ERROR
 
 
+def test_paths_join_moves_and_break_at_gaps():
+    hand = Hand().line(x=10).line(x=10, y=10).rapid(x=50).line(x=60)
+    cutting = [move for move in hand.moves if move.kind != "rapid"]
+    assert [len(line) for line in part.paths(MILL, cutting)] == [3, 2]
+
+
 def ring(radius):
     return MILL.polyline(Hand().rapid(x=radius).arc(1, 0, 0).moves[1])
 
