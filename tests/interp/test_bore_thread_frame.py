@@ -45,6 +45,7 @@ WRONG = {  # words that replace those of a good block, and a word of the rule
         "J1": "not a word", "I9": "cross a core", "Q7": "tool diameter", "D0": "no diameter",
         "L99990": "P, Q and L make",
     },
+    "G13.5 Z-5 R0 I4.1 K4 P3 D1": {"K1": "ENTRY_ANGLE", "K": "ENTRY_ANGLE"},
     "G13.5 Z-5 R0 I20 K7 P1 D1": {"K6": "cross", "K7.9": "cross", "Q.00001": "P, Q and L make"},
     "G12.6 Z-9 R0 I6 K2 P1 H1 D3": {"K.05": "too thin", "E.45": "no diameter", "E.434": "too thin"},
     "G12.6 Z-9 R0 I6 P1 D1": {
@@ -79,6 +80,12 @@ def test_a_wrong_word_is_refused_and_nothing_moves(metric, good, wrong, rule):
     assert traced.error is not None and len(traced.moves) == 1
     assert rule in traced.error.text
     assert traced.error.text.startswith(f"{code} line 4: ")
+
+
+def test_a_helix_may_be_steep_where_its_centre_runs_over_an_open_hole(metric):
+    steep = "G13.5 Z-5 R0 I4.1 K4 P3 D1"
+    traced = metric.trace_text([*BEFORE.splitlines(), steep, "M2"])
+    assert traced.error is None and min(move.end[2] for move in traced.moves) == -5
 
 
 @KINDS

@@ -28,11 +28,11 @@ from g12.cut_report import (
     more_text,
     report_text,
 )
-from g12.cycles import mitsubishi, yasnac
+from g12.cycles import haas, mitsubishi, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
-from g12.cycles.haas import plan_pocket
 from g12.cycles.plan import EventPlanes
-from g12.request import LEFT_OUT, Words
+from g12.request import CLOCKWISE, LEFT_OUT, Words
+from g12.settings import Settings
 from g12.shapes import holes, pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.shapes.holes import HoleMachine
@@ -41,7 +41,7 @@ from g12.tools.preview.reports import read_report
 from support.planner_context import MM, words_of
 
 TOOLS = {1: Tool(1, 5.0), 2: Tool(2, 2.0)}
-MILL = MM._replace(z=1.0, spindle_tool=TOOLS[1], tool_in_table=TOOLS.get)
+MILL = MM._replace(z=1.0, spindle_tool=TOOLS[1], tools=TOOLS)
 LATHE = MM._replace(x=30.0, z=5.0, speed=500.0, spindle_tool=TOOLS[2])
 BY_D1, NO_D = UsedCutter(5.0, "D", 1), UsedCutter(0.0, "")
 LOADED_1, LOADED_2 = UsedCutter(5.0, "loaded", 1), UsedCutter(2.0, "loaded", 2)
@@ -49,7 +49,7 @@ FRAME = ProgramFrame(1.0, (0.0, 0.0, 0.0, 0.0), 0.0, False)
 
 
 def cut_of(planner, words, *arguments, found=MILL):
-    return planner(Words("G12", words_of(words), found), *arguments).cut()
+    return planner(Words("G12", words_of(words), found), *arguments).cut
 
 
 def shape_cut(planner, names, values, machine):
@@ -76,7 +76,7 @@ def shape_cut(planner, names, values, machine):
     ],
 )  # fmt: skip
 def test_a_haas_block(words, found, cut):
-    assert cut_of(plan_pocket, words, found=found) == cut
+    assert cut_of(haas.plan, words, CLOCKWISE, Settings(), found=found) == cut
 
 
 @pytest.mark.parametrize(
@@ -89,14 +89,14 @@ def test_a_haas_block(words, found, cut):
     ],
 )  # fmt: skip
 def test_a_yasnac_block(words, cut):
-    assert cut_of(yasnac.plan_circle, words) == cut
+    assert cut_of(yasnac.plan, words, CLOCKWISE, Settings()) == cut
 
 
 @pytest.mark.parametrize(("plane", "level"), [("G17", 3.0), ("G18", 2.0), ("G19", 1.0)])
 def test_a_mitsubishi_block_in_each_plane(plane, level):
     found = MILL._replace(plane=plane, x=1.0, y=2.0, z=3.0)
     cut = PocketCut(plane, (1.0, 2.0, 3.0), 20.0, 20.0, 0.0, 10.0, (level,), BY_D1)
-    assert cut_of(mitsubishi.plan_circle, "I20 D1", found=found) == cut
+    assert cut_of(mitsubishi.plan, "I20 D1", CLOCKWISE, Settings(), found=found) == cut
 
 
 EVENTS = {

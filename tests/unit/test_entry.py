@@ -5,12 +5,13 @@ import re
 
 import pytest
 
-from g12.cycles.plan import PocketEntry, pocket_descent
+from g12.cycles.plan import pocket_descent
 from g12.errors import Refusal
 from g12.request import Words
+from g12.settings import Settings
 from support.planner_context import MM
 
-HELIX = PocketEntry(helix=True, angle=3.0)
+HELIX = Settings(entry="helix", entry_angle=3.0)
 
 
 def down(first, *heights, cutter=5.0):

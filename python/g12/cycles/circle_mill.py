@@ -38,13 +38,12 @@ from g12.request import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
-    CycleExtent,
     Words,
     loaded_tool,
     opposite,
     steps_between,
 )
-from g12.state import XY, Tool
+from g12.state import Tool
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
@@ -193,10 +192,10 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
     heights = first_plane, second_plane, final
-    words.check_travel(CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
+    words.check_travel((circle.x, circle.y, final), largest, heights)
     return CyclePlan(
         position | roughing | depths | side | feeds,
-        lambda: cut_of_event(entries, circle, tool, depths),
+        cut_of_event(entries, circle, tool, depths),
         None,
         uncut_material(words, roughing["roughing_width"], tool),
         given,

@@ -18,6 +18,7 @@ from g12.errors import Refusal
 from g12.geometry.curve import Arc
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame, run_code
+from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, ParsedBlock, words_in
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
@@ -33,7 +34,7 @@ from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
 from g12.section.block_rules import alone
-from g12.section.effects import SectionCodes, SectionStart, codes_of_section, codes_with_word
+from g12.section.effects import SectionCodes, SectionStart, codes_of_section
 from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
 
@@ -241,11 +242,14 @@ def polar_off(self, **words) -> Iterator[int]:
     """Leave the face that an interrupted section has left on: the handler of G13.1 outside one.
 
     Otherwise it is a safety line. Typed in MDI it restores what an interrupted section left where
-    no ON_ABORT_COMMAND did.
+    no ON_ABORT_COMMAND did. With P it is itself the command of an earlier version of the package.
     """
     block = self.blocks[self.remap_level]
     if words_in(block, MOVE_WORDS):
         raise Refusal("must be alone in its block", messages.code_of_block(self))
+    if block.p_flag:
+        aborts.by_earlier_command(self)
+        return
     if is_typed(self):
         borrowed.restore_left(self)
     messages.settle(self)
@@ -291,4 +295,5 @@ def _rotary_axis() -> str:
 
 
 def _cylinder_codes(letter: str, code: str) -> SectionCodes:
-    return codes_with_word(code, MACHINE.remaps.values(), cylinder_mode.__name__, letter)
+    handler = cylinder_mode.__name__
+    return codes_of_section(code, MACHINE.remaps.values(), handler, handler, letter)
