@@ -14,7 +14,7 @@ from g12.tools.machine.filter import OpenedProgram, filter_for, lines_of_source,
 from g12.tools.machine.ini import read_ini
 from g12.tools.system import PYTHON
 from support.foreign_programs import FOREIGN
-from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
+from support.sim_machines import ROOT, SIM, copy_of_machines
 from support.small_configs import put_in, write_config
 
 POCKET = """\
@@ -143,17 +143,8 @@ def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):
     ],
 )
 def test_each_machine_opens_programs_of_its_control(capsys, machine, program):
-    path = FOREIGN / f"{program}.nc"
-    ini = SIM / f"{machine}.ini"
-    assert ".nc" in "".join(read_ini(ini).all("FILTER", "PROGRAM_EXTENSION"))
+    path, ini = FOREIGN / f"{program}.nc", SIM / f"{machine}.ini"
     assert main.main(["trace", str(path), "--ini", str(ini)]) == 0, capsys.readouterr().err
-
-
-def test_a_program_without_a_filter_is_the_users_file(sim):
-    program = PROGRAMS / "haas" / "O60121.ngc"
-    with opened_program(program, read_ini(sim / "mill_inch.ini")) as opened:
-        assert (opened.path, opened.lines) == (program, ())
-        assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
 
 
 def test_screens_open_both_cases_through_the_filter(tmp_path):
