@@ -16,7 +16,7 @@ from operator import attrgetter
 import emccanon
 from interpreter import MODE_ABSOLUTE, MODE_INCREMENTAL
 
-from g12.compensation.contour import Contour, PlaneNames, Start
+from g12.compensation.contour import Contour, Start
 from g12.errors import number
 from g12.host import messages
 from g12.host.interp import (
@@ -77,7 +77,8 @@ class SectionReader:
             second,
             level,
             code=kind.start.location.code,
-            names=PlaneNames._make((*known.plane, known.centre_name)),
+            plane=known.plane,
+            centre=known.centre_name,
             radius_tolerance=rules.radius_tolerance,
             start=Start(there[slide], radians(there[turn]), there[height]),
             beside=rules.beside,

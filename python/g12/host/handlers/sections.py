@@ -34,7 +34,7 @@ from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionKind, SectionMachine
 from g12.polar.polar_section import Polar
 from g12.section.block_rules import alone
-from g12.section.effects import SectionCodes, SectionStart, codes_of_section, codes_with_word
+from g12.section.effects import SectionCodes, SectionStart, codes_of_section
 from g12.section.line import BlockLocation
 from g12.shapes import SHAPE_SUBS
 
@@ -267,8 +267,8 @@ def cylinder_mode(self, **words) -> Iterator[int]:
     if given.get(letter) != 0.0:
         refuse_typed(self)
         messages.settle(self)
-        remaps = MACHINE.remaps.values()
-        codes = codes_with_word(code, remaps, cylinder_mode.__name__, letter)
+        remaps, handler = MACHINE.remaps.values(), cylinder_mode.__name__
+        codes = codes_of_section(code, remaps, handler, handler, letter)
         yield from run_section(self, CYLINDERS[letter], codes)
     elif words_in(block, MOVE_WORDS.replace(letter, "")):
         raise Refusal(f"{letter}0 must be alone in its block", code)

@@ -154,7 +154,7 @@ def shape_machine(section: Polar) -> ShapeMachine:
         entry_angle=MACHINE.settings.entry_angle,
         plunge_share=MACHINE.settings.plunge_feed / 100,
         pole=POLE_SHARE * section.tolerance,
-        pole_refused=section.planning.pole_refused,
+        pole_refused=section.pole_refused,
         nearest=abs(beside) + section.tolerance if beside else 0.0,
     )
 
