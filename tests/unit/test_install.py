@@ -8,7 +8,7 @@ import subprocess
 from types import SimpleNamespace
 
 import pytest
-from hypothesis import HealthCheck, given
+from hypothesis import HealthCheck, example, given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
@@ -18,7 +18,7 @@ from g12.tools.commands.main import main
 from g12.tools.install import package_copy
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniText
 from g12.tools.machine import files
-from g12.tools.machine.ini import IniError, read_ini
+from g12.tools.machine.ini import IniError
 from support.small_configs import (
     MILL,
     content_of,
@@ -119,13 +119,20 @@ def test_a_second_feature_joins_the_first_and_again_is_nothing_new(tmp_path):
     assert put_in(ini, "mitsubishi") == []
 
 
+KEYS = ("A", "B", "DEBUG")
 VALUES = st.sampled_from(["", " ", "a", "a:b", "a = b", "\xe9", "\udce9", "x \\\n y", "[y]"])
 LINES = st.one_of(
     st.sampled_from(["", " ", "\t", "# note", "; note", "#REMAP = G12", "#INCLUDE more.inc"]),
-    st.builds("{} = {}".format, st.sampled_from(["A", "  B", "DEBUG"]), VALUES),
+    st.builds("{}{} = {}".format, st.sampled_from(["", "  "]), st.sampled_from(KEYS), VALUES),
     st.builds("SUBROUTINE_PATH = {}".format, st.sampled_from(["a", "a:b", "../x:~/y ", "a:\\\nb"])),
     st.sampled_from(["[RS274NGC]", "[PYTHON]", "[TRAJ]", " [EMC]", "[RS274NGC] ", "TOPLEVEL = x"]),
 )
+
+
+def values_of(ini):
+    """Return the user's own values, by section and key."""
+    found, sections = IniText(ini).ini(), ("EMC", "PYTHON", "RS274NGC", "TRAJ")
+    return {(section, key): found.all(section, key) for section in sections for key in KEYS}
 
 
 @given(
@@ -135,6 +142,7 @@ LINES = st.one_of(
     st.sampled_from(["\n", "\r\n"]),
     st.booleans(),
 )
+@example([], ["#INCLUDE more.inc"] * 2, ["SUBROUTINE_PATH = a"], "\n", False)
 @hypothesis_settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
     tmp_path_factory, first, last, included, end, ended
@@ -144,8 +152,10 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
     text = end.join([*first, "[RS274NGC]", *last]) + (end if ended else "")
     ini = write_config(folder, text, more_inc=more.encode("utf-8", "surrogateescape").decode(
         "utf-8", "replace"))  # fmt: skip
+    before = values_of(ini)
     with restored(ini):
         put_in(ini, "haas")
+        assert values_of(ini) == before
         if "\r\n" in text and "\n" not in text.replace("\r\n", ""):
             assert b"\n" not in ini.read_bytes().replace(b"\r\n", b"")
         assert ini.read_bytes().endswith(b"\n") == text.endswith("\n")
@@ -169,22 +179,6 @@ def test_markers_that_are_not_both_there_are_refused(tmp_path, ini, capsys, mark
 
 
 # Included files, and several machines in a folder.
-
-
-def test_lines_go_into_the_include_if_its_section_ends_there(tmp_path):
-    base = (
-        "[EMC]\n#INCLUDE deeper.inc\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n[TRAJ]\n"
-    )
-    ini = write_config(tmp_path, "#INCLUDE base.inc\nCOORDINATES = X Y Z\n", base_inc=base)
-    before = ini.read_bytes()
-    with restored(ini):
-        put_in(ini, "haas")
-        assert ini.read_bytes() == before
-        found = IniText(ini).ini()
-        assert found.lines == read_ini(ini).lines
-        assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
-        assert found.get("TRAJ", "COORDINATES") == "X Y Z"
-        assert found.get("EMC", "VERSION") == "1.1"
 
 
 def test_machines_share_the_copy_and_an_included_path_until_the_last_goes(tmp_path):
