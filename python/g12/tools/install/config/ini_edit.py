@@ -126,6 +126,10 @@ class IniText(IniFiles):
 
     def _put(self, file: Path, extent: slice, texts: Sequence[str]) -> None:
         """Put lines in place of others; a missing last line end remains missing."""
+        hosts = {line.host for line in self.lines() if line.file == file}
+        if file != self.path and len(hosts) > 1:  # a line of it is one of several sections
+            cure = f"write the lines of one of them into {self.path.name} itself"
+            raise IniError(f"{file.name}: would have to change, and is included twice: {cure}")
         present = self.files[file]
         end, at_end = line_end(present), extent.stop == len(present)
         new = [text if text.endswith("\n") else text + end for text in texts]
