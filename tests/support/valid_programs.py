@@ -390,7 +390,7 @@ def cylinder_program(chance, unit, count, kind=""):
     ``kind`` sloping: the height may change along lines, and G7.1 has diameters; a, b: on a mill.
     """
     text = Text(chance, unit, polar=kind not in ON_MILL)
-    text.turn, text.along, text.height = ON_MILL.get(kind, ("C", "Z", "X"))
+    text.turn, text.along, text.deep = ON_MILL.get(kind, ("C", "Z", "X"))
     text.sloping, text.reversed = kind == "sloping", kind == "reversed"
     text.diameter, text.shifts = text.polar and chance.random() < 0.5, text.shifts[:1]
     tools = (AXIAL if text.polar else CUTTERS)[unit]
@@ -400,7 +400,7 @@ def cylinder_program(chance, unit, count, kind=""):
         radius = text.between(15, 60)
         z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
         if chance.random() < 0.15:
-            text.shift((text.height, -3, 3), (text.along, -9, 9))
+            text.shift((text.deep, -3, 3), (text.along, -9, 9))
         text.add(f"T{loaded} M6 G43")
         text.add(f"S{SPEED} M3")
         text.add("G0", _height(text, 90), "" if text.polar else {"A": "Y0", "B": "X0"}[text.turn])
@@ -420,7 +420,7 @@ def cylinder_program(chance, unit, count, kind=""):
 
 
 def _height(text, radius):
-    return f"{text.height}{_x(text, radius)}"
+    return f"{text.deep}{_x(text, radius)}"
 
 
 def _around(text, radius, point, words="G1", more=""):
