@@ -12,7 +12,7 @@ from g12.cut_report import PocketCut
 from g12.tools.path.part import C
 from g12.tools.verify.model.cut import Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
-from g12.tools.verify.model.program import SIZE
+from g12.tools.verify.model.program import SIZE, SUB_BEGIN
 from g12.tools.verify.rules.table import Site, Values, rule
 
 ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
@@ -52,7 +52,8 @@ def _is_round(angle: float) -> bool:
 )
 def place_unknown(site: Site) -> Values:
     cut, program = site.own, site.program
-    if cut.file or program.has_subs or not (cut.is_circle or cut.is_section):
+    has_subs = program.calls_files or any(map(SUB_BEGIN.search, program.texts))
+    if cut.file or has_subs or not (cut.is_circle or cut.is_section):
         return None
     lines = program.texts[: cut.line - cut.report.incremental]
     unsaid = [axis for axis in ("XZ" if program.turning else "XYZ") if not _is_said(axis, lines)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The tool, D and the tool length where the program cuts.
+"""The tool, D, the tool length and the feed where the program cuts.
 
 LinuxCNC believes G43's H as the cycles believe D. A program that never commands G43 may have
 touched off Z with its tool; any other works with the lengths of the table.
@@ -11,6 +11,8 @@ from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR
 from g12.tools.verify.rules.table import Site, Values, rule
 
+MOST_PER_TURN = 3.0  # mm, of a feed
+
 
 @rule("no-tool", FINDING, "no tool is loaded: T and M6 are missing", once=True, plain=True)
 def no_tool(site: Site) -> Values:
@@ -20,7 +22,7 @@ def no_tool(site: Site) -> Values:
 @rule("no-diameter", FINDING, "T{tool} has no diameter in the tool table")
 def no_diameter(site: Site) -> Values:
     cut = site.own
-    needs = not cut.is_section or cut.compensated
+    needs = not cut.is_section or any(each.side for each in cut.elements)
     return {"tool": site.tool} if site.tool > 0 and not site.loaded and needs else None
 
 
@@ -130,3 +132,23 @@ def offset_beside(site: Site) -> Values:
     off = _off_length(site, X)
     beside = site.program.turning and abs(off) > SIZE and not _is_chosen(site)
     return {"tool": site.tool, "off": abs(off)} if beside else None
+
+
+@rule("feed-per-turn", WARNING, "{feed:fine} a revolution: meant per minute?")
+def feed_per_turn(site: Site) -> Values:
+    most = max(_per_turn(site), default=0.0)
+    return {"feed": most} if most > MOST_PER_TURN else None
+
+
+def _per_turn(site: Site) -> list[float]:
+    """Return the feeds per revolution of a cut in mm, as moved or as planned."""
+    cut, per_turn = site.own, site.own.report.per_revolution
+    feeds = [m.feed for m in site.program.moves[cut.at : cut.end] if m.feed_mode == "G95"]
+    if cut.is_tap or (cut.places and per_turn):
+        feeds.append(cut.plan.feed * cut.mm)
+    elif cut.is_section and per_turn:
+        speed = site.program.state(cut.at).speed
+        feeds += [each.feed * cut.mm / speed for each in cut.elements if speed]
+    elif hasattr(cut.plan, "passes") and per_turn:
+        feeds.append(cut.plan.passes.feed * cut.mm)
+    return feeds
