@@ -182,7 +182,7 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
         if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1 or move.tool not in tools:
             continue
         (side,) = sides
-        speed = program.state(index).speed
+        speed = program.speed(index)
         per_minute = move.feed * (speed if move.feed_mode == "G95" else 1)
         values = {"feed": per_minute, "per_turn": per_minute / speed if speed else 0.0}
         fast = values["per_turn"] > PER_TURN

@@ -84,7 +84,7 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
 
 def _is_cleared(cut: Cut, solids: Solids) -> bool:
     """Return whether a circle's own rings clear it: seen without any geometry."""
-    edges = cut.circle.inner + SLACK, cut.circle.wall - SLACK
+    edges = cut.inner + SLACK, cut.wall - SLACK
     level = cut.floor + JUST_ABOVE
     return cut.is_circle and solids.of(cut.surface).has_cleared(cut.centre, edges, level)
 
@@ -102,7 +102,7 @@ def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
 
     An open contour goes on straight at its ends.
     """
-    if cut.surface or not (solids.stock and solids.stock.diameter):
+    if cut.surface or not solids.given_bar:
         return NOTHING
     bar, found = solids.of(cut.surface).shape, []
     whole = bar.buffer(3 * radius)
@@ -127,11 +127,11 @@ def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
 
 def too_far(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what a circle's own moves remove beyond its wall: D is not the cutter that cuts."""
-    if not cut.is_circle or cut.circle.is_boss:
+    if not cut.is_circle or cut.is_boss:
         return
     for sweep in solids.of(cut.surface).sweeps_of(cut.moves):
         point = sweep.farthest(cut.centre)
-        over = math.dist(point, cut.centre) + sweep.radius - cut.circle.wall
+        over = math.dist(point, cut.centre) + sweep.radius - cut.wall
         if over > SLACK:
             place = (*point, sweep.level)
             at = solids.program.words(cut.at, place, cut.surface)
@@ -145,7 +145,7 @@ def gone(cut: Cut, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     What the planner compensated stays off its own contour. Its leads do not, nor do cuts round
     another island, or moves at feed that belong to no cut.
     """
-    if cut.circle.is_boss and _is_boss_gone(cut, solids):
+    if cut.is_boss and _is_boss_gone(cut, solids):
         yield cut.found(BOSS, (*cut.centre, cut.floor))
         return
     if not cut.stays:
@@ -196,7 +196,7 @@ def meeting(circles: list[Cut]) -> Iterator[Finding]:
     """Yield pockets and bosses that go into each other's walls."""
     heights = np.array([cut.zero[2] for cut in circles])
     centres = np.array([complex(*cut.centre) for cut in circles])
-    walls = np.array([cut.circle.wall for cut in circles])
+    walls = np.array([cut.wall for cut in circles])
     for index, cut in enumerate(circles):
         apart, own = np.abs(centres[:index] - centres[index]), walls[index]
         within = apart <= np.abs(walls[:index] - own) + SLACK

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from shapely.affinity import rotate, translate
@@ -94,26 +94,19 @@ class Outline:
         return LineString(_xy(self.points)).buffer(away, single_sided=True, join_style=2)
 
 
-class Circle(NamedTuple):
-    """The radii of a circle's wall and of what it leaves in its middle, mm, which may be a boss."""
-
-    wall: float
-    inner: float
-    is_boss: bool
-
-
 class Cut:
     """One reported cut: its moves are those from ``at`` to ``end``.
 
     ``line`` is in its ``file``, "" is the program; ``last_line`` of a section is the line that ends
-    it. ``plan`` is the planner's record, whose kind says which fields it has. ``loaded`` is the
-    radius of the loaded cutter, ``cutter`` the one that its path is computed with, 0 if that is not
-    the planner's. ``surface`` is the radius of the cylinder on which it is, 0 on the face.
+    it. ``plan`` is the planner's record, whose kind says which fields it has. ``cutter`` is the
+    radius that its path is computed with, 0 if that is not the planner's. ``surface`` is that of
+    the cylinder on which it is, 0 on the face. ``wall`` is that of what a circle clears, ``inner``
+    that of what it leaves in its middle, which may be a boss.
     """
 
     def __init__(self, index: int, reported: ReportedCut, loaded: float) -> None:
         report, frame = reported.report, reported.report.frame
-        self.index, self.report, self.frame, self.loaded = index, report, frame, loaded
+        self.index, self.report, self.frame = index, report, frame
         self.at, self.end, self.moves = *reported[:2], range(*reported[:2])
         self.code, self.line, self.file = report[:3]
         self.c_commanded = reported.c_commanded
@@ -132,6 +125,7 @@ class Cut:
         self.passes: Any = getattr(self.plan, "passes", self.plan)
         self.used: UsedCutter = getattr(self.passes, "cutter", NO_CUTTER)
         self.cutter = self.used.radius * mm
+        self.wall, self.inner, self.is_boss = self._circle(0.0 if self.cutter else loaded)
         self.elements: Sequence[CutElement] = getattr(self.plan, "elements", ())
         self.roles = ROLES[getattr(self.plan, "turn", "C")]
         # What turns the plane of its words so that the axis of rotation is upwards.
@@ -149,17 +143,19 @@ class Cut:
         at = self.frame.point(*self.plan.centre[:2])
         return at.real, at.imag
 
-    @cached_property
-    def circle(self) -> Circle:
-        """What a circle clears and leaves; without a cutter its words are those of the centre."""
-        plan, mm, beside = self.plan, self.mm, 0.0 if self.cutter else self.loaded
+    def _circle(self, beside: float) -> tuple[float, float, bool]:
+        """Return a circle's wall, its inner radius, whether it is a boss; 0 of what is no circle.
+
+        Without a cutter its words are those of the centre, and the loaded one is ``beside`` it.
+        """
+        plan, mm = self.plan, self.mm
         if isinstance(plan, ThreadCut):
-            return Circle(plan.large * mm, plan.small * mm * plan.outside, plan.outside)
+            return plan.large * mm, plan.small * mm * plan.outside, plan.outside
         if isinstance(plan, EventCut):
-            return Circle(plan.wall * mm + beside, plan.boss * mm, plan.side > 0)
+            return plan.wall * mm + beside, plan.boss * mm, plan.side > 0
         if isinstance(plan, PocketCut):
-            return Circle(plan.wall * mm + beside, max(plan.inner * mm - beside, 0.0), False)
-        return Circle(0.0, 0.0, False)
+            return plan.wall * mm + beside, max(plan.inner * mm - beside, 0.0), False
+        return 0.0, 0.0, False
 
     @cached_property
     def levels(self) -> list[float]:
@@ -188,22 +184,22 @@ class Cut:
         if self.is_shape:
             return self._shape[0]
         if self.is_circle and not self.upright and not isinstance(self.plan, ThreadCut):
-            return disc(self.centre, self.circle.wall, CHORD).difference(self._middle)
+            return disc(self.centre, self.wall, CHORD).difference(self._middle)
         return unary_union([o.polygon for o in self.outlines if o.is_closed and o.tool_inside])
 
     @property
     def _middle(self) -> BaseGeometry:
-        return disc(self.centre, self.circle.inner, CHORD) if self.circle.inner > 0 else NOTHING
+        return disc(self.centre, self.inner, CHORD) if self.inner > 0 else NOTHING
 
     @property
     def core(self) -> BaseGeometry:
         """What a circle leaves in its middle that is no boss."""
-        return NOTHING if self.circle.is_boss or self.circle.inner < LEAST_CORE else self._middle
+        return NOTHING if self.is_boss or self.inner < LEAST_CORE else self._middle
 
     @cached_property
     def stays(self) -> list[tuple[BaseGeometry, float]]:
         """What stays of the part beside it, and the level down to which it is cut."""
-        if self.circle.is_boss:
+        if self.is_boss:
             return [(self._middle, self.floor)]
         if self.is_shape:
             return [(self._shape[1], self.floor)]
@@ -213,7 +209,7 @@ class Cut:
     @cached_property
     def island(self) -> BaseGeometry:
         """The part that it goes round on the outside, as far as that is closed."""
-        if self.circle.is_boss or (self.is_shape and self._shape[0].is_empty):
+        if self.is_boss or (self.is_shape and self._shape[0].is_empty):
             return self.stays[0][0]
         return unary_union([o.polygon for o in self.outlines if o.is_closed and not o.tool_inside])
 

@@ -9,8 +9,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 
@@ -33,18 +34,12 @@ CHORD = 2e-3  # of the paths that are judged
 KEPT_TIPS = 16384  # moves
 ALONG_X, ALONG_Z = np.eye(9)[[X, Z]]
 A, B = 3, 4
+# Kinds of events: a length is G43, G43.1, G43.2, G49, or a tool from M6 on without one.
+SPINDLE, SPEED, LENGTH = r"M[345]$", r"S[\d.]+$", r"G43|G49|tool "
+RUNS = ("M3", "M4")
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
-
-
-class State(NamedTuple):
-    """What is in force at a move: the first spindle, and the code that set the tool length."""
-
-    spindle: str = ""  # M3, M4, M5, "" before any
-    speed: float = 0.0
-    user_code: bool = False  # an M1xx came, which may turn a spindle
-    length_code: str = ""  # G43, G43.1, G43.2, G49; tool: none since M6
 
 
 @dataclass(eq=False)
@@ -64,6 +59,7 @@ class TracedProgram:
     def __post_init__(self) -> None:
         ini, trace = self.ini, self.trace
         self.moves, self.cuts, self.limits = trace.moves, cuts_of(trace), limits_of(ini)
+        self._events: dict[str, list[tuple[int, str]]] = {}
         self._starts = [cut.at for cut in self.cuts]
         self._tool_beside = ini.tool_beside
         self.turning = part_of(ini).turning
@@ -190,7 +186,7 @@ class TracedProgram:
 
     def chosen_length(self, index: int) -> bool:
         """Return whether the length in force is one that the program gives itself, and is safe."""
-        code = self.state(index).length_code
+        code = self.last(LENGTH, index).partition(" ")[0]
         safe = code == "G43.1" and self.missing_length(index) < 0.0
         return code == "G43.2" or safe or (code == "G49" and self.turning)
 
@@ -281,8 +277,8 @@ class TracedProgram:
         found: list[set[float] | None] = []
         turned = False  # the part: before the next cut also by rapid from there
         for index, move in enumerate(self.moves):
-            inside, state, own = self.cut_at(index), self.state(index), of_tool.get(move.tool, [])
-            turns = self.several_spindles and state.spindle in ("M3", "M4") and state.speed > 0
+            inside, own = self.cut_at(index), of_tool.get(move.tool, [])
+            turns = self.several_spindles and self.turns(index)
             turned = not inside and (turns or (turned and move.kind == "rapid"))
             after = bisect_right(own, index, key=lambda cut: cut.at)
             near = {cut.surface for cut in own[max(after - 1, 0) : after + 1]}
@@ -362,27 +358,20 @@ class TracedProgram:
 
     # ------------------------------------------------------------ its state
 
-    @cached_property
-    def _states(self) -> tuple[list[int], list[State]]:
-        at, states, state = [], [], State()
-        for event in self.trace.events:
-            text = event.text
-            if text in ("M3", "M4", "M5"):
-                state = state._replace(spindle=text)
-            elif re.fullmatch(r"S[\d.]+", text):
-                state = state._replace(speed=float(text[1:]))
-            elif re.match(r"M1\d\d P", text):
-                state = state._replace(user_code=True)
-            elif text.startswith(("G43", "G49", "tool ")):
-                state = state._replace(length_code=text.split()[0])
-            at.append(event.at)
-            states.append(state)
-        return at, states
+    def last(self, kind: str, index: int) -> str:
+        """Return the last event of a kind before a move, "" if there is none."""
+        events = self._events.setdefault(kind, [])
+        if not events:
+            events += [(-1, ""), *(e[::2] for e in self.trace.events if re.match(kind, e.text))]
+        return events[bisect_right(events, index, key=itemgetter(0)) - 1][1]
 
-    def state(self, index: int) -> State:
-        at, states = self._states
-        last = bisect_right(at, index) - 1
-        return states[last] if last >= 0 else State()
+    def speed(self, index: int) -> float:
+        """Return the speed of the first spindle, as commanded."""
+        return float(self.last(SPEED, index)[1:] or 0.0)
+
+    def turns(self, index: int) -> bool:
+        """Return whether the first spindle turns."""
+        return self.last(SPINDLE, index) in RUNS and self.speed(index) > 0.0
 
 
 def straight_down(points: np.ndarray) -> bool:

@@ -96,20 +96,16 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     "it goes to {reach:length} from the axis, the bar is {bar:mm}: C in degrees?",
 )
 def far_beside(site: Site) -> Values:
-    cut, stock = site.own, site.solids.stock
-    if not cut.is_section or cut.surface or not (stock and stock.diameter):
-        return None
-    bar, reach = stock.diameter / 2, cut.deep_reach
-    return {"reach": reach, "bar": bar} if reach > FAR * bar + site.loaded else None
+    cut, bar = site.own, site.solids.given_bar
+    far = cut.is_section and not cut.surface and cut.deep_reach > FAR * bar + site.loaded
+    return {"reach": cut.deep_reach, "bar": bar} if bar and far else None
 
 
 @rule("surface", FINDING, "its radius {radius:mm} is not the bar's, {bar:mm}: is C a radius here?")
 def other_surface(site: Site) -> Values:
-    stock, radius = site.solids.stock, site.own.surface
-    if not site.own.is_section or not radius or not (stock and stock.diameter):
-        return None
-    bar = stock.diameter / 2
-    return {"radius": radius, "bar": bar} if radius > WIDE * bar else None
+    bar, radius = site.solids.given_bar, site.own.surface
+    other = site.own.is_section and bar and radius > WIDE * bar
+    return {"radius": radius, "bar": bar} if other else None
 
 
 @rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled")

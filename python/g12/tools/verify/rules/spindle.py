@@ -12,15 +12,14 @@ from g12.machine_ini import remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
-from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.program import SPINDLE, TracedProgram
 from g12.tools.verify.rules.table import Site, Values, rule
 
-RUNS = ("M3", "M4")
 C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
 NO_MOVE = re.compile(r"G0*(10|92|52|7\.1)(?![.\d])")
-USER_CODE = re.compile(r"(M1\d\d) P")
+USER_CODE = r"(M1\d\d) P"
 M_CODE, ANY_USER_CODE = re.compile(r"M(\d+)"), re.compile(r"M1\d\d")
-SPINDLE, BLOCK_WORD, JUMPS = re.compile(r"\$(-?\d+)"), re.compile(r"\s*O"), {"M98", "M99"}
+NAMED, BLOCK_WORD, JUMPS = re.compile(r"\$(-?\d+)"), re.compile(r"\s*O"), {"M98", "M99"}
 MAIN, LIVE, EVERY = 0, 1, -1
 
 
@@ -41,9 +40,9 @@ def _first_move(wrong: Callable[[int], Values], site: Site) -> Values:
 
 def _standing(index: int, site: Site) -> Values:
     """Tell which spindle should turn at a move and does not, None if none is known."""
-    program, state = site.program, site.program.state(index)
+    program = site.program
     if not program.several_spindles:
-        turns = state.user_code or (state.spindle in RUNS and state.speed)
+        turns = program.last(USER_CODE, index) or program.turns(index)
         return None if turns else {"which": "the spindle", "code": "M3"}
     states = spindles_of(program)
     if not states:
@@ -61,8 +60,8 @@ def _standing(index: int, site: Site) -> Values:
 def spindle_reversed(site: Site) -> Values:
     if site.program.several_spindles or (site.cut and site.cut.is_tap):
         return None
-    state = site.program.state
-    return _first_move(lambda index: {} if state(index).spindle == "M4" else None, site)
+    last = site.program.last
+    return _first_move(lambda index: {} if last(SPINDLE, index) == "M4" else None, site)
 
 
 @rule("spindle-unseen", NOT_JUDGED, "whether the tool turns: no preview shows it", once=True)
@@ -95,7 +94,7 @@ def unknown_code(program: TracedProgram) -> Values:
     places = [ini.directory / os.path.expanduser(folder) for folder in folders if folder]
     remapped = {remap.code for remap in remap_lines(ini.all)}
     for event in program.trace.events:
-        code = USER_CODE.match(event.text)
+        code = re.match(USER_CODE, event.text)
         own = code and code[1] not in remapped and [place / code[1] for place in places]
         if own and not any(os.access(file, os.X_OK) for file in own):
             return {"code": code[1], "at_line": event.line}
@@ -175,7 +174,7 @@ def spindles_of(program: TracedProgram) -> list[Spindles] | None:
 
 
 def _after(state: Spindles, codes: set[str], text: str, on: set[str], off: set[str]) -> Spindles:
-    named = SPINDLE.search(text)
+    named = NAMED.search(text)
     own = {MAIN, LIVE} if named and int(named[1]) == EVERY else {int(named[1]) if named else MAIN}
     turning = set(state.turning or ())
     if "M5" in codes:

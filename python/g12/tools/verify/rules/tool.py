@@ -147,7 +147,7 @@ def _per_turn(site: Site) -> list[float]:
     if cut.is_tap or (cut.places and per_turn):
         feeds.append(cut.plan.feed * cut.mm)
     elif cut.is_section and per_turn:
-        speed = site.program.state(cut.at).speed
+        speed = site.program.speed(cut.at)
         feeds += [each.feed * cut.mm / speed for each in cut.elements if speed]
     elif hasattr(cut.plan, "passes") and per_turn:
         feeds.append(cut.plan.passes.feed * cut.mm)
