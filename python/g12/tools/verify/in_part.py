@@ -176,10 +176,13 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """
     made = [cut for cut in program.cuts if cut.at < cut.end]
     tools = {program.moves[cut.at].tool for cut in made}
+    if not program.turning:  # whose other tools turn the part
+        tools |= {move.tool for move in program.moves}
     cutters = {program.moves[cut.at].tool for cut in made if not cut.places and solids.stock}
     for index, move in enumerate(program.moves):
         sides, own = program.sides[index] or set(), program.cut_at(index)
-        if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1 or move.tool not in tools:
+        taps = own.is_tap if own else move.block in program.tapping
+        if move.kind != "feed" or taps or len(sides) != 1 or move.tool not in tools:
             continue
         (side,) = sides
         speed = program.speed(index)
