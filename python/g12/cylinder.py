@@ -21,26 +21,16 @@ LinuxCNC's positive A turns the part so that the tool moves to Y- on it, by the 
 from __future__ import annotations
 
 import cmath
-from functools import partial
 from math import copysign, degrees, radians, sqrt
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
-from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour, PlaneMove
 from g12.errors import number
 from g12.geometry.curve import Arc
 from g12.lengths import LARGEST
-from g12.moves.exact_stops import Direction, stops
-from g12.moves.setup import LEAST_MM, RADIUS_TOLERANCE_MM, SectionKind, check_entry
-from g12.moves.steps import (
-    BULGE,
-    ROUNDING_SHARE,
-    MachinePosition,
-    SectionPlan,
-    Split,
-    StepMaker,
-    spaced,
-)
+from g12.moves.exact_stops import Direction
+from g12.moves.setup import RADIUS_TOLERANCE_MM, SectionKind, StepMaker, check_entry
+from g12.moves.steps import BULGE, MachinePosition, SectionPlan, Split, spaced
 from g12.section.effects import SectionStart, WordRules
 from g12.section.line import AxisLetters, SectionWords, plain_line_of
 
@@ -85,20 +75,6 @@ def words_on_mill(plane: str, axes: AxisLetters, across: str) -> SectionWords:
     )
 
 
-class CylinderSettings(NamedTuple):
-    """The machine's limits and the owner's settings for a section; lengths in program units."""
-
-    per_radian: float  # length to the right or upwards of a radian of the rotary axis
-    tolerance: float
-    # 0.001 mm: a segment that turns moves the slide by this at least, or not at all
-    least_slide: float
-    slide_acceleration: float  # per second squared
-    turn_acceleration: float  # degrees per second squared
-    height_acceleration: float
-    axes: AxisLetters = CYLINDER_WORDS.axes
-    turn_is_first: bool = True  # of the plane's axes
-
-
 class Cylinder(SectionKind):
     """A section on a turned surface; this one is of a lathe's Z slide and its C axis."""
 
@@ -135,22 +111,8 @@ class Cylinder(SectionKind):
             radius_tolerance=RADIUS_TOLERANCE_MM * self.state.millimetre,
         )
 
-    @property
-    def planning(self) -> CylinderSettings:
-        slide, turn, height = (self.machine.axes[letter] for letter in self.words.axes)
-        return CylinderSettings(
-            per_radian=self.per_radian,
-            tolerance=self.tolerance,
-            least_slide=LEAST_MM * self.state.millimetre,
-            slide_acceleration=self.in_program(slide),
-            turn_acceleration=turn.acceleration,
-            height_acceleration=self.in_program(height),
-            axes=self.words.axes,
-            turn_is_first=self.words.plane[0] == self.words.axes.turn,
-        )
-
     def plan(self, contour: Contour) -> SectionPlan:
-        return plan(contour, self.planning)
+        return CylinderSteps(contour, self).plan()
 
 
 class CylinderOnMill(Cylinder):
@@ -199,63 +161,39 @@ CYLINDERS: dict[str, type[Cylinder]] = {
 }
 
 
-def plan(contour: Contour, settings: CylinderSettings) -> SectionPlan:
-    """Return the moves of a whole section.
+class CylinderSteps(StepMaker):
+    """Plans a contour on the unrolled surface."""
 
-    Raises Refusal, naming the blocks by their lines, when the contour cannot be cut as programmed.
-    """
-    path, moved = centre_path(contour, settings.tolerance)
-    settings = settings._replace(tolerance=settings.tolerance - moved)
-    acceleration = partial(_acceleration, settings=settings)
-    stopping = stops(path, ROUNDING_SHARE * settings.tolerance, acceleration)
-    machine = _Surface(contour, settings)
-    for element, stop in zip(path, stopping):
-        machine.make(element, stop)
-    machine.finish(path)
-    return SectionPlan(
-        machine.steps, machine.position, radians(machine.position.turn), contour.notes
-    )
-
-
-def _acceleration(direction: Direction, _point: complex, *, settings: CylinderSettings) -> float:
-    """Return the acceleration along a direction that no axis exceeds; it is the same everywhere."""
-    *in_plane, deep = map(abs, direction)
-    along, around = _slide_and_around(complex(*in_plane), settings.turn_is_first)
-    surface = abs(settings.per_radian) * radians(settings.turn_acceleration)
-    return 1.0 / max(
-        around / surface, along / settings.slide_acceleration, deep / settings.height_acceleration
-    )
-
-
-def _slide_and_around(point: complex, turn_is_first: bool) -> tuple[float, float]:
-    """Return a point of the plane as the slide's position and the length around."""
-    return (point.imag, point.real) if turn_is_first else (point.real, point.imag)
-
-
-class _Surface(StepMaker):
-    def __init__(self, contour: Contour, settings: CylinderSettings) -> None:
+    def __init__(self, contour: Contour, kind: Cylinder) -> None:
         slide, angle, height = contour.start
-        position = MachinePosition(slide, degrees(angle), height)
-        super().__init__(contour, position, settings.axes, settings.least_slide)
-        self._settings = settings
+        super().__init__(contour, kind, MachinePosition(slide, degrees(angle), height))
+        along, turn, deep = (kind.machine.axes[letter] for letter in self.letters)
+        self._per_radian = kind.per_radian
+        self._turn_is_first = kind.words.plane[0] == self.letters.turn
+        self._slide, self._height = kind.in_program(along), kind.in_program(deep)
+        self._surface = abs(kind.per_radian) * radians(turn.acceleration)
 
-    def cut(self, move: PlaneMove, stop: bool) -> None:
-        split_by = partial(split_on_cylinder, move, self._settings)
-        split = self._split(move, split_by, self._settings.tolerance, stop)
-        self._segments(move, split, 0.0, stop)
+    def acceleration(self, direction: Direction, _point: complex) -> float:
+        """Return the acceleration, which is the same everywhere."""
+        *in_plane, deep = map(abs, direction)
+        along, around = self._slide_and_around(complex(*in_plane))
+        return 1.0 / max(around / self._surface, along / self._slide, deep / self._height)
 
     def slide_at(self, point: complex) -> float:
-        return _slide_and_around(point, self._settings.turn_is_first)[0]
+        return self._slide_and_around(point)[0]
 
+    def _slide_and_around(self, point: complex) -> tuple[float, float]:
+        """Return a point of the plane as the slide's position and the length around."""
+        return (point.imag, point.real) if self._turn_is_first else (point.real, point.imag)
 
-def split_on_cylinder(move: PlaneMove, settings: CylinderSettings, deviation: float) -> Split:
-    """Return where the segments of a move on the cylinder end: slide, angle and length."""
-    if isinstance(move.curve, Arc):
-        points, lengths = _along_arc(move.curve, deviation)
-    else:
-        points, lengths = [move.start, move.end], [0.0, move.length]
-    slides, around = zip(*(_slide_and_around(at, settings.turn_is_first) for at in points))
-    return Split(list(slides), [length / settings.per_radian for length in around], lengths)
+    def split(self, move: PlaneMove, deviation: float) -> Split:
+        """Return where the segments of a move on the cylinder end: slide, angle and length."""
+        if isinstance(move.curve, Arc):
+            points, lengths = _along_arc(move.curve, deviation)
+        else:
+            points, lengths = [move.start, move.end], [0.0, move.length]
+        slides, around = zip(*map(self._slide_and_around, points))
+        return Split(list(slides), [length / self._per_radian for length in around], lengths)
 
 
 def _along_arc(arc: Arc, deviation: float) -> tuple[list[complex], list[float]]:

@@ -9,7 +9,7 @@ Lengths are in program units.
 """
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from math import hypot
 from typing import NamedTuple
 
@@ -47,20 +47,6 @@ class Cutter(NamedTuple):
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 DIRECTIONS = {XY: (_X, _Y), XZ: (_Z, _X), YZ: (_Y, _Z)}  # a plane's axes
-
-
-class CycleExtent(NamedTuple):
-    """The largest circle that a cycle's tool centre follows, in program coordinates and units.
-
-    ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its corners,
-    whose centres are as far as ``corners`` from its own.
-    """
-
-    plane: str
-    centre: SpacePoint
-    radius: float
-    heights: tuple[float, ...] = ()
-    corners: tuple[float, float] = (0.0, 0.0)
 
 
 class Words:
@@ -108,28 +94,22 @@ class Words:
 
     def take_positive(self, letter: str) -> float | None:
         """Return the word's value, which must be above zero, or None."""
-        value = self.take(letter)
-        return None if value is None else self._positive(letter, value)
+        return self.require_positive(letter, "") if letter in self else None
 
     def require_positive(self, letter: str, meaning: str) -> float:
         """Return the word's value, above zero; refuse a block without it."""
-        return self._positive(letter, self.require(letter, meaning))
-
-    def take_whole(self, letter: str, least: int, default: int = 0, most: float = math.inf) -> int:
-        """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
-        value = self.take(letter)
-        return default if value is None else self._whole(letter, value, least, most)
-
-    def require_whole(self, letter: str, meaning: str, least: int, most: int) -> int:
-        """Return the word's value, a whole number; refuse a block without it."""
-        return self._whole(letter, self.require(letter, meaning), least, most)
-
-    def _positive(self, letter: str, value: float) -> float:
+        value = self.require(letter, meaning)
         if not value > 0:
             raise self.refuse_word(letter, value, self.positive_rule)
         return value
 
-    def _whole(self, letter: str, value: float, least: int, most: float) -> int:
+    def take_whole(self, letter: str, least: int, default: int = 0, most: float = math.inf) -> int:
+        """Return the word's value, a whole number from ``least`` (to ``most``), or the default."""
+        return self.require_whole(letter, "", least, most) if letter in self else default
+
+    def require_whole(self, letter: str, meaning: str, least: int, most: float) -> int:
+        """Return the word's value, a whole number; refuse a block without it."""
+        value = self.require(letter, meaning)
         whole = round(value)
         if abs(value - whole) > WHOLE:
             raise self.refuse_word(letter, value, "must be a whole number")
@@ -138,6 +118,10 @@ class Words:
         if whole > most:
             raise self.refuse_word(letter, value, f"must be at most {most}")
         return whole
+
+    def check_least(self, letter: str, value: float, least: float) -> None:
+        if value < least:
+            raise self.refuse_word(letter, value, f"must be at least {number(least)}")
 
     def check_pair(self, first: str, second: str) -> None:
         """Refuse one of two words without the other."""
@@ -193,10 +177,9 @@ class Words:
         tool_number = self.take_whole("D", least=0)
         if tool_number == 0:
             return Tool(0, 0.0)
-        tool = self.context.tool_in_table(tool_number)
-        if tool is None:
+        if tool_number not in self.context.tools:
             raise self.refuse(f"D{tool_number} is not in the tool table")
-        return tool
+        return self.context.tools[tool_number]
 
     def chosen_cutter(self) -> Cutter:
         """Return the cutter: D in the block, else the D last commanded, else the loaded tool."""
@@ -211,10 +194,20 @@ class Words:
         else:
             raise self.refuse("D is missing, none was commanded before and no tool is loaded")
         if by != BY_LAST_D:
-            self.check_sound(tool, source)
-        kept = None if by == BY_D else self.kept_cutter(tool)
+            self.check_sound(tool.radius, source)
+        cutter = self.cutter_of(tool, by, source)
+        if by == BY_D:
+            return cutter._replace(is_modal=True)
+        return cutter._replace(kept=self.kept_cutter(tool))
+
+    def offset_cutter(self) -> Cutter | None:
+        """Return the cutter of D, which counts in this block alone; None without D."""
+        tool = self.commanded_tool()
+        return self.cutter_of(tool, BY_D, f"D{tool.number}") if tool else None
+
+    def cutter_of(self, tool: Tool, by: str, source: str) -> Cutter:
         used = UsedCutter(tool.radius, by, tool.number)
-        return Cutter(used, source, self.other_cutter(tool, source), kept, by == BY_D)
+        return Cutter(used, source, self.other_cutter(tool, source))
 
     def sized_cutter(self) -> Cutter:
         """Return the cutter of the block, which must have a diameter."""
@@ -223,10 +216,10 @@ class Words:
             raise self.refuse(f"{cutter.source} has no diameter: it sets the path")
         return cutter
 
-    def check_sound(self, tool: Tool, source: str) -> None:
-        """Refuse a negative diameter. ``source`` names the tool: ``D1``."""
-        if tool.radius < 0:
-            negative = number(2 * tool.radius)
+    def check_sound(self, radius: float, source: str) -> None:
+        """Refuse a tool of a negative radius. ``source`` names the tool: ``D1``."""
+        if radius < 0:
+            negative = number(2 * radius)
             raise self.refuse(f"{source} has the negative diameter {negative} in the tool table")
 
     def other_cutter(self, tool: Tool, source: str) -> str | None:
@@ -251,7 +244,7 @@ class Words:
         """
         context, before = self.context, "the D of what ran before"
         size = context.tool_size(2 * cutter.radius)
-        named = context.tool_in_table(cutter.number) if cutter.number else None
+        named = context.tools.get(cutter.number)
         if named and abs(named.radius - cutter.radius) > context.rounding:
             now = context.tool_size(2 * named.radius)
             return (
@@ -295,18 +288,31 @@ class Words:
         if circles > MOST_CIRCLES:
             raise self.refuse(f"{cause} {circles} circles, the most is {MOST_CIRCLES}")
 
-    def check_travel(self, extent: CycleExtent) -> None:
-        """Refuse a cycle that leaves the limits of an axis."""
-        state, (x, y, z) = self.context, extent.centre
+    def check_travel(
+        self,
+        centre: SpacePoint,
+        radius: float,
+        heights: Sequence[float] = (),
+        corners: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """Refuse a cycle whose largest circle of the tool centre leaves the limits of an axis.
+
+        ``heights`` are the other Z levels of the cycle. A rectangle's circle is that of its
+        corners, whose centres are as far as ``corners`` from its own.
+        """
+        state, (x, y, z) = self.context, centre
         if not state.travel:
             return
-        points = [(x, y, height) for height in extent.heights or (z,)]
-        centres = zip(*map(state.point_on_machine, points))
-        widths = half_widths(state, extent)
-        ranges = [
-            (axis, min(centre) - half, max(centre) + half)
-            for axis, centre, half in zip(LINEAR_AXES, centres, widths)
-        ]
+        points = [(x, y, height) for height in heights or (z,)]
+        ranges = []
+        for axis, there, one, two in zip(
+            LINEAR_AXES,
+            zip(*map(state.point_on_machine, points)),
+            *(state.turned(*axis) for axis in DIRECTIONS[state.plane]),
+        ):
+            beside = abs(one * corners[0]) + abs(two * corners[1])
+            half = (radius * hypot(one, two) + beside) / state.machine_unit
+            ranges.append((axis, min(there) - half, max(there) + half))
         beyond = beyond_travel(state, state.travel, ranges)
         if beyond:
             raise Refusal(beyond.rule, self.code)
@@ -336,14 +342,3 @@ def steps_between(first: float, last: float, step: float, tolerance: float) -> i
     A remainder shorter than ``tolerance`` is rounding, not a step of its own.
     """
     return math.ceil(max(0.0, min((last - first - tolerance) / step, COUNTLESS)))
-
-
-def half_widths(state: State, extent: CycleExtent) -> list[float]:
-    """Return the path's extent from its centre along each axis, in machine units."""
-    first, second = (state.turned(*axis) for axis in DIRECTIONS[extent.plane])
-    along, across = extent.corners
-    return [
-        (extent.radius * hypot(one, two) + abs(one * along) + abs(two * across))
-        / state.machine_unit
-        for one, two in zip(first, second)
-    ]

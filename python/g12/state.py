@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import cos, radians, sin
+from types import MappingProxyType
 from typing import NamedTuple
 
 from g12.errors import number
@@ -19,6 +20,9 @@ class Tool(NamedTuple):
 
     number: int
     radius: float
+
+
+NO_TOOLS: Mapping[int, Tool] = MappingProxyType({})
 
 
 class State(NamedTuple):
@@ -43,7 +47,7 @@ class State(NamedTuple):
     spindle_tool: Tool | None
     last_cutter: Tool | None = None  # of the last D; tool 0 where its number is not known
     d_is_earlier: Callable[[], bool] = bool  # this run of the program has not commanded it
-    tool_in_table: Callable[[int], Tool | None] = lambda _: None
+    tools: Mapping[int, Tool] = NO_TOOLS  # of the table, those whose D counts in the block
     a: float = 0.0
     b: float = 0.0
     c: float = 0.0

@@ -7,30 +7,24 @@ from pathlib import Path
 
 from bench import Figure
 from bench.haas import plain_block
-from g12.cycles.bore import plan_bore
-from g12.cycles.frame import plan_frame
-from g12.cycles.plan import STRAIGHT_DOWN
-from g12.cycles.thread import plan_thread
+from g12.cycles import bore, frame, thread
 from g12.request import COUNTERCLOCKWISE, Words
+from g12.settings import Settings
 from g12.state import Tool
-from g12.tools.headless.run import run_program
+from g12.tools.headless.machine import run_program
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM, words_of
 from support.sim_machines import SIM
 
 INI, TOOLS, PLANS = SIM / "mill_mm_headless.ini", {1: 6.0}, 200
-STANDING = MM._replace(tool_in_table={1: Tool(1, 3.0)}.get)
+STANDING = MM._replace(tools={1: Tool(1, 3.0)})
 FIRST = ["G21 G17 G40 G49 G90 G91.1 G94 G64 P.01 F900", "T1 M6", "S3000 M3", "G0 X0 Y0 Z5"]
 BLOCKS = {
     "bore": "G13.5 Z-1 R0 I8 P.3 Q2 D1",
     "thread": "G13.6 Z-8 R0 I6 P1.5 Q.3 D1",
     "frame": "G13.7 Z-1 I30 J20 R5 Q3 E.2 D1",
 }
-PLANNERS = {
-    "bore": lambda words: plan_bore(words, COUNTERCLOCKWISE, 3.0),
-    "thread": lambda words: plan_thread(words, COUNTERCLOCKWISE),
-    "frame": lambda words: plan_frame(words, COUNTERCLOCKWISE, STRAIGHT_DOWN),
-}
+PLANNERS = {"bore": bore.plan, "thread": thread.plan, "frame": frame.plan}
 
 
 def figures():
@@ -64,5 +58,5 @@ def planning(name, block):
     code, text = block.split(maxsplit=1)
     begun = time.perf_counter()
     for _ in range(PLANS):
-        PLANNERS[name](Words(code, words_of(text), STANDING))
+        PLANNERS[name](Words(code, words_of(text), STANDING), COUNTERCLOCKWISE, Settings())
     return (time.perf_counter() - begun) / PLANS * 1000

@@ -17,7 +17,7 @@ TOPLEVEL = f"""\
 {RAISING}
 from g12.host.handlers import cycles
 from g12.polar import polar_section
-cycles.haas.plan_pocket = polar_section.plan = broken
+cycles.haas.plan = polar_section.Polar.plan = broken
 """
 BROKEN = """\
 import sys

@@ -161,3 +161,26 @@ def test_a_command_of_the_user_s_own_runs_as_well(tmp_path):
         said = "aborted for 8.000000"  # the message may arrive after the output
         machine.wait_for(lambda _: said in {text.strip() for _, text in machine.messages()})
         assert {"G91", "G61"} <= set(machine.stat().modes.gcodes) and machine.errors() == []
+
+
+@needs_kinematics
+@pytest.mark.parametrize("section", ["RS274NGC", "G12"])
+def test_the_command_of_an_earlier_version_restores_all(section):
+    """Install wrote G13.1 P, and a later one kept it as the user's own."""
+    overrides = {section: {"ON_ABORT_COMMAND": "G13.1 P"}}
+    with Machine(SIM / "lathe_mm_kinematics.ini", overrides=overrides) as machine:
+        for block in ("G21 G18 G8 G91 G94 G64 P0.05 Q0.03", "F1000", "G0 Z5", "G0 X30 C0"):
+            machine.mdi(block)
+        before = machine.stat().modes
+        machine.errors(), machine.messages()
+        machine.open_text(["%", *INCREMENTAL, "%"])
+        machine.start()
+        machine.wait_for(lambda _: on_the_face(machine))
+        time.sleep(0.2)
+        machine.abort()
+        machine.wait_for(lambda now: not on_the_face(machine) and not now.adaptive)
+        machine.mdi("G0 C5")
+        found = machine.stat().modes
+        assert (found.gcodes, found.blending) == (before.gcodes, before.blending)
+        assert found.feed == pytest.approx(before.feed)
+        assert machine.errors() == [] and machine.messages() == []

@@ -26,7 +26,7 @@ MM = State(
     spindle_tool=None,
     last_cutter=None,
     d_is_earlier=lambda: False,
-    tool_in_table={1: Tool(1, 6.0), 2: Tool(2, 10.0), 3: Tool(3, -2.0), 4: Tool(4, 0.0)}.get,
+    tools={1: Tool(1, 6.0), 2: Tool(2, 10.0), 3: Tool(3, -2.0), 4: Tool(4, 0.0)},
 )
 INCH = MM._replace(
     inch=True,
@@ -34,7 +34,7 @@ INCH = MM._replace(
     z=1.0,
     feed=10.0,
     spindle_tool=Tool(1, 0.25),
-    tool_in_table={1: Tool(1, 0.25), 2: Tool(2, 0.125)}.get,
+    tools={1: Tool(1, 0.25), 2: Tool(2, 0.125)},
 )
 
 

@@ -14,12 +14,10 @@ from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.geometry.curve import Line
-from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
 from support.planned_cuts import cuts, path
-from support.random_contours import as_shapely, polygon
-
-MACHINE = PolarSettings(0.005, 0.001, 1000.0, 3600.0, 21600.0)
+from support.random_contours import TOLERANCE, as_shapely, polygon
+from support.section_starts import polar
 
 
 def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
@@ -40,7 +38,7 @@ def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
 def refused(contour):
     """Return whether the contour is refused."""
     try:
-        plan(contour, MACHINE, c=0.0)
+        polar().plan(contour)
     except Refusal:
         return True
     return False
@@ -48,7 +46,7 @@ def refused(contour):
 
 def tool_points(contour, lines):
     """Return the planned path of the tool's centre on some lines, as complex numbers."""
-    made = cuts(contour, plan(contour, MACHINE, c=0.0))
+    made = cuts(contour, polar().plan(contour))
     return path([cut for cut in made if cut.line in lines])
 
 
@@ -152,8 +150,8 @@ def with_fillets(turned, radius):
 def test_a_fillet_of_the_tools_radius_is_cut_though_it_is_rounded(radius):
     for k in range(25):
         contour, centres = with_fillets(0.07 * k, radius)
-        made, moved = centre_path(contour, MACHINE.tolerance)
+        made, moved = centre_path(contour, TOLERANCE)
         assert 0.0 < moved < 0.0015
         way, wall = as_shapely(made[1:-1]), as_shapely(contour.elements[1:-1])
-        assert radius - way.distance(wall) < MACHINE.tolerance
+        assert radius - way.distance(wall) < TOLERANCE
         assert max(way.distance(Point(each.real, each.imag)) for each in centres) < 0.0015

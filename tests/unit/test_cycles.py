@@ -5,30 +5,34 @@ What they cut is judged in interp/test_valid_cuts.py.
 """
 
 import itertools
+import re
 from functools import partial
 
 import pytest
 
-from g12.cycles import mitsubishi, yasnac
-from g12.cycles.bore import plan_bore
+from g12.cycles import bore, frame, haas, mitsubishi, thread, yasnac
 from g12.cycles.circle_mill import plan_call, plan_code
-from g12.cycles.frame import plan_frame
-from g12.cycles.haas import plan_pocket
-from g12.cycles.plan import STRAIGHT_DOWN, EventPlanes, PocketEntry
-from g12.cycles.thread import plan_thread
+from g12.cycles.plan import EventPlanes, pocket_descent
 from g12.errors import Refusal
 from g12.request import COUNTERCLOCKWISE, Words
+from g12.settings import Settings
 from g12.state import Tool
 from support.planner_context import INCH, MM, reported, words_of
 
 NONE = EventPlanes()
 TABLE = {1: Tool(1, 0.125), 2: Tool(2, 0.25), 3: Tool(3, -0.125), 4: Tool(4, 0.0)}
-HAAS = INCH._replace(z=0.1, spindle_tool=TABLE[1], tool_in_table=TABLE.get)
+HAAS = INCH._replace(z=0.1, spindle_tool=TABLE[1], tools=TABLE)
+
+
+def planned(cycle, **settings):
+    return lambda words: cycle.plan(words, COUNTERCLOCKWISE, Settings(**settings))
+
+
 STANDING = MM._replace(x=1.0, y=2.0, z=3.0)
 PLANNERS = {  # code, planner, state before the block, words that a row does not have
-    "haas": ("G12", plan_pocket, HAAS, ""),
-    "yasnac": ("G12", yasnac.plan_circle, MM, ""),
-    "mitsubishi": ("G13", mitsubishi.plan_circle, STANDING, ""),
+    "haas": ("G12", planned(haas), HAAS, ""),
+    "yasnac": ("G12", planned(yasnac), MM, ""),
+    "mitsubishi": ("G13", planned(mitsubishi), STANDING, ""),
     "pocket": ("G13.2", partial(plan_code, planes=NONE, pocket=True), INCH, "Y2 Z-.5 R1.5 I.1 H2"),
     "perimeter": ("G12.2", partial(plan_code, planes=NONE, pocket=False), INCH, "Z-.5 R1.5 I.1 H2"),
     "call": ("circle_mill", partial(plan_call, planes=NONE), INCH, "Z-.5 R1.5 W.1 C2"),
@@ -185,27 +189,26 @@ def test_a_tools_size_has_its_unit_where_the_machines_is_another(name, words, te
 DEEP = MM._replace(incremental=True)
 UPRIGHT = STANDING._replace(plane="G18")
 LOADED = MM._replace(spindle_tool=Tool(1, 12.0))
-BORE, FRAME = partial(plan_bore, steepest=3.0), partial(plan_frame, entry=STRAIGHT_DOWN)
-UP, LEFT = partial(plan_thread, arc=COUNTERCLOCKWISE), COUNTERCLOCKWISE
+UP = planned(thread)
 TILT = 30 * (1 + 4 / 58)
 
 
 @pytest.mark.parametrize(
     ("planner", "words", "state", "reached"),
     [  # X, Y and Z, from and to
-        (plan_pocket, "I20 K50 Q5 Z-4 L3 D2", DEEP, (-40, 40, -40, 40, -2, 6)),
-        (yasnac.plan_circle, "I-50 R-40 D2", MM, (-40, 40, -40, 40, 10, 10)),
-        (mitsubishi.plan_circle, "I-50 D2", UPRIGHT, (-39, 41, 2, 2, -37, 43)),
+        (planned(haas), "I20 K50 Q5 Z-4 L3 D2", DEEP, (-40, 40, -40, 40, -2, 6)),
+        (planned(yasnac), "I-50 R-40 D2", MM, (-40, 40, -40, 40, 10, 10)),
+        (planned(mitsubishi), "I-50 D2", UPRIGHT, (-39, 41, 2, 2, -37, 43)),
         (partial(plan_code, planes=NONE, pocket=True), "X3 Y4 Z-9 I2 E5 R50 Q.5 H2", LOADED,
          (-35, 41, -34, 42, -9, 5)),
         (partial(plan_code, planes=NONE, pocket=False), "X3 Y4 Z-9 I2 E5 R50 Q.5 H1", LOADED,
          (-59.5, 65.5, -58.5, 66.5, -9, 5)),
-        (partial(BORE, arc=LEFT), "Z-9 R0 I25 P1 K21 D2", MM, (-15, 15, -15, 15, -9, 10)),
+        (planned(bore), "Z-9 R0 I25 P1 K21 D2", MM, (-15, 15, -15, 15, -9, 10)),
         (UP, "Z-9 R0 I20 P1 D2", MM, (-10, 10, -10, 10, -9, 10)),
         (UP, "Z-9 R0 I20 P1 E-.1 J3 D2", MM, (-10.45, 10.45, -10.45, 10.45, -9, 10)),
         (UP, "Z-9 R0 I20 P1 K19 H1 D2", MM, (-TILT, TILT, -TILT, TILT, -9, 10)),
-        (partial(FRAME, arc=LEFT), "Z-9 I40 J30 R12 H1 D2", MM, (-10, 10, -5, 5, -9, 10)),
-        (partial(FRAME, arc=LEFT), "Z-9 I40 J30 R5 H2 D2", MM, (-48, 48, -43, 43, -9, 10)),
+        (planned(frame), "Z-9 I40 J30 R12 H1 D2", MM, (-10, 10, -5, 5, -9, 10)),
+        (planned(frame), "Z-9 I40 J30 R5 H2 D2", MM, (-48, 48, -43, 43, -9, 10)),
     ],
 )  # fmt: skip
 def test_a_cycle_may_reach_its_limits_and_not_go_beyond(planner, words, state, reached):
@@ -223,7 +226,7 @@ def test_a_cycle_may_reach_its_limits_and_not_go_beyond(planner, words, state, r
 
 def test_a_frame_goes_down_at_the_machine_s_share_of_the_feed():
     words = Words("G13.7", words_of("Z-9 I40 J30 R12 D2"), MM)
-    numbers = plan_frame(words, COUNTERCLOCKWISE, PocketEntry(feed=40.0)).locals
+    numbers = planned(frame, plunge_feed=40.0)(words).locals
     assert numbers["plunge_feed"] == pytest.approx(0.4 * MM.feed)
 
 
@@ -244,7 +247,9 @@ def test_a_frame_goes_down_at_the_machine_s_share_of_the_feed():
     ],
 )  # fmt: skip
 def test_material_left_is_a_message(words, helix, message):
-    made = plan("haas", f"{words} D1", None, "rings", PocketEntry(helix=helix))
+    made = planned(haas, entry="helix" if helix else "plunge")(
+        Words("G12", words_of(words, "D1"), HAAS)
+    )
     assert made.message == (message and f"G12: {message}")
 
 
@@ -253,12 +258,42 @@ def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
     assert "is up from the tool" in plan("haas", "I.3 Z.5 D1", incremental=True).message
 
 
+# ---------------------------------------------------------------- a helix of too many turns
+
+HELIX = Settings(entry="helix", entry_angle=3.0)
+
+
+def down(first, *heights, cutter=5.0):
+    pocket_descent(Words("G13", {}, MM), HELIX, first, cutter, heights)
+
+
+@pytest.mark.parametrize(
+    ("cutter", "height", "further", "advice"),
+    [
+        (5.0, 100.0, 1.0, r"I from ([\d.]+) fits, or \[G12\] ENTRY = plunge"),
+        (0.0, 100.0, 1.0, r"I from ([\d.]+) fits, or \[G12\] ENTRY = plunge"),  # D0 has no size
+        (5.0, 2000.0, 1e9, r"([\d.]+) down fits at most, or \[G12\] ENTRY = plunge"),
+    ],
+)
+def test_the_advice_of_a_refused_helix_holds(cutter, height, further, advice):
+    """Of a thousand turns, to the first level alone."""
+    with pytest.raises(Refusal) as refused:
+        down(0.01, height, further, cutter=cutter)
+    advised = float(re.search(f"the most is 1000: {advice}$", refused.value.message)[1])
+    wide = advice.startswith("I")
+    fits = (advised - cutter + 1e-4, height) if wide else (100.0, advised - 1e-2)
+    fails = (advised - cutter - 0.005, height) if wide else (100.0, advised * 1.005)
+    down(*fits, further, cutter=cutter)
+    with pytest.raises(Refusal):
+        down(*fails, further, cutter=cutter)
+
+
 # ---------------------------------------------------------------- other edges
 
 
 def test_an_approach_that_only_misses_the_centre_by_rounding_is_no_fast_move():
     table = {2: Tool(2, 10 - 1e-11)}
-    assert plan("yasnac", "I50 R10 D2", tool_in_table=table.get).locals["approach"] == 0
+    assert plan("yasnac", "I50 R10 D2", tools=table).locals["approach"] == 0
 
 
 def test_what_is_as_small_as_a_refusal_says_is_cut():

@@ -8,21 +8,19 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour, PlaneNames, Start
+from g12.compensation.contour import Contour, Start
 from g12.cylinder import (
     CYLINDER_WORDS,
     CYLINDERS,
     Cylinder,
-    CylinderSettings,
-    plan,
-    split_on_cylinder,
+    CylinderSteps,
 )
 from g12.errors import Refusal
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock
-from g12.section.effects import codes_with_word
+from g12.section.effects import codes_of_section
 from g12.section.line import BlockLocation
 from g12.settings import Settings
 from support import planned_moves
@@ -30,7 +28,6 @@ from support.section_starts import START as POLAR_START
 from support.section_starts import with_found
 
 RADIUS = 20.0
-MACHINE = CylinderSettings(RADIUS, 0.005, 0.001, 1000.0, 3600.0, 1000.0)
 AXES = {
     "X": Axis(-10.0, 100.0, 50.0, 900.0),
     "Z": Axis(-100.0, 100.0, 50.0, 1100.0),
@@ -49,14 +46,17 @@ START = with_found(
 
 def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
-    names = PlaneNames(*CYLINDER_WORDS.plane, centre=CYLINDER_WORDS.centre_name)
     start = Start(z, math.radians(c), x)
-    return Contour(math.radians(c) * RADIUS, z, x, names=names, start=start)
+    return Contour(math.radians(c) * RADIUS, z, x, plane=CYLINDER_WORDS.plane, start=start)
 
 
-def runs(contour, **changed):
-    steps = plan(contour, MACHINE._replace(**changed)).steps
-    return [step for step in steps if isinstance(step, Segments)]
+def runs(contour, tolerance=0.005, **accelerations):
+    """Return the runs of segments on a machine all of whose axes are equally quick."""
+    even = {"X": 1000.0, "Z": 1000.0, "C": 3600.0, **accelerations}
+    axes = {letter: AXES[letter]._replace(acceleration=most) for letter, most in even.items()}
+    made = section(axes=axes)
+    made.tolerance = tolerance
+    return [step for step in made.plan(contour).steps if isinstance(step, Segments)]
 
 
 def test_a_little_z_and_depth_are_left_to_the_next_move_and_to_the_end():
@@ -83,9 +83,9 @@ def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
 @pytest.mark.parametrize(
     ("ends", "slow"),
     [
-        ([dict(height=12.0), dict(first=10.0)], "height_acceleration"),
-        ([dict(second=10.0), dict(first=10.0)], "slide_acceleration"),
-        ([dict(first=10.0), dict(second=10.0)], "turn_acceleration"),
+        ([dict(height=12.0), dict(first=10.0)], "X"),
+        ([dict(second=10.0), dict(first=10.0)], "Z"),
+        ([dict(first=10.0), dict(second=10.0)], "C"),
     ],
 )
 def test_the_slower_axis_decides_where_the_tool_stops(ends, slow):
@@ -93,10 +93,10 @@ def test_the_slower_axis_decides_where_the_tool_stops(ends, slow):
     corner = empty()
     for line, end in enumerate(ends, 1):
         corner.straight(**end, at=line, feed=600.0)
-    even = {"tolerance": 0.16, "turn_acceleration": math.degrees(1000.0 / RADIUS)}
-    assert [run.stop for run in runs(corner, **even)] == [False, True]
-    slower = {slow: 0.4 * {**MACHINE._asdict(), **even}[slow]}
-    assert [run.stop for run in runs(corner, **{**even, **slower})] == [True, True]
+    even = {"X": 1000.0, "Z": 1000.0, "C": math.degrees(1000.0 / RADIUS)}
+    assert [run.stop for run in runs(corner, 0.16, **even)] == [False, True]
+    slower = {**even, slow: 0.4 * even[slow]}
+    assert [run.stop for run in runs(corner, 0.16, **slower)] == [True, True]
 
 
 @settings(max_examples=150)
@@ -112,7 +112,7 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
     """Chords between the ends are no farther from the circle than half as much again inside."""
     start, end = centre + size * np.exp(1j * np.array([0.3, 0.3 + turn * sweep]))
     arc = planned_moves.arc(centre, complex(start), turn * sweep)
-    split = split_on_cylinder(arc, MACHINE._replace(per_radian=surface), deviation)
+    split = CylinderSteps(empty(), section(words={"C": surface})).split(arc, deviation)
     places = np.array(split.angles) * surface + 1j * np.array(split.slides)
     assert places[[0, -1]] == pytest.approx([start, end])
     places -= centre
@@ -130,17 +130,15 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 # ---------------------------------------------------------------- how it begins, its words
 
 
-def section(settings=Settings(), letters="XZC", **found):  # noqa: B008 - it is frozen
-    return Cylinder(with_found(START, **found), SectionMachine(letters, settings, AXES))
+def section(letters="XZC", axes=AXES, **found):
+    return Cylinder(with_found(START, **found), SectionMachine(letters, Settings(), axes))
 
 
 def test_the_settings_of_a_section_are_in_program_units():
     made = section(inch=True)
-    planning, rules = made.planning, made.rules
-    lengths = [made.tolerance, *planning[1:4], planning.height_acceleration, rules.radius_tolerance]
-    in_mm = [0.005, 0.005, 0.001, 1100, 900, 0.0127]
-    assert lengths == pytest.approx([length / 25.4 for length in in_mm])
-    assert (planning.per_radian, planning.turn_acceleration) == (RADIUS, 3600.0)
+    lengths = [made.tolerance, made.least, made.rules.radius_tolerance]
+    assert lengths == pytest.approx([length / 25.4 for length in (0.005, 0.001, 0.0127)])
+    assert made.per_radian == RADIUS
 
 
 @pytest.mark.parametrize(
@@ -159,7 +157,7 @@ def test_where_no_section_begins(found, rule):
 
 
 def test_one_code_switches_on_and_off():
-    codes = codes_with_word("G7.1", [], "cylinder_mode", "C")
+    codes = codes_of_section("G7.1", [], "cylinder_mode", "cylinder_mode", "C")
 
     def block(g=71, **words):
         return SectionBlock((-1, g), (), g, words)
@@ -194,15 +192,16 @@ def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B00
 def test_to_the_right_and_upwards_as_the_tool_sees_the_part(letter, sense, per_radian):
     """Positive A leads to Y-, positive B to X+: LinuxCNC turns by the right-hand rule."""
     made = on_mill(letter, Settings(rotary_sense=sense))
-    assert made.planning.per_radian == per_radian
+    assert made.per_radian == per_radian
     assert made.rules.turn_scale == pytest.approx(math.radians(per_radian))
 
 
-@pytest.mark.parametrize(("letter", "slide", "first"), [("A", 900.0, False), ("B", 1000.0, True)])
-def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, slide, first):
-    planning = on_mill(letter).planning
-    assert (planning.slide_acceleration, planning.turn_is_first) == (slide, first)
-    assert planning.height_acceleration == 1100.0
+@pytest.mark.parametrize(("letter", "slide", "along"), [("A", 900.0, 1.0), ("B", 1000.0, 1j)])
+def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, slide, along):
+    steps = CylinderSteps(empty(), on_mill(letter))
+    assert steps.slide_at(7.0 * along) == 7.0
+    assert steps.acceleration((along.real, along.imag, 0.0), 0j) == pytest.approx(slide)
+    assert steps.acceleration((0.0, 0.0, -1.0), 0j) == pytest.approx(1100.0)
 
 
 @pytest.mark.parametrize(

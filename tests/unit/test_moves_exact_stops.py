@@ -6,15 +6,15 @@ tool passes the corner at sqrt(2) v t / 8.
 """
 
 import math
-from functools import partial
 
 import pytest
 
-from g12.compensation.contour import Plunge
+from g12.compensation.contour import Contour, Plunge
 from g12.geometry.curve import Line
 from g12.moves import exact_stops
-from g12.polar.polar_section import quickness
+from g12.polar.polar_section import PolarSteps
 from support import planned_moves
+from support.section_starts import AXES, polar
 
 FEED = 600.0  # 10 per second
 C = 1000.0 / 30.0  # as quick as X at the corners, which are at radius 30
@@ -23,8 +23,10 @@ ROUNDING = math.sqrt(2) * 10.0 * (2 * 10.0 / 1000.0) / 8
 
 def stops(path, rounding, x, c):
     """Return where the tool stops on a face; accelerations per second squared, of C in radians."""
-    quick = partial(quickness, x_acceleration=x, c_acceleration=math.degrees(c), beside=0.0)
-    return exact_stops.stops(path, rounding, quick)
+    quick = {"X": x, "C": math.degrees(c)}
+    axes = {name: AXES[name]._replace(acceleration=most) for name, most in quick.items()}
+    steps = PolarSteps(Contour(30.0, 0.0, 0.0), polar(axes=axes))
+    return exact_stops.stops(path, rounding, steps.acceleration)
 
 
 def line(x0, c0, x1, c1, h0=0.0, h1=0.0, feed=FEED):

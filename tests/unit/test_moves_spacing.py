@@ -8,11 +8,9 @@ import pytest
 
 from g12.errors import Refusal
 from g12.moves.steps import MOST_SEGMENTS_OF_MOVE, spaced
-from g12.polar.polar_section import PolarSettings, plan
 from support.contour_geometry import Round
 from support.planned_cuts import programmed
-
-FINEST = PolarSettings(1e-5, 0.001, 1000.0, 3600.0, 21600.0)
+from support.section_starts import polar
 
 
 def test_the_most_segments_are_made():
@@ -23,7 +21,7 @@ def test_the_most_segments_are_made():
 def test_an_arc_of_too_many_segments_is_refused_with_its_line():
     far = Round(1e6 + 0j, 1e5 + 0j, 2 * math.pi)
     with pytest.raises(Refusal) as refused:
-        plan(programmed([far]), FINEST, c=0.0)
+        polar(tolerance=1e-5).plan(programmed([far]))
     assert refused.value.message == (
         "G12.1 line 1: more than 100000 moves would be needed to stay within POLAR_TOLERANCE"
     )

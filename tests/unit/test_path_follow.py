@@ -10,7 +10,7 @@ from g12.tools.path.follow import follow, windows_of, worst_of
 from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Part
 from g12.tools.path.slowest import pace_of
-from g12.tools.path.track import duration, track
+from g12.tools.path.track import Track, duration
 from support.made_moves import HOME, LIMITS, Hand, samples_of
 
 MILL, FACE = Part(turning=False), Part(turning=True)
@@ -38,23 +38,23 @@ def test_feed_per_revolution_needs_the_spindle():
 
 
 def test_a_track_tells_length_time_and_feed_of_each_move():
-    path = track(MILL, Hand(feed=600).rapid(x=10).arc(1, 0, 0).moves, LIMITS)
+    path = Track(MILL, Hand(feed=600).rapid(x=10).arc(1, 0, 0).moves, LIMITS)
     assert path.part_length(1) == pytest.approx(20 * math.pi, rel=1e-4)
     assert (path.seconds(1), path.part_feed(1)) == pytest.approx((2 * math.pi, 600), rel=1e-4)
-    on_face = track(FACE, Hand(feed=3600).rapid(x=10).line(c=90).moves, LIMITS)
+    on_face = Track(FACE, Hand(feed=3600).rapid(x=10).line(c=90).moves, LIMITS)
     assert on_face.part_feed(1) == pytest.approx(math.radians(60) * 10 * 60, rel=1e-3)
 
 
 def run_of(hand, unit=1.0, change=lambda samples: None, **options):
     """Return a run along a hand's path, its samples changed."""
-    path = track(MILL, hand.moves, LIMITS)
+    path = Track(MILL, hand.moves, LIMITS)
     samples = samples_of(path, **options)
     change(samples)
     return follow(path, samples, unit)
 
 
 def test_an_arc_is_followed_exactly_not_by_its_chords():
-    path = track(MILL, Hand().rapid(x=50).arc(-1, 0, 0).moves, LIMITS, chord_error=0.05)
+    path = Track(MILL, Hand().rapid(x=50).arc(-1, 0, 0).moves, LIMITS)
     samples = samples_of(path, 3000)
     angle = -np.linspace(0, 2 * math.pi, 3000)
     samples.axes.update(X=50.003 * np.cos(angle), Y=50.003 * np.sin(angle))
@@ -135,7 +135,7 @@ def test_the_largest_deviation_is_looked_for_in_cuts_only():
 
 
 def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
-    path = track(MILL, Hand(feed=600).line(x=100).moves, LIMITS)
+    path = Track(MILL, Hand(feed=600).line(x=100).moves, LIMITS)
     samples = samples_of(path, 10001)  # of 1 ms
     speed = np.full(10001, 10.0)  # mm/s
     speed[:200] = np.linspace(0, 10, 200)
@@ -159,9 +159,9 @@ def test_the_nearest_points_of_segments_are_found_for_many_points_at_once():
 
 def test_a_sample_may_be_on_its_lines_moves_or_in_a_corner_with_the_neighbours():
     hand = Hand().line(x=10).next_block().line(x=10, y=10).next_block().line(x=0, y=10)
-    path, lines = track(MILL, hand.moves, LIMITS), np.array([1, 1, 2, 3])
-    windows = windows_of(path, lines)
-    assert windows.on_its_line.tolist() == [[0, 0], [0, 0], [1, 1], [2, 2]]
-    assert windows.with_neighbours.tolist() == [[0, 1], [0, 1], [0, 2], [1, 2]]
-    anywhere = windows_of(path, lines[::-1])
-    assert anywhere.on_its_line.tolist() == anywhere.with_neighbours.tolist() == [[0, 2]] * 4
+    path, lines = Track(MILL, hand.moves, LIMITS), np.array([1, 1, 2, 3])
+    on_its_line, with_neighbours = windows_of(path, lines)
+    assert on_its_line.tolist() == [[0, 0], [0, 0], [1, 1], [2, 2]]
+    assert with_neighbours.tolist() == [[0, 1], [0, 1], [0, 2], [1, 2]]
+    anywhere = [window.tolist() for window in windows_of(path, lines[::-1])]
+    assert anywhere == [[[0, 2]] * 4] * 2

@@ -9,13 +9,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour, Plunge
+from g12.machine_ini import FaceAxes
 from g12.moves.steps import FaceSwitch, Segments
 from g12.polar.face import blending_halves, in_face
-from g12.polar.polar_section import PolarSettings, plan
 from support import planned_moves
-from support.face_moves import LIMITS, arc, arcs, line, lines, motion
+from support.face_moves import arc, arcs, line, lines, motion
+from support.section_starts import AXES, polar
 
-SETTINGS = PolarSettings(0.005, 0.001, 707.0, 3600.0, 21600.0, face=LIMITS)
+X = AXES["X"]
+FACE = FaceAxes(X, X, X, 1.0)
 
 
 @pytest.mark.parametrize(
@@ -59,18 +61,18 @@ def test_arcs_on_the_face_leave_the_machine_at_their_end():
     drawn = Contour(60.0, 0.0, 0.0)
     drawn.arc(-1, 40.0, 20.0, i=-20.0, at=7, feed=1000.0)
     drawn.straight(40.0, 30.0, -1.0, at=8, feed=1000.0)
-    made = plan(drawn, SETTINGS, c=10.0)
+    made = polar(10.0, face=FACE).plan(drawn)
     there, arc_on, line_on, back = made.steps
     for step, (x, c), z in ((arc_on, (40, 20), 0.0), (line_on, (40, 30), -1.0)):
         assert step.segments[-1] == pytest.approx((hypot(x, c), 10 + degrees(atan2(c, x)), z))
     assert len(arc_on.segments) > 40
-    assert made.position == pytest.approx(line_on.segments[-1])
-    assert (there.position, back.position) == ((60.0, 10.0, 0.0), made.position)
+    assert (made.end.slide, made.end.height) == pytest.approx(line_on.segments[-1][::2])
+    assert (there.position, back.position) == ((60.0, 10.0, 0.0), line_on.segments[-1])
     assert abs(line_on.move.start) == pytest.approx(hypot(40, 20))
 
 
 def test_the_part_beside_the_pole_is_made_of_segments_and_the_face_begins_anew():
-    made = plan(contour((30, 20), (0.2, 20), (0.2, -30), (30, -30), (30, 0)), SETTINGS, c=0.0)
+    made = polar(face=FACE).plan(contour((30, 20), (0.2, 20), (0.2, -30), (30, -30), (30, 0)))
     assert [step.on for step in made.steps if isinstance(step, FaceSwitch)] == [True, False] * 2
     assert {step.line for step in made.steps if isinstance(step, Segments)} == {9}
     *_, at = (k for k, step in enumerate(made.steps) if isinstance(step, FaceSwitch) and step.on)

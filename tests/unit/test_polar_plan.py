@@ -11,14 +11,13 @@ from hypothesis import strategies as st
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.moves.steps import Segments
-from g12.polar.polar_section import PolarSettings, plan
 from g12.section.effects import Action
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
+from support.section_starts import polar
 
 TOLERANCE = 0.005
-LATHE = PolarSettings(TOLERANCE, 0.001, 1000.0, 3600.0, 21600.0)
-EXACT = LATHE._replace(least_x=1e-9)  # nothing is handed on, so that all of the deviation is seen
+LEAST = 1e-9  # of the slide: nothing is handed on, so that all of the deviation is seen
 
 coordinate = st.floats(-30.0, 30.0) | st.sampled_from([0.0, 1e-9, 0.001, -0.004, 0.02, 1.0, -7.0])
 point = st.builds(complex, coordinate, coordinate)
@@ -75,7 +74,7 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
     contour, beside = programmed(shapes), shapes[0].start.imag
     nearest = distance(np.array([0j]), shapes)[0]
     try:
-        planned = plan(contour, EXACT._replace(tolerance=tolerance, beside=beside), c=c)
+        planned = polar(c, tolerance, LEAST, polar_tool_offset=beside).plan(contour)
     except Refusal as refusal:
         assert "POLAR_TOOL_OFFSET" in refusal.message
         assert beside and nearest < abs(beside) + tolerance + 1e-9
@@ -93,7 +92,7 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
 @pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
 def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
     """X has 1000 mm/s²: at F250 it takes 8 ms to speed up, and the segments near X0 are short."""
-    run = plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed), LATHE, c=0.0).steps[0]
+    run = polar().plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed)).steps[0]
     assert len(run.segments) == segments
 
 
@@ -109,7 +108,7 @@ def is_small(shape):
 @given(drawings())
 def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes):
     contour = programmed(shapes, feed=100.0)
-    for cut in cuts(contour, plan(contour, EXACT, c=0.0)):
+    for cut in cuts(contour, polar(least=LEAST).plan(contour)):
         if min(cut.radius) > 2.0 and not is_small(shapes[cut.line - 1]):
             assert all(speed == pytest.approx(100.0, rel=0.02) for speed in cut.speeds)
 
@@ -122,7 +121,7 @@ def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes)
 
 def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
     contour = programmed([Straight(10 + 0j, -8 + 0j)], feed=300.0)
-    assert runs(plan(contour, LATHE, c=0.0)) == [
+    assert runs(polar().plan(contour)) == [
         Segments(1, "XC", [(0.0, 0.0, 0.0, 300.0)], True),
         Segments(1, "XC", [(0.0, -180.0, 0.0, 21600.0)], True),
         Segments(1, "XC", [(8.0, -180.0, 0.0, 300.0)], True),
@@ -131,12 +130,12 @@ def test_through_the_pole_c_turns_in_place_as_fast_as_it_may():
 
 @pytest.mark.parametrize("shape", [Straight(9 + 0j, -9 + 0.003j), Round(9 + 0j, 4.501 + 0j, 5.0)])
 def test_a_path_through_the_pole_is_refused_on_demand(shape):
-    careful = LATHE._replace(pole_refused=True)
+    careful = polar(polar_pole="refuse")
     with pytest.raises(
         Refusal, match=r"^G12\.1 line 1: .*spindle's centre \(POLAR_POLE = refuse\)$"
     ):
-        plan(programmed([shape]), careful, c=0.0)
-    assert plan(programmed([Straight(9 + 0j, -9 + 0.2j)]), careful, c=0.0).steps
+        careful.plan(programmed([shape]))
+    assert careful.plan(programmed([Straight(9 + 0j, -9 + 0.2j)])).steps
 
 
 # A tool beside the X line.
@@ -153,7 +152,7 @@ def test_marks_keep_their_place_and_segments_their_lines():
     contour.mark(Action(4, "S500", None))
     contour.straight(12.0, 3.0, at=5, feed=100.0)
     contour.mark(Action(6, "M9", None))
-    steps = plan(contour, LATHE, c=0.0).steps
+    steps = polar().plan(contour).steps
     order = [step.line if isinstance(step, Segments) else step.text for step in steps]
     assert order == ["M8", 2, 3, "S500", 5, "M9"]
     assert steps[2] == Segments(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
@@ -163,12 +162,12 @@ def test_what_the_segments_leave_over_of_both_slides_comes_last():
     contour = Contour(10.0, 0.0, 0.0)
     end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
     contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, at=2, feed=250.0)
-    *_, rest = runs(plan(contour, LATHE, c=0.0))
+    *_, rest = runs(polar().plan(contour))
     assert (rest.axes, rest.stop) == ("XZ", True)
     assert (rest.segments[0][0], rest.segments[0][2]) == (abs(end), 0.0003)
     contour = Contour(10.0, 0.0, 0.0)
     contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, at=2, feed=250.0)
-    assert runs(plan(contour, LATHE, c=0.0))[-1].axes == "Z"
+    assert runs(polar().plan(contour))[-1].axes == "Z"
 
 
 def test_segments_that_keep_x_stay_within_the_tolerance():
@@ -177,6 +176,6 @@ def test_segments_that_keep_x_stay_within_the_tolerance():
     contour = Contour(25.4718, 0.0, 0.0)
     for line in (1, 2):
         contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, at=line, feed=300.0)
-    made = cuts(contour, plan(contour, LATHE, c=0.0))
+    made = cuts(contour, polar().plan(contour))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE

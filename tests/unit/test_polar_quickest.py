@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What of a section is made on the face, with which acceleration: as it is made soonest."""
 
-from itertools import groupby
 from math import hypot, pi, radians
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from g12.polar.face import FaceLimits, MoveDemands
@@ -29,23 +28,22 @@ def length_of(path):
     return sum(part.length for part in path)
 
 
-def made_of(path, limits):
-    return quickest(path, [False] * len(path), limits)
-
-
-def shares_of(made):
-    return [stretch.share if stretch else 0.0 for stretch in made.stretches]
+def made_of(path, limits, stop=False):
+    """Return the divided path, its stops, and the share of each move's stretch, 0 in segments."""
+    made = list(quickest(path, [stop] * len(path), limits))
+    moves, stops = ([each[k] for each in made] for k in (0, 1))
+    return moves, stops, [stretch.share if stretch else 0.0 for _, _, stretch in made]
 
 
 def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
-    made = quickest([line((-90, 0.5), (90, 0.5), feed=3000.0)], [True], QUICK)
-    there, *beside, back = shares_of(made)
+    path, stopping, shares = made_of([line((-90, 0.5), (90, 0.5), feed=3000.0)], QUICK, stop=True)
+    there, *beside, back = shares
     assert there == back > 0.0 in beside
-    assert made.stopping == [*[False] * (len(made.path) - 1), True]
-    in_segments = [part for part, share in zip(made.path, shares_of(made)) if not share]
+    assert stopping == [*[False] * (len(path) - 1), True]
+    in_segments = [part for part, share in zip(path, shares) if not share]
     assert [part.feed for part in in_segments] == [3000.0]
     assert in_segments[0].length < 40
-    for before, after in zip(made.path, made.path[1:]):
+    for before, after in zip(path, path[1:]):
         assert before.end == pytest.approx(after.start)
 
 
@@ -56,7 +54,7 @@ MARK = Action(2, "M8", None)
 @pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
 def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
     far = line((40, 0), (40, 10 * seconds), feed=600.0)
-    shares = shares_of(made_of([SHORT, far, MARK, SHORT], QUICK))
+    *_, shares = made_of([SHORT, far, MARK, SHORT], QUICK)
     assert [*map(bool, shares)] == [False, worth, worth, False]
 
 
@@ -76,18 +74,17 @@ circles = st.builds(
 
 @settings(max_examples=100)
 @given(st.one_of(ways, circles), st.sampled_from([QUICK, SLOW]))
+@example([circle(28, 26.75, 463.0)], QUICK)  # C accelerates most between two points
 def test_all_of_the_path_is_made_and_followed(path, limits):
-    made = made_of(path, limits)
-    assert len(made.path) == len(made.stopping) == len(made.stretches)
-    assert length_of(made.path) == pytest.approx(length_of(path))
-    for share, run in groupby(zip(made.path, shares_of(made)), lambda one: one[1]):
-        for move, _ in run:
-            assert not share or MoveDemands(move, limits).can_be_followed(share)
-            assert share or move.feed in [one.feed for one in path]
+    made, _, shares = made_of(path, limits)
+    assert length_of(made) == pytest.approx(length_of(path))
+    for move, share in zip(made, shares):
+        assert not share or MoveDemands(move, limits).can_be_followed(share)
+        assert share or move.feed in [one.feed for one in path]
 
 
 def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
-    made = made_of([circle(10, 20, 2000.0)], SLOW)
-    feeds = [part.feed for part, share in zip(made.path, shares_of(made)) if share]
+    path, _, shares = made_of([circle(10, 20, 2000.0)], SLOW)
+    feeds = [part.feed for part, share in zip(path, shares) if share]
     assert 2000.0 == max(feeds) > min(feeds)
-    assert abs(made.path[-1].end) == pytest.approx(30.0)
+    assert abs(path[-1].end) == pytest.approx(30.0)

@@ -64,10 +64,9 @@ def test_lengths_are_in_program_units(machine_mm, inch, tolerance):
     millimetre = 1 / INCH if inch else 1.0
     machine_unit = machine_mm * millimetre
     assert made.rules.radius_tolerance == pytest.approx(0.0005 * INCH * millimetre)
-    assert made.tolerance == made.planning.tolerance == pytest.approx(tolerance)
-    assert made.planning.least_x == pytest.approx(0.001 * millimetre)
-    assert made.planning.x_acceleration == pytest.approx(1000.0 * machine_unit)
-    assert (made.planning.c_acceleration, made.planning.c_speed) == (1000.0, 3000.0)
+    assert made.tolerance == pytest.approx(tolerance)
+    assert made.least == pytest.approx(0.001 * millimetre)
+    assert made.in_program(AXES["X"]) == pytest.approx(1000.0 * machine_unit)
 
 
 @pytest.mark.parametrize(
@@ -105,7 +104,7 @@ def test_what_the_axes_of_the_face_allow(override, kept):
     made = section(kinematics, axes=axes, face=face, machine_mm=INCH)
     nearest = 20.0 * INCH / radians(700.0)
     chord = sqrt(8.0 * made.tolerance * nearest)
-    assert made.planning.face == FaceLimits(
+    assert made.face == FaceLimits(
         acceleration=pytest.approx(50.0 * INCH),
         round_acceleration=pytest.approx(30.0 * INCH),
         slide_acceleration=pytest.approx(20.0 * INCH),
@@ -114,7 +113,7 @@ def test_what_the_axes_of_the_face_allow(override, kept):
         override=kept,
         segments_speed=pytest.approx(0.7 * sqrt(20.0 * INCH * chord)),
     )
-    assert section(face=face).planning.face is None
+    assert section(face=face).face is None
 
 
 def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed():
@@ -122,8 +121,8 @@ def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed
     beside = Settings(polar_kinematics=True, polar_tool_offset=-2.0)
     face = FaceAxes(slide, slide, slide, 1.0)
     made = section(beside, face=face, machine_mm=INCH)
-    assert made.rules.beside == made.planning.beside == made.planning.face.beside == -2.0 * INCH
-    assert made.planning.face.slide_speed == pytest.approx(9.0 * INCH)
-    assert section().rules.beside == section().planning.beside == 0.0
-    assert section(Settings(polar_pole="refuse")).planning.pole_refused
-    assert not section().planning.pole_refused
+    assert made.rules.beside == made.face.beside == -2.0 * INCH
+    assert made.face.slide_speed == pytest.approx(9.0 * INCH)
+    assert section().rules.beside == 0.0
+    assert section(Settings(polar_pole="refuse")).pole_refused
+    assert not section().pole_refused

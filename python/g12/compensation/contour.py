@@ -75,18 +75,6 @@ class Plunge(NamedTuple):
     h1: float
 
 
-class PlaneNames(NamedTuple):
-    """What a program calls the axes of the plane, and an arc's centre, for messages."""
-
-    first: str
-    second: str
-    height: str
-    centre: str
-
-
-FACE_NAMES = PlaneNames("X", "C", "Z", "I and J")
-
-
 class Start(NamedTuple):
     """The machine's position: the slide of the plane, the rotary axis in radians, the height.
 
@@ -106,9 +94,9 @@ class Contour:
     """Collects the blocks of one section, in order, and refuses those that cannot be a contour.
 
     ``first``, ``second`` and ``height`` are the programmed position, readable at any time. ``code``
-    and ``names`` are for messages. ``radius_tolerance`` is how far an arc's radii at start and end
-    may differ. ``beside`` is the tool's distance from the programmed start along the second axis;
-    the first G1 removes it.
+    is for messages, and so are the letters of the ``plane`` and of an arc's ``centre``.
+    ``radius_tolerance`` is how far an arc's radii at start and end may differ. ``beside`` is the
+    tool's distance from the programmed start along the second axis; the first G1 removes it.
 
     ``side`` is the compensation in force: 40, 41 or 42. ``mirrored``: the tool of a G41 is on the
     right, as its radius is below 0, and that of a G42 on the left. ``start`` is the machine's
@@ -123,13 +111,15 @@ class Contour:
         height: float,
         *,
         code: str = "G12.1",
-        names: PlaneNames = FACE_NAMES,
+        plane: str = "XCZ",
+        centre: str = "I and J",
         radius_tolerance: float = 0.0,
         start: Start | None = None,
         beside: float = 0.0,
     ) -> None:
         self.first, self.second, self.height = first, second, height
-        self.code, self.names, self.radius_tolerance = code, names, radius_tolerance
+        self.code, self.radius_tolerance = code, radius_tolerance
+        self._plane, self._centre = plane, centre
         self.elements: list[PathElement] = []
         # of the elements, within SAME_POINT
         self._end, self._level = complex(first, second + beside), height
@@ -190,7 +180,7 @@ class Contour:
         """
         self._check_arc(turn, i, j, radius, at, feed)
         end, h1 = self._absolute(at, first, second, height)
-        self._check_lengths(at, (*self.names.centre.split(" and "), "R"), (i, j, radius))
+        self._check_lengths(at, (*self._centre.split(" and "), "R"), (i, j, radius))
         if radius is None:
             curve = self._about_centre(turn, end, complex(i or 0.0, j or 0.0), at)
         else:
@@ -263,7 +253,7 @@ class Contour:
         first = self.first if first is None else first
         second = self.second if second is None else second
         height = self.height if height is None else height
-        self._check_lengths(line, self.names, (first, second, height))
+        self._check_lengths(line, self._plane, (first, second, height))
         return complex(first, second), height
 
     def _check_lengths(
@@ -280,7 +270,7 @@ class Contour:
 
     def _check_waiting(self) -> None:
         if self._switch is not None:
-            either = f"{self.names.first} or {self.names.second}"
+            either = " or ".join(self._plane[:2])
             self.refuse(self._switch, f"G{self.side} needs a G1 with {either} in its own block")
 
     def _check_switch(self, line: int, length: float) -> None:
@@ -316,9 +306,9 @@ class Contour:
         if self._switch is not None:
             self.refuse(line, f"G{self.side} with {name}: compensation is switched by a G1 only")
         if radius is not None and (i is not None or j is not None):
-            self.refuse(line, f"{name}: either R or {self.names.centre}, not both")
+            self.refuse(line, f"{name}: either R or {self._centre}, not both")
         if radius is None and not i and not j:
-            self.refuse(line, f"{name} needs R, or the centre in {self.names.centre}")
+            self.refuse(line, f"{name} needs R, or the centre in {self._centre}")
 
     def _about_centre(self, turn: int, end: complex, arm: complex, line: int) -> Arc:
         """Return an arc about a centre, which is moved to be equally far from both ends."""
@@ -341,7 +331,7 @@ class Contour:
         apart = abs(end - start)
         half, name = 0.5 * apart, f"{_name(turn)} R{number(radius)}"
         if apart <= SAME_POINT:
-            self.refuse(line, f"{name}: a full circle needs {self.names.centre}, not R")
+            self.refuse(line, f"{name}: a full circle needs {self._centre}, not R")
         if half - abs(radius) > max(0.5 * self.radius_tolerance, RADIUS_TOLERANCE_RATIO * half):
             self.refuse(
                 line,

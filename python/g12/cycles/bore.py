@@ -10,14 +10,14 @@ from math import atan, ceil, degrees, pi, radians, tan
 from g12.cut_report import PocketCut
 from g12.cycles.plan import CyclePlan, hole_of, turns_of
 from g12.errors import number
-from g12.request import CLEARED, Cutter, CycleExtent, Words, steps_between
+from g12.request import CLEARED, Cutter, Words, steps_between
+from g12.settings import Settings
 from g12.state import XY
 
 BORE_WORDS = "X Y Z I P R K L Q D F"
 
 
-def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
-    """Return the bore of one block; ``steepest`` is [G12] ENTRY_ANGLE, in degrees."""
+def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
     words.check_block(BORE_WORDS)
     hole = hole_of(words)
     wall = words.require_positive("I", "the finished radius")
@@ -36,8 +36,8 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
         rule = f"is longer than the hole, {number(hole.depth)} from its top to Z: it is no feed"
         raise words.refuse_word("P", pitch, rule)
     check_way_back(words, wall, first - cutter.radius > opened, stepover, cutter)
-    if opened < 2 * cutter.radius:
-        check_slope(words, pitch, first, steepest)
+    if opened < first:  # the end of the cutter is over material up to its centre
+        check_slope(words, pitch, first, settings.entry_angle)
     circles = ceil(min(hole.depth / pitch, 1e9)) * (steps + 1) + springs
     words.check_count(circles, "P, Q and L make")
     numbers = {
@@ -50,22 +50,15 @@ def plan_bore(words: Words, arc: int, steepest: float) -> CyclePlan:
         "arc": arc,
     }
     centre, first_wall = (hole.x, hole.y, hole.z), first + cutter.radius
-
-    def cut() -> PocketCut:
-        return PocketCut(
-            XY, centre, wall, first_wall, stepover or 0.0, -1.0, (hole.z,), cutter.used
-        )
-
-    extent = CycleExtent(XY, centre, last, (hole.start, hole.z))
-    words.check_travel(extent)
+    words.check_travel(centre, last, (hole.start, hole.z))
+    cut = PocketCut(XY, centre, wall, first_wall, stepover or 0.0, -1.0, (hole.z,), cutter.used)
     return CyclePlan(numbers, cut, cutter)
 
 
 def open_radius(words: Words, wall: float) -> float:
     """Return K, the radius that is already open, 0 without."""
     opened = words.take("K") or 0.0
-    if opened < 0:
-        raise words.refuse_word("K", opened, "must be at least 0")
+    words.check_least("K", opened, 0)
     if opened >= wall - words.context.rounding:
         raise words.refuse_word("K", opened, f"must be less than I{number(wall)}")
     return opened

@@ -38,13 +38,12 @@ from g12.request import (
     CLOCKWISE,
     COUNTERCLOCKWISE,
     LEFT_OUT,
-    CycleExtent,
     Words,
     loaded_tool,
     opposite,
     steps_between,
 )
-from g12.state import XY, Tool
+from g12.state import Tool
 
 EVENT_ENTRIES = "GXYZWORDCKJLPFV"  # of o<circle_mill> call, in this order
 PERIMETER_CYCLE, POCKET_CYCLE = 0, 7  # the control's G0 and G7
@@ -193,10 +192,10 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
     heights = first_plane, second_plane, final
-    words.check_travel(CycleExtent(XY, (circle.x, circle.y, final), largest, heights))
+    words.check_travel((circle.x, circle.y, final), largest, heights)
     return CyclePlan(
         position | roughing | depths | side | feeds,
-        lambda: cut_of_event(entries, circle, tool, depths),
+        cut_of_event(entries, circle, tool, depths),
         None,
         uncut_material(words, roughing["roughing_width"], tool),
         given,
@@ -303,8 +302,7 @@ def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float |
             f"J is missing: its default, the tool diameter {context.tool_size(2 * tool.radius)}"
             f" less {number(narrower)}, is too small"
         )
-    if widest < least:
-        raise words.refuse_word("J", widest, f"must be at least {number(least)}")
+    words.check_least("J", widest, least)
     return max(1, steps_between(0.0, outermost, widest, context.rounding))
 
 
@@ -340,10 +338,9 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> di
 
     Inside, the entry arc has the direction of the cut; outside, the opposite one.
     """
-    smallest = entries.words.context.smallest_ring
-    if 0 < entries.finish < smallest:
-        rule = f"must be at least {number(smallest)}"
-        raise entries.words.refuse_word(entries.letters.finish, entries.finish, rule)
+    words, finish = entries.words, entries.finish
+    if finish:
+        words.check_least(entries.letters.finish, finish, words.context.smallest_ring)
     other = opposite(circle.finish_arc)
     return {
         "side_finish": entries.finish > 0,

@@ -10,10 +10,10 @@ from math import ceil, pi, radians, tan
 from typing import NamedTuple
 
 from g12.cut_report import FrameCut
-from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, PocketEntry, hole_of
+from g12.cycles.plan import CLEARANCE_MM, CyclePlan, hole_of
 from g12.errors import number
-from g12.request import CLEARED, Cutter, CycleExtent, Words, opposite, steps_between
-from g12.state import XY
+from g12.request import CLEARED, Cutter, Words, opposite, steps_between
+from g12.settings import Settings
 
 FRAME_WORDS = "X Y Z I J R K Q E P H D F"
 POCKET, WALL_OUTSIDE = 0, 2  # H; 1 is the wall inside
@@ -35,15 +35,14 @@ class Frame(NamedTuple):
         return 1 if self.kind == WALL_OUTSIDE else -1
 
 
-def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
-    """Return the frame of one block; ``entry`` are the machine's settings of a plunge."""
+def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
     words.check_block(FRAME_WORDS)
     context = words.context
     hole = hole_of(words, context.z)
     frame = frame_of(words)
     level = words.take_positive("K") or hole.depth
     stepover = words.take_positive("Q")
-    plunge_feed = words.take_positive("P") or context.feed * entry.feed / 100
+    plunge_feed = words.take_positive("P") or context.feed * settings.plunge_feed / 100
     cutter = words.sized_cutter()
     if stepover:
         check_stepover(words, frame, stepover, cutter)
@@ -65,21 +64,24 @@ def plan_frame(words: Words, arc: int, entry: PocketEntry) -> CyclePlan:
         "side": frame.side,
         "arc": arc,
         "lead_arc": opposite(arc) if frame.side > 0 else arc,
-        "turns": turns_down(words, fall, lead, entry) if entry.helix else 0,
+        "turns": turns_down(words, fall, lead, settings),
         "plunge_feed": plunge_feed,
         "feed": context.feed,
     }
-
-    def cut() -> FrameCut:
-        lengths = 2 * frame.half_x, 2 * frame.half_y
-        floors = tuple(hole.top - (n + 1) * fall for n in range(levels))
-        middle = frame.kind != POCKET
-        return FrameCut(
-            (hole.x, hole.y), lengths, frame.corner, frame.side, middle, floors, cutter.used
-        )
-
-    extent = extent_of(hole, frame, cutter, lead)
-    words.check_travel(extent)
+    beyond = frame.side * cutter.radius
+    corner = max(0.0, frame.corner + beyond)
+    corners = frame.half_x + beyond - corner, frame.half_y + beyond - corner
+    around = 2 * lead + frame.finish if frame.side > 0 else 0.0  # the lead onto the last ring
+    words.check_travel((hole.x, hole.y, hole.z), corner + around, (hole.top, hole.z), corners)
+    cut = FrameCut(
+        (hole.x, hole.y),
+        (2 * frame.half_x, 2 * frame.half_y),
+        frame.corner,
+        frame.side,
+        frame.kind != POCKET,
+        tuple(hole.top - (n + 1) * fall for n in range(levels)),
+        cutter.used,
+    )
     return CyclePlan(numbers, cut, cutter)
 
 
@@ -87,8 +89,7 @@ def frame_of(words: Words) -> Frame:
     half_x = words.require_positive("I", "the length along X") / 2
     half_y = words.require_positive("J", "the length along Y") / 2
     corner = words.require("R", "the corner radius")
-    if corner < 0:
-        raise words.refuse_word("R", corner, "must be at least 0")
+    words.check_least("R", corner, 0)
     for letter, half in (("I", half_x), ("J", half_y)):
         if corner > half + words.context.rounding:
             rule = f"must be at most half of {letter}{number(2 * half)}"
@@ -96,21 +97,14 @@ def frame_of(words: Words) -> Frame:
     kind = words.take_whole("H", least=POCKET, most=WALL_OUTSIDE, default=POCKET)
     finish = words.take("E") or 0.0
     if finish:
-        check_arc(words, "E", finish)
+        words.check_least("E", finish, 2 * words.context.smallest_ring)  # for a half circle
     return Frame(half_x, half_y, min(corner, half_x, half_y), kind, finish)
-
-
-def check_arc(words: Words, letter: str, growth: float) -> None:
-    """Refuse a growth whose half circle would be too small."""
-    least = 2 * words.context.smallest_ring
-    if growth < least:
-        raise words.refuse_word(letter, growth, f"must be at least {number(least)}")
 
 
 def check_stepover(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> None:
     if frame.kind != POCKET:
         raise words.refuse_word("Q", stepover, "is the stepover of a pocket (H0)")
-    check_arc(words, "Q", stepover)
+    words.check_least("Q", stepover, 2 * words.context.smallest_ring)
     if stepover > WIDEST * 2 * cutter.radius:
         size = words.context.tool_size(2 * cutter.radius)
         rule = f"must not exceed {WIDEST} x the tool diameter {size} ({cutter.source})"
@@ -159,19 +153,11 @@ def rings_of(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> dic
     }
 
 
-def turns_down(words: Words, height: float, radius: float, entry: PocketEntry) -> int:
-    """Return the whole turns of the helix down to a level."""
-    turns = max(1, ceil(height / (2 * pi * radius * tan(radians(entry.angle))) - 1e-9))
+def turns_down(words: Words, height: float, radius: float, settings: Settings) -> int:
+    """Return the whole turns of the helix down to a level, none without one."""
+    if settings.entry != "helix":
+        return 0
+    slope = tan(radians(settings.entry_angle))
+    turns = max(1, ceil(height / (2 * pi * radius * slope) - 1e-9))
     words.check_count(turns, "a helix down to the level makes")
     return turns
-
-
-def extent_of(hole: Hole, frame: Frame, cutter: Cutter, lead: float) -> CycleExtent:
-    """Return the tool centre's last ring, and outside the lead onto it."""
-    beyond = frame.side * cutter.radius
-    corner = max(0.0, frame.corner + beyond)
-    along_x, along_y = frame.half_x + beyond - corner, frame.half_y + beyond - corner
-    if frame.side > 0:
-        corner += 2 * lead + frame.finish
-    centre = hole.x, hole.y, hole.z
-    return CycleExtent(XY, centre, corner, (hole.top, hole.z), (along_x, along_y))

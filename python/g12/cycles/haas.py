@@ -25,9 +25,10 @@ a ring that can be cut, less than K; not too many circles; a helix of not too ma
 from typing import NamedTuple
 
 from g12.cut_report import PocketCut
-from g12.cycles.plan import STRAIGHT_DOWN, CyclePlan, PocketEntry, pocket_descent
+from g12.cycles.plan import CyclePlan, pocket_descent
 from g12.errors import number
-from g12.request import CLEARED, Cutter, CycleExtent, Words, steps_between
+from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, Words, steps_between
+from g12.settings import Settings
 from g12.state import XY
 
 HAAS_WORDS = "X Y Z I K Q L D F"
@@ -41,10 +42,7 @@ class Pocket(NamedTuple):
     stepover: float
 
 
-def plan_pocket(
-    words: Words, clearing: str = "rings", entry: PocketEntry = STRAIGHT_DOWN
-) -> CyclePlan:
-    """Return the pocket of one G12/G13 block; ``clearing`` is [G12] CLEARING."""
+def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
     context = words.context
     names_centre = "X" in words or "Y" in words
     words.check_block(HAAS_WORDS)
@@ -61,14 +59,14 @@ def plan_pocket(
         raise words.refuse_word("I", first, f"must be less than K{number(outermost)}")
 
     pocket = Pocket(first, outermost or first, stepover or 0.0)
-    growth = pocket.stepover / 2 if clearing == "spiral" else pocket.stepover  # of a link
+    in_rings = settings.clearing == "rings"
+    growth = pocket.stepover if in_rings else pocket.stepover / 2  # of a link
     links = growth and steps_between(first, pocket.finished, growth, context.rounding)
     cause = f"{words.written('Q', pocket.stepover)} makes" if links else "L makes"
     words.check_count(round(links + 1) * levels, cause)
     z_step = depth or 0.0 if context.incremental else 0.0
     last_level = z + z_step * (levels - 1)
-    extent = CycleExtent(XY, (x, y, z), pocket.finished - cutter.radius, (z, last_level))
-    words.check_travel(extent)
+    words.check_travel((x, y, z), pocket.finished - cutter.radius, (z, last_level))
     heights = context.z - z, -z_step
     first_radius = first - cutter.radius
     numbers = {
@@ -79,24 +77,24 @@ def plan_pocket(
         "z_step": z_step,
         "levels": levels,
         "first_radius": first_radius,
-        "rings": clearing != "spiral",
-        **pocket_descent(words, entry, first_radius, cutter.radius, heights),
+        "rings": in_rings,
+        "arc": arc,
+        "hand": 1 if arc == COUNTERCLOCKWISE else -1,
+        **pocket_descent(words, settings, first_radius, cutter.radius, heights),
         **links_outward(pocket, growth, links),
     }
-    message = upward(words, depth, z) or uncut_material(words, pocket, cutter, entry)
-
-    def cut() -> PocketCut:
-        return PocketCut(
-            plane=XY,
-            centre=(x, y, z),
-            wall=pocket.finished,
-            first=first,
-            step=pocket.stepover,
-            inner=first_radius - cutter.radius,
-            levels=tuple(z + z_step * level for level in range(levels)),
-            cutter=cutter.used,
-        )
-
+    is_helix = settings.entry == "helix"
+    message = upward(words, depth, z) or uncut_material(words, pocket, cutter, is_helix)
+    cut = PocketCut(
+        plane=XY,
+        centre=(x, y, z),
+        wall=pocket.finished,
+        first=first,
+        step=pocket.stepover,
+        inner=first_radius - cutter.radius,
+        levels=tuple(z + z_step * level for level in range(levels)),
+        cutter=cutter.used,
+    )
     return CyclePlan(numbers, cut, cutter, message)
 
 
@@ -121,7 +119,7 @@ def upward(words: Words, depth: float | None, z: float) -> str | None:
     return f"{words.code}: Z{number(depth)} is up from the tool at Z{number(context.z)}{hint}"
 
 
-def uncut_material(words: Words, pocket: Pocket, cutter: Cutter, entry: PocketEntry) -> str | None:
+def uncut_material(words: Words, pocket: Pocket, cutter: Cutter, is_helix: bool) -> str | None:
     """Return the operator message of a pocket that leaves material uncut, or None.
 
     The control's own sample programs do this, so it is no error. With D0 the cutter's size
@@ -130,13 +128,13 @@ def uncut_material(words: Words, pocket: Pocket, cutter: Cutter, entry: PocketEn
     first, finished, stepover = pocket
     if not stepover or not cutter.radius:
         return None
-    rounding, cut_by_entry = words.context.rounding, 3 + CLEARED * entry.helix  # in tool radii
+    rounding, cut_by_entry = words.context.rounding, 3 + CLEARED * is_helix  # in tool radii
     if min(stepover, finished - first) > 2 * cutter.radius + rounding:
         wide, where = f"Q{number(stepover)} is greater than", "material is left between the rings"
     elif first > cut_by_entry * cutter.radius + rounding:
         # the entry cuts up to the tool radius plus the helix, the first ring from I - 2 of them on
         wide = f"I{number(first)} is greater than {number(cut_by_entry / 2)} x"
-        where = "a ring is left about" if entry.helix else "a core is left in"
+        where = "a ring is left about" if is_helix else "a core is left in"
         where += " the centre"
     else:
         return None

@@ -13,9 +13,10 @@ required; D required, whole, from 0, in the tool table; I, whose sign is ignored
 greater than the offset. A negative diameter in the tool table enlarges the circle.
 """
 
-from g12.cut_report import BY_D, PocketCut, UsedCutter
+from g12.cut_report import PocketCut
 from g12.cycles.plan import CyclePlan
-from g12.request import Cutter, CycleExtent, Words
+from g12.request import Words
+from g12.settings import Settings
 from g12.state import XY, XZ, YZ
 
 MITSUBISHI_WORDS = "I D F"
@@ -23,29 +24,22 @@ FIRST_AXIS = {XY: "x", XZ: "z", YZ: "y"}
 AXIS_ACROSS = {XY: "z", XZ: "y", YZ: "x"}
 
 
-def plan_circle(words: Words) -> CyclePlan:
+def plan(words: Words, arc: int, _: Settings) -> CyclePlan:
     context = words.context
     words.check_block(MITSUBISHI_WORDS, planes=tuple(FIRST_AXIS))
     commanded = words.require("I", "the radius of the circle")
-    tool = words.commanded_tool()
-    if tool is None:
+    cutter = words.offset_cutter()
+    if not cutter:
         raise words.refuse("D is missing: the tool whose radius reduces the circle, D0 for none")
-    source = f"D{tool.number}"
-    used = UsedCutter(tool.radius, BY_D, tool.number)
-    cutter = Cutter(used, source, words.other_cutter(tool, source))
     words.check_fits("I", commanded, cutter.radius, cutter.source)
     wall, radius = abs(commanded), abs(commanded) - cutter.radius
     numbers = {
         "plane": int(context.plane[1:]),
         "centre": getattr(context, FIRST_AXIS[context.plane]),
         "radius": radius,
+        "arc": arc,
     }
-    extent = CycleExtent(context.plane, context.xyz, radius)
-    words.check_travel(extent)
-
-    def cut() -> PocketCut:
-        level = getattr(context, AXIS_ACROSS[context.plane])
-        inner = radius - cutter.radius
-        return PocketCut(context.plane, context.xyz, wall, wall, 0.0, inner, (level,), cutter.used)
-
+    words.check_travel(context.xyz, radius)
+    level, inner = getattr(context, AXIS_ACROSS[context.plane]), radius - cutter.radius
+    cut = PocketCut(context.plane, context.xyz, wall, wall, 0.0, inner, (level,), cutter.used)
     return CyclePlan(numbers, cut, cutter)

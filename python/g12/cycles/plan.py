@@ -6,13 +6,13 @@ decreases, so that the toolpath has no corner where it reaches the level. One fu
 level follows. The helix ends at the angle where it began. Lengths are in program units.
 """
 
-from collections.abc import Callable
 from math import atan, ceil, cos, pi, radians, sin, tan
 from typing import NamedTuple
 
 from g12.cut_report import PlannedCut
-from g12.errors import Refusal, number
+from g12.errors import number
 from g12.request import CLEARED, COUNTERCLOCKWISE, Cutter, Words
+from g12.settings import Settings
 
 
 class EventPlanes(NamedTuple):
@@ -28,12 +28,12 @@ NO_PLANES = EventPlanes()
 class CyclePlan(NamedTuple):
     """A checked cycle: ``locals`` are the named locals of its sub, which its .ngc file explains.
 
-    Lengths and feeds are in program units. ``cut`` returns what is reported, ``message`` is for the
+    Lengths and feeds are in program units. ``cut`` is what is reported, ``message`` is for the
     operator, never a refusal. ``planes`` are those that an event gives for later ones.
     """
 
     locals: dict[str, float]
-    cut: Callable[[], PlannedCut]
+    cut: PlannedCut
     cutter: Cutter | None
     message: str | None = None
     planes: EventPlanes = NO_PLANES
@@ -43,99 +43,62 @@ LEAST_CORNER = radians(0.99)  # greatest change of slope from one half turn to t
 MOST_HELIX_HALF_TURNS = 2000  # a helix of more has a wrong I or Z
 
 
-class PocketEntry(NamedTuple):
-    """The machine's settings [G12] ENTRY, ENTRY_ANGLE in degrees, PLUNGE_FEED in per cent of F."""
-
-    helix: bool = False
-    angle: float = 3.0
-    feed: float = 100.0
-
-
-STRAIGHT_DOWN = PocketEntry()
-
-
-class Descent(NamedTuple):
-    """A descent: ``turns`` half turns that fall by ``fall`` each, then the last ones of the helix.
-
-    No turns: straight down.
-    """
-
-    turns: int = 0
-    fall: float = 0.0
-
-
-class Helix(NamedTuple):
-    """Helices of one radius, whose ``last`` half turns have a decreasing slope."""
-
-    radius: float
-    slope: float
-    last: int
-
-    def descent(self, height: float) -> Descent:
-        """Return the descent by a height, at most as steep as the slope, in whole turns."""
-        if height <= 0.0:
-            return Descent()
-        rest = 0.5 * self.last
-        turns = max(1, ceil(height / (pi * self.radius * self.slope) - rest))
-        turns += (turns + self.last) % 2
-        return Descent(turns, height / (turns + rest))
-
-
-def helix_of(entry: PocketEntry, first: float, cutter: float) -> Helix:
-    """Return the helix for a first ring of the tool's centre and a cutter, both by their radius."""
-    slope = tan(radians(entry.angle))
-    radius = min(first, CLEARED * cutter) if cutter else first
-    return Helix(radius, slope, ceil(atan(slope) / LEAST_CORNER) - 1)
-
-
 def pocket_descent(
-    words: Words, entry: PocketEntry, first: float, cutter: float, heights: tuple[float, float]
+    words: Words, settings: Settings, first: float, cutter: float, heights: tuple[float, float]
 ) -> dict[str, float]:
     """Return the locals of the descent in a pocket, or refuse a helix of too many turns.
 
     ``first`` is the radius of the first ring of the tool's centre, ``cutter`` the cutter's, and
     ``heights`` are those of the first level and of each further one.
     """
-    feed = words.context.feed
+    feed, is_helix = words.context.feed, settings.entry == "helix"
+    slope = tan(radians(settings.entry_angle))
+    radius = min(first, CLEARED * cutter) if cutter else first
+    last = ceil(atan(slope) / LEAST_CORNER) - 1  # half turns of decreasing slope
+    turns, next_turns = (
+        half_turns(height / (pi * radius * slope), last) if is_helix else 0 for height in heights
+    )
+    if turns > MOST_HELIX_HALF_TURNS:
+        raise words.refuse(too_narrow(radius, slope, heights[0], turns, cutter))
     numbers = {
-        "restart": heights[1] != 0,
-        "turns": 0,
+        "restart": heights[1] != 0 and not next_turns,
+        "turns": turns,
         "feed": feed,
-        "plunge_feed": feed * (entry.feed / 100.0),
+        "plunge_feed": feed * (settings.plunge_feed / 100.0),
     }
-    if not entry.helix:
-        return numbers
-    helix = helix_of(entry, first, cutter)
-    check_helix(words, helix, heights[0], cutter)
-    to_first, further = map(helix.descent, heights)
-    numbers["restart"] = heights[1] != 0 and not further.turns
-    if not to_first.turns:
+    if not turns:
         return numbers
     return numbers | {
-        "turns": to_first.turns,
-        "fall": to_first.fall,
-        "next_turns": further.turns,
-        "next_fall": further.fall,
-        "last_turns": helix.last,
-        "helix_radius": helix.radius,
-        "side": -1 if first > helix.radius else 1,
+        "fall": heights[0] / (turns + 0.5 * last),
+        "next_turns": next_turns,
+        "next_fall": heights[1] / (next_turns + 0.5 * last) if next_turns else 0.0,
+        "last_turns": last,
+        "helix_radius": radius,
+        "side": -1 if first > radius else 1,
     }
 
 
-def check_helix(words: Words, helix: Helix, height: float, cutter: float) -> None:
-    """Refuse a helix so narrow that it needs too many turns; ``cutter`` is the cutter's radius."""
-    turns = helix.descent(height).turns
-    if turns <= MOST_HELIX_HALF_TURNS:
-        return
-    least = height / (pi * helix.slope * (MOST_HELIX_HALF_TURNS - 2))
+def half_turns(steepest: float, last: int) -> int:
+    """Return the half turns before the ``last`` ones of a helix, in whole turns with these.
+
+    ``steepest`` would be enough at the full slope, the last ones have half of it.
+    """
+    if steepest <= 0.0:
+        return 0
+    turns = max(1, ceil(steepest - 0.5 * last))
+    return turns + (turns + last) % 2
+
+
+def too_narrow(radius: float, slope: float, height: float, turns: int, cutter: float) -> str:
+    """Return the rule against a helix so narrow that it needs too many half turns."""
+    least = height / (pi * slope * (MOST_HELIX_HALF_TURNS - 2))
     if cutter and least > CLEARED * cutter:
         fits = f"{number(height * CLEARED * cutter / least)} down fits at most"
     else:
         fits = f"I from {number(cutter + least)} fits"
-    raise Refusal(
-        f"a helix of radius {number(helix.radius)} needs {turns // 2} turns for {number(height)}, "
-        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge",
-        words.code,
+    return (
+        f"a helix of radius {number(radius)} needs {turns // 2} turns for {number(height)}, "
+        f"the most is {MOST_HELIX_HALF_TURNS // 2}: {fits}, or [G12] ENTRY = plunge"
     )
 
 

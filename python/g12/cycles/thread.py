@@ -12,8 +12,8 @@ from typing import NamedTuple
 from g12.cut_report import ThreadCut
 from g12.cycles.plan import CLEARANCE_MM, CyclePlan, Hole, hole_of, turns_of
 from g12.errors import number
-from g12.request import COUNTERCLOCKWISE, Cutter, CycleExtent, Words, opposite, steps_between
-from g12.state import XY
+from g12.request import COUNTERCLOCKWISE, Cutter, Words, opposite, steps_between
+from g12.settings import Settings
 
 THREAD_WORDS = "X Y Z I P R K H J Q L E D F"
 INSIDE, OUTSIDE = 0, 1  # H
@@ -39,7 +39,7 @@ class Thread(NamedTuple):
         return self.small - max(0.0, self.taper) * depth
 
 
-def plan_thread(words: Words, arc: int) -> CyclePlan:
+def plan(words: Words, arc: int, _: Settings) -> CyclePlan:
     words.check_block(THREAD_WORDS)
     hole = hole_of(words)
     thread = thread_of(words)
@@ -73,12 +73,8 @@ def plan_thread(words: Words, arc: int) -> CyclePlan:
     if thread.outside:
         widest = (widest + high) * (1 - 2 * ratio)
     highest = max(runs["begin"], runs["last"] + runs["rise"] + 2 * runs["lead"])
-    extent = CycleExtent(XY, (hole.x, hole.y, hole.z), widest, (hole.start, hole.z, highest))
-    words.check_travel(extent)
-
-    def cut() -> ThreadCut:
-        return ThreadCut((hole.x, hole.y), *thread, hole.top, (hole.z,), cutter.used)
-
+    words.check_travel((hole.x, hole.y, hole.z), widest, (hole.start, hole.z, highest))
+    cut = ThreadCut((hole.x, hole.y), *thread, hole.top, (hole.z,), cutter.used)
     return CyclePlan(numbers, cut, cutter)
 
 

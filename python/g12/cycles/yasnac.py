@@ -26,13 +26,15 @@ I - d; each of them apart by an arc that can be cut; not too many circles.
 from math import copysign
 from typing import NamedTuple
 
-from g12.cut_report import BY_D, NO_CUTTER, PocketCut, UsedCutter
+from g12.cut_report import NO_CUTTER, PocketCut, UsedCutter
 from g12.cycles.plan import CyclePlan
 from g12.errors import Refusal, number
-from g12.request import Cutter, CycleExtent, Words, steps_between
-from g12.state import XY, Tool
+from g12.request import Cutter, Words, steps_between
+from g12.settings import Settings
+from g12.state import XY
 
 YASNAC_WORDS = "I R (or J) K Q L D F"
+WITHOUT_D = Cutter(UsedCutter(0.0, NO_CUTTER), "D0", None)
 
 
 class OffsetRadii(NamedTuple):
@@ -71,7 +73,7 @@ class OffsetRadii(NamedTuple):
             raise self.refuse(letter, word, rule)
 
 
-def plan_circle(words: Words) -> CyclePlan:
+def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
     context = words.context
     words.check_block(YASNAC_WORDS)
     finished = words.require("I", "the radius of the finished circle")
@@ -82,15 +84,11 @@ def plan_circle(words: Words) -> CyclePlan:
     words.check_pair("K", "Q")
     start, pitch = words.take("K"), words.take_positive("Q")
     circles = words.take_whole("L", least=1, default=1)
-    tool = words.commanded_tool()
-    by, tool = (NO_CUTTER, Tool(0, 0.0)) if tool is None else (BY_D, tool)
-    source = f"D{tool.number}"
-    words.check_sound(tool, source)
-    words.check_fits("I", finished, tool.radius, source)
-    used = UsedCutter(tool.radius, by, tool.number)
-    cutter = Cutter(used, source, words.other_cutter(tool, source))
-    named = f"tool radius {context.tool_size(tool.radius)}, {source}" if tool.number else "no D"
-    radii = OffsetRadii(words, finished, tool.radius, named)
+    cutter = words.offset_cutter() or WITHOUT_D
+    words.check_sound(cutter.radius, cutter.source)
+    words.check_fits("I", finished, cutter.radius, cutter.source)
+    size = f"tool radius {context.tool_size(cutter.radius)}, {cutter.source}"
+    radii = OffsetRadii(words, finished, cutter.radius, size if cutter.used.number else "no D")
     approach = 0.0 if traverse is None else approach_of(radii, letter, traverse)
     spiral = None if start is None or pitch is None else (start, pitch)
     turns = half_turns_of(radii, spiral, approach)
@@ -101,24 +99,24 @@ def plan_circle(words: Words) -> CyclePlan:
         "approach": approach,
         "radius": radii.last,
         "circles": circles,
+        "arc": arc,
+        "traverse": settings.yasnac_traverse * context.machine_unit,
+        "feed": context.feed,
+        "per_revolution": context.per_revolution,
         **turns,
     }
-
-    def cut() -> PocketCut:
-        first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
-        return PocketCut(
-            plane=XY,
-            centre=context.xyz,
-            wall=abs(finished),
-            first=first + cutter.radius,
-            step=pitch or 0.0,
-            inner=first + growth - cutter.radius,
-            levels=(context.z,),
-            cutter=cutter.used,
-        )
-
-    extent = CycleExtent(XY, context.xyz, abs(radii.last))
-    words.check_travel(extent)
+    words.check_travel(context.xyz, abs(radii.last))
+    first, growth = abs(turns["first"]), 2 * abs(turns["growth"])  # of a whole turn
+    cut = PocketCut(
+        plane=XY,
+        centre=context.xyz,
+        wall=abs(finished),
+        first=first + cutter.radius,
+        step=pitch or 0.0,
+        inner=first + growth - cutter.radius,
+        levels=(context.z,),
+        cutter=cutter.used,
+    )
     return CyclePlan(numbers, cut, cutter)
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 import functools
 import sys
 from cmath import rect
-from collections.abc import Callable
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -188,12 +187,12 @@ SECTION_BEGAN = "section"  # key: its first part has been reported
 
 
 def begin_cut(
-    interp: Interp, code: str, given: dict[str, float], cut: Callable[[], cut_report.PlannedCut]
+    interp: Interp, code: str, given: dict[str, float], cut: cut_report.PlannedCut
 ) -> None:
     """Report the cut of the block, or of the call of its sub."""
     if asked(interp) is not None:
         line = line_of(interp, code) or 0
-        report = report_of(interp, code, line, given, cut())
+        report = report_of(interp, code, line, given, cut)
         emccanon.COMMENT(cut_report.report_text(report))
 
 

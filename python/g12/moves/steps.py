@@ -31,15 +31,13 @@ ends of segments: X reverses there, and a segment across would move C alone, or 
 Lengths are in program units.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import ceil, degrees, hypot
 from typing import NamedTuple
 
-from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge, Start
+from g12.compensation.contour import Motion, PlaneMove, Start
 from g12.section.effects import Action, BlockEnd
-from g12.section.line import AxisLetters
 
 BULGE = 1.5  # deviations: of a segment between two ends moved off the path
 LOSS = 0.18  # segments: lost where an element ends exactly on the path
@@ -143,12 +141,6 @@ def _inner_ends(
     return ends
 
 
-CHORD_SHARE = 0.96  # of the tolerance: the estimate of the deviation may be too low by the rest
-# STOP_SHARE is for a stop by G61, into which LinuxCNC cuts the corner before it deeper. Blended
-# segments end in a G4 P0 (`SectionOutput`), for which CHORD_SHARE would do.
-STOP_SHARE = 0.7  # of the tolerance, before a stop
-ROUNDING_SHARE = 0.5  # of the tolerance: at a corner, on top of the segments' own deviation
-REMAINDER_SHARE = 1e-3  # of the least step of a slide: a smaller remainder is rounding
 LEAST_TURN = 1e-9  # degrees: less is no turn
 
 # The end of a segment: the plane's slide, the rotary axis in degrees, the height; and its F.
@@ -207,20 +199,11 @@ Step = Segments | FaceMove | FaceSwitch | Action | BlockEnd
 
 
 class SectionPlan(NamedTuple):
-    """The moves of a section.
-
-    ``position`` is the machine's after them, ``angle`` that of the rotary axis in the contour's
-    plane, in radians. ``notes`` are messages for the operator.
-    """
+    """The moves of a section."""
 
     steps: list[Step]
-    position: MachinePosition
-    angle: float
-    notes: list[str]
-
-    @property
-    def end(self) -> Start:
-        return Start(self.position.slide, self.angle, self.position.height)
+    end: Start  # the machine's position after them
+    notes: list[str]  # messages for the operator
 
 
 class Split(NamedTuple):
@@ -270,95 +253,3 @@ def segments_with_feed(
             segments.append((to_slide, to_turn, to_height, feed * distance / (length - done)))
             slide, turn, height, done = to_slide, to_turn, to_height, length
     return segments
-
-
-class StepMaker(ABC):
-    """Makes the steps of a plan, one element of the tool centre's path after the other.
-
-    ``least`` is the least move of a slide together with the rotary axis.
-    """
-
-    def __init__(
-        self, contour: Contour, position: MachinePosition, letters: AxisLetters, least: float
-    ) -> None:
-        self.steps: list[Step] = []
-        self.position, self.letters = position, letters
-        self._contour, self._least = contour, least
-
-    @abstractmethod
-    def slide_at(self, point: complex) -> float:
-        """Return the slide's position for a point of the plane."""
-
-    @abstractmethod
-    def cut(self, move: PlaneMove, stop: bool) -> None:
-        """Make the steps of a move in the plane."""
-
-    def make(self, element: PathElement, stop: bool) -> None:
-        """Make the steps of an element; ``stop``: the tool stops at its end."""
-        if isinstance(element, PlaneMove):
-            self.cut(element, stop)
-        elif isinstance(element, Plunge):
-            self.plunge(element, stop)
-        else:
-            self.steps.append(element)
-
-    def plunge(self, move: Plunge, stop: bool) -> None:
-        there = self.position._replace(height=move.h1)
-        self._run(move.line, self.letters.height, [(*there, move.feed)], stop)
-
-    def _segments(self, move: PlaneMove, split: Split, zero: float, stop: bool) -> None:
-        """Make the segments of a move in the plane."""
-        segments = segments_with_feed(split, self.position, move, zero, self._least)
-        slide, turn, height = self.letters
-        level = move.h0 == move.h1
-        self._run(move.line, slide + turn if level else slide + turn + height, segments, stop)
-
-    def _run(self, line: int, axes: str, segments: list[Segment], stop: bool) -> None:
-        if segments:
-            self.steps.append(Segments(line, axes, segments, stop))
-            self.position = MachinePosition(*segments[-1][:3])
-
-    def finish(self, path: Sequence[PathElement]) -> None:
-        """Move the slides to the path's end, by the remainder of its last segments."""
-        moves = [element for element in path if isinstance(element, Motion)]
-        if not moves:
-            return
-        last, there = moves[-1], self.position
-        in_plane = [move.end for move in moves if isinstance(move, PlaneMove)]
-        slide = self.slide_at(in_plane[-1]) if in_plane else there.slide
-        ends = (slide, self.letters.slide), (last.h1, self.letters.height)
-        offs = zip(ends, (there.slide, there.height))
-        axes = "".join(
-            letter for (end, letter), at in offs if abs(end - at) > REMAINDER_SHARE * self._least
-        )
-        if axes:
-            self._run(last.line, axes, [(slide, there.turn, last.h1, last.feed)], True)
-
-    def _split(
-        self, move: PlaneMove, split: Callable[[float], Split], tolerance: float, stop: bool
-    ) -> Split:
-        """Return the segments that ``split`` makes of a move; refuse too many of them.
-
-        ``split`` is called with a deviation, and again where a segment would move its slide by less
-        than the least: that segment does not move the slide, and deviates by that much more.
-        """
-        try:
-            ends = split(chord_deviation(tolerance, stop))
-            if has_short_slide_move(ends, self._least):
-                ends = split(chord_deviation(tolerance, stop, self._least))
-            return ends
-        except TooManySegments:
-            self._contour.refuse(
-                move.line,
-                f"more than {MOST_SEGMENTS_OF_MOVE} moves would be needed to stay within"
-                " POLAR_TOLERANCE",
-            )
-
-
-def chord_deviation(tolerance: float, stop: bool, slide_error: float = 0.0) -> float:
-    """Return the deviation that the segments of a move may have; ``stop``: at its end.
-
-    ``slide_error`` is the further deviation of a segment that does not move a slide.
-    """
-    remaining = max(tolerance - slide_error, 0.5 * tolerance)
-    return min((STOP_SHARE if stop else CHORD_SHARE) * tolerance, CHORD_SHARE * remaining)

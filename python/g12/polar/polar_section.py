@@ -6,31 +6,20 @@ Words are lengths in the flat X-C plane, and Z at right angles to it.
 
 from __future__ import annotations
 
-from functools import partial
+from collections.abc import Sequence
 from math import copysign, degrees, hypot, inf, pi, radians, remainder, sqrt
-from typing import NamedTuple
 
-from g12.compensation.centre_path import centre_path
-from g12.compensation.contour import Contour, Motion, PlaneMove, Plunge
+from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge, Start
 from g12.errors import number
-from g12.machine_ini import FaceAxes
-from g12.moves.exact_stops import Direction, stops
+from g12.moves.exact_stops import Direction
 from g12.moves.setup import (
-    LEAST_MM,
     RADIUS_TOLERANCE_MM,
     SectionKind,
     SectionMachine,
+    StepMaker,
     check_entry,
 )
-from g12.moves.steps import (
-    ROUNDING_SHARE,
-    FaceMove,
-    FaceSwitch,
-    MachinePosition,
-    SectionPlan,
-    Split,
-    StepMaker,
-)
+from g12.moves.steps import FaceMove, FaceSwitch, MachinePosition, SectionPlan, Split
 from g12.polar.face import FaceLimits, in_face, positions_along
 from g12.polar.pole import POLE, along_and_around, check_pole_distance, slide_at, through_pole
 from g12.polar.quickest import FaceStretch, quickest
@@ -61,19 +50,6 @@ POLAR_WORDS = SectionWords(
     own_block="Z needs a block of its own, or [G12] POLAR_Z = allow",
     origin="the origin must stay in the spindle's centre",
 )
-
-
-class PolarSettings(NamedTuple):
-    """The machine's limits and the owner's settings for a section; lengths in program units."""
-
-    tolerance: float  # POLAR_TOLERANCE
-    least_x: float  # 0.001 mm: a segment that turns C changes X by this at least, or not at all
-    x_acceleration: float  # per second squared
-    c_acceleration: float  # degrees per second squared
-    c_speed: float  # degrees per minute, for a rotation at the pole at X0
-    pole_refused: bool = False  # POLAR_POLE = refuse
-    face: FaceLimits | None = None  # POLAR_KINEMATICS = 1
-    beside: float = 0.0  # POLAR_TOOL_OFFSET
 
 
 class Polar(SectionKind):
@@ -113,21 +89,15 @@ class Polar(SectionKind):
         )
 
     @property
-    def planning(self) -> PolarSettings:
-        settings, face = self.machine.settings, self.machine.face
-        slide, c = self.machine.axes["X"], self.machine.axes["C"]
-        return PolarSettings(
-            tolerance=self.tolerance,
-            least_x=LEAST_MM * self.state.millimetre,
-            x_acceleration=self.in_program(slide),
-            c_acceleration=c.acceleration,
-            c_speed=c.velocity * 60,
-            pole_refused=settings.polar_pole == "refuse",
-            face=self._face_limits(face) if settings.polar_kinematics and face else None,
-            beside=self.beside,
-        )
+    def pole_refused(self) -> bool:
+        return self.machine.settings.polar_pole == "refuse"
 
-    def _face_limits(self, face: FaceAxes) -> FaceLimits:
+    @property
+    def face(self) -> FaceLimits | None:
+        """The limits on the face, None where sections are made of segments alone."""
+        face = self.machine.face
+        if not (face and self.machine.settings.polar_kinematics):
+            return None
         c, slide = self.machine.axes["C"], self.in_program(face.slide)
         x, y = self.in_program(face.x), self.in_program(face.y)
         nearest = slide / radians(c.acceleration)  # least distance from the pole on the face
@@ -146,113 +116,61 @@ class Polar(SectionKind):
         )
 
     def plan(self, contour: Contour) -> SectionPlan:
-        return plan(contour, self.planning, c=self.state.c)
+        return PolarSteps(contour, self).plan()
 
 
-def plan(contour: Contour, settings: PolarSettings, *, c: float) -> SectionPlan:
-    """Return the moves of a whole section.
+class PolarSteps(StepMaker):
+    """Plans a contour on the face, with C's angle in the plane, which is 0 at the section's C."""
 
-    ``c`` is the C axis in degrees at the plane's zero angle. Raises Refusal, naming the blocks by
-    their lines, when the contour cannot be cut as programmed.
-    """
-    path, moved = centre_path(contour, settings.tolerance)
-    tolerance = settings.tolerance - moved
-    settings = settings._replace(tolerance=tolerance)
-    if settings.beside:
-        check_pole_distance(contour, path, settings.beside, tolerance)
-    else:
-        path = through_pole(contour, path, POLE_SHARE * tolerance, settings.pole_refused)
-    quick = partial(
-        quickness,
-        x_acceleration=settings.x_acceleration,
-        c_acceleration=settings.c_acceleration,
-        beside=settings.beside,
-    )
-    stopping = stops(path, ROUNDING_SHARE * tolerance, quick)
-    machine = _SlideAndSpindle(contour, settings, c)
-    stretches: list[FaceStretch | None] = [None] * len(path)
-    if settings.face:
-        path, stopping, stretches = quickest(path, stopping, settings.face)
-    for element, stop, face in zip(path, stopping, stretches):
-        machine.switch(element.line, face)
-        if face and isinstance(element, Motion):
-            machine.cut_on_face(element)
-        else:
-            machine.make(element, stop)
-    machine.switch(path[-1].line if path else 0, None)
-    machine.finish(path)
-    return SectionPlan(machine.steps, machine.position, machine.angle, contour.notes)
-
-
-def quickness(
-    direction: Direction,
-    point: complex,
-    *,
-    x_acceleration: float,
-    c_acceleration: float,
-    beside: float,
-) -> float:
-    """Return the greatest acceleration along a direction at a point that both axes allow.
-
-    ``c_acceleration`` in degrees per second squared, the tool is ``beside`` X's line. 0 at the
-    pole, where C would have to jump; straight down and up, Z's acceleration is taken to be X's.
-    """
-    if point == POLE:
-        return 0.0
-    in_plane = complex(*direction[:2])
-    if not in_plane:
-        return x_acceleration
-    slide, slide_direction = slide_at(point, beside)
-    along, around = along_and_around(in_plane, slide_direction)
-    moved = max(abs(along + beside / slide * around), abs(direction[2]))
-    return 1.0 / max(moved / x_acceleration, abs(around) / (slide * radians(c_acceleration)))
-
-
-class _SlideAndSpindle(StepMaker):
-    def __init__(self, contour: Contour, settings: PolarSettings, c: float) -> None:
+    def __init__(self, contour: Contour, kind: Polar) -> None:
         slide, self.angle, height = contour.start
-        position = MachinePosition(slide, c + degrees(self.angle), height)
-        super().__init__(contour, position, POLAR_WORDS.axes, settings.least_x)
-        self._settings, self._zero = settings, c
+        position = MachinePosition(slide, kind.state.c + degrees(self.angle), height)
+        super().__init__(contour, kind, position)
+        self._kind, self._zero, self._beside = kind, kind.state.c, kind.beside
+        self._x = kind.in_program(kind.machine.axes["X"])
+        self._c = radians(kind.machine.axes["C"].acceleration)
         self._on_face, self._face_angle = False, 0.0  # the angle is that of the face's X axis
 
-    def cut(self, move: PlaneMove, stop: bool) -> None:
-        settings, hold = self._settings, 0.5 / (move.feed / 60.0) ** 2
-        holds = hold * settings.x_acceleration, hold * radians(settings.c_acceleration)
+    def acceleration(self, direction: Direction, point: complex) -> float:
+        """Return 0 at the pole, where C would have to jump.
 
-        def split(deviation: float) -> Split:
-            return split_move(move.curve, Law(deviation, RIPPLE, *holds), settings.beside)
-
-        ends = self._split(move, split, settings.tolerance, stop)
-        if move.start == POLE:
-            self._turn(move, ends.angles[0])
-        turns = round((self.angle - ends.angles[0]) / (2 * pi))
-        self.angle = ends.angles[-1] + 2 * pi * turns
-        self._segments(move, ends, self._zero + 360.0 * turns, stop)
-
-    def switch(self, line: int, stretch: FaceStretch | None) -> None:
-        """Switch to the face for a stretch of the path, or back (None), if not there already."""
-        if (stretch is not None) is not self._on_face:
-            self._on_face, self._face_angle = stretch is not None, self.angle
-            self.steps.append(
-                FaceSwitch(line, stretch is not None, self.position, *(stretch or ()))
-            )
-
-    def cut_on_face(self, move: Motion) -> None:
-        if isinstance(move, Plunge):
-            points = [self.position._replace(height=move.h1)]
-        else:
-            there = positions_along(move, self.angle, self._settings.beside)
-            self.angle = there[-1][1]
-            points = [
-                MachinePosition(slide, self._zero + degrees(angle), height)
-                for slide, angle, height in there
-            ]
-        self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
-        self.position = points[-1]
+        Straight down and up, Z's acceleration is taken to be X's.
+        """
+        if point == POLE:
+            return 0.0
+        in_plane = complex(*direction[:2])
+        if not in_plane:
+            return self._x
+        slide, slide_direction = slide_at(point, self._beside)
+        along, around = along_and_around(in_plane, slide_direction)
+        moved = max(abs(along + self._beside / slide * around), abs(direction[2]))
+        return 1.0 / max(moved / self._x, abs(around) / (slide * self._c))
 
     def slide_at(self, point: complex) -> float:
-        return slide_at(point, self._settings.beside)[0]
+        return slide_at(point, self._beside)[0]
+
+    def routed(self, path: list[PathElement]) -> list[PathElement]:
+        if self._beside:
+            check_pole_distance(self.contour, path, self._beside, self.tolerance)
+            return path
+        reach = POLE_SHARE * self.tolerance
+        return through_pole(self.contour, path, reach, self._kind.pole_refused)
+
+    def end(self) -> Start:
+        return super().end()._replace(angle=self.angle)
+
+    def split(self, move: PlaneMove, deviation: float) -> Split:
+        hold = 0.5 / (move.feed / 60.0) ** 2
+        law = Law(deviation, RIPPLE, hold * self._x, hold * self._c)
+        return split_move(move.curve, law, self._beside)
+
+    def zero_angle(self, move: PlaneMove, split: Split) -> float:
+        """Turn C at the pole, and to the end of the move."""
+        if move.start == POLE:
+            self._turn(move, split.angles[0])
+        turns = round((self.angle - split.angles[0]) / (2 * pi))
+        self.angle = split.angles[-1] + 2 * pi * turns
+        return self._zero + 360.0 * turns
 
     def _turn(self, move: PlaneMove, angle: float) -> None:
         """Rotate C at the pole by the shorter turn; half a turn in the direction that unwinds C."""
@@ -262,5 +180,42 @@ class _SlideAndSpindle(StepMaker):
         self.angle += turn
         if abs(turn) > NO_ROTATION:
             slide, _, height = self.position
-            segment = (slide, self._zero + degrees(self.angle), height, self._settings.c_speed)
-            self._run(move.line, "XC", [segment], True)
+            speed = self._kind.machine.axes["C"].velocity * 60
+            segment = (slide, self._zero + degrees(self.angle), height, speed)
+            self.run(move.line, "XC", [segment], True)
+
+    def make_all(self, path: Sequence[PathElement], stopping: Sequence[bool]) -> None:
+        limits = self._kind.face
+        if not limits:
+            super().make_all(path, stopping)
+            return
+        divided = list(quickest(path, stopping, limits))
+        for element, stop, stretch in divided:
+            self._switch(element.line, stretch)
+            if stretch and isinstance(element, Motion):
+                self._cut_on_face(element)
+            else:
+                self.make(element, stop)
+        self._switch(path[-1].line if path else 0, None)
+        self.finish([element for element, _, _ in divided])
+
+    def _switch(self, line: int, stretch: FaceStretch | None) -> None:
+        """Switch to the face for a stretch of the path, or back (None), if not there already."""
+        if (stretch is not None) is not self._on_face:
+            self._on_face, self._face_angle = stretch is not None, self.angle
+            self.steps.append(
+                FaceSwitch(line, stretch is not None, self.position, *(stretch or ()))
+            )
+
+    def _cut_on_face(self, move: Motion) -> None:
+        if isinstance(move, Plunge):
+            points = [self.position._replace(height=move.h1)]
+        else:
+            there = positions_along(move, self.angle, self._beside)
+            self.angle = there[-1][1]
+            points = [
+                MachinePosition(slide, self._zero + degrees(angle), height)
+                for slide, angle, height in there
+            ]
+        self.steps.append(FaceMove(move.line, in_face(move, self._face_angle), points))
+        self.position = points[-1]

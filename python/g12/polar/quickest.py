@@ -44,14 +44,6 @@ class FaceStretch(NamedTuple):
     override: float
 
 
-class OnFace(NamedTuple):
-    """A path with the stretch that each element belongs to, None for one in segments."""
-
-    path: list[PathElement]
-    stopping: list[bool]
-    stretches: list[FaceStretch | None]
-
-
 class _TimedElement(NamedTuple):
     """An element of the path with its demands; without them it is no move in the plane.
 
@@ -79,10 +71,13 @@ class _Span(NamedTuple):
         return (self.last - self.first) * self.element.length
 
 
-def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimits) -> OnFace:
-    """Return a path with its moves divided so that it takes the least time.
+def quickest(
+    path: Sequence[PathElement], stopping: Sequence[bool], limits: FaceLimits
+) -> Iterator[tuple[PathElement, bool, FaceStretch | None]]:
+    """Yield a path with its moves divided so that it takes the least time.
 
-    ``stopping``, given and returned, holds for each element whether it ends in a stop.
+    ``stopping`` holds for each element whether it ends in a stop. It is yielded with each element,
+    and so is the stretch on the face that the element belongs to, None for one in segments.
     """
     elements = [_element(*each, limits) for each in zip(path, stopping, [*path[1:], None])]
     best, least, chosen = list[_Span](), 0.0, 0.0
@@ -93,8 +88,13 @@ def quickest(path: Sequence[PathElement], stopping: list[bool], limits: FaceLimi
             best, least, chosen = spans, seconds, share
         if len(spans) == len(path) and all(span.feed for span in spans):
             break  # all of it at the programmed feed: a lower acceleration is slower
-    stops = [span.element.stop and span.last == 1.0 for span in best]
-    return OnFace([_move_of(span) for span in best], stops, _on_face(best, limits, chosen))
+    best = [one if _is_followed(one, limits, chosen) else one._replace(feed=0.0) for one in best]
+    for on_face, run in _stretches(_worth_it(best)):
+        moves = [_move_of(span) for span in run]
+        in_plane = [move for move in moves if isinstance(move, PlaneMove)]
+        stretch = _highest(in_plane, limits, chosen) if on_face else None
+        for span, move in zip(run, moves):
+            yield move, span.element.stop and span.last == 1.0, stretch
 
 
 def _element(
@@ -182,6 +182,14 @@ def _joined(run: list[_Span]) -> _Span:
     return run[0]._replace(last=run[-1].last)
 
 
+def _is_followed(span: _Span, limits: FaceLimits, share: float) -> bool:
+    """Return whether C and the slide follow a portion also between the points of its move."""
+    move = _move_of(span)
+    if not span.feed or span.length == span.element.length or not isinstance(move, PlaneMove):
+        return True
+    return MoveDemands(move, limits).can_be_followed(share)
+
+
 def _move_of(span: _Span) -> PathElement:
     move = span.element.move
     if not isinstance(move, PlaneMove):
@@ -191,16 +199,8 @@ def _move_of(span: _Span) -> PathElement:
     return move._replace(feed=span.feed) if span.feed and span.element.demands else move
 
 
-def _on_face(spans: list[_Span], limits: FaceLimits, share: float) -> list[FaceStretch | None]:
-    """Return each span's stretch, with the highest acceleration and override to be followed."""
-    stretches: list[FaceStretch | None] = []
-    for on_face, run in _stretches(spans):
-        moves = [move for move in map(_move_of, run) if isinstance(move, PlaneMove)]
-        stretches += [_highest(moves, limits, share) if on_face else None] * len(run)
-    return stretches
-
-
 def _highest(moves: list[PlaneMove], limits: FaceLimits, share: float) -> FaceStretch:
+    """Return the highest acceleration and override that moves on the face can follow."""
     demands = [MoveDemands(move, limits) for move in moves]
     more = (one for one in ACCELERATION_SHARES if one > share)
     share = next((one for one in more if all(each.can_be_followed(one) for each in demands)), share)

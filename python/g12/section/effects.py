@@ -180,31 +180,25 @@ class SectionCodes(NamedTuple):
         return off and block.g[GGroup.MOTION] in self.off
 
 
-def codes_of_section(code: str, remaps: Collection[Remap], on: str, off: str) -> SectionCodes:
+def codes_of_section(
+    code: str, remaps: Collection[Remap], on: str, off: str, word: str = ""
+) -> SectionCodes:
     """Return the codes for a section begun by ``code``.
 
     ``remaps`` are the REMAP lines, ``on`` and ``off`` the names of their handlers. Every code that
-    is remapped to ``off`` ends a section.
+    is remapped to ``off`` ends a section. With ``word`` every code does both: its 0 ends a section.
     """
-    partner = f"G{float(code[1:]) + 1:g}"
-    ending = _codes_with(off, remaps) or [partner]
-    named = partner if partner in ending else ending[0]
-    return _section_codes([code, *_codes_with(on, remaps)], ending, named, remaps)
-
-
-def codes_with_word(code: str, remaps: Collection[Remap], handler: str, word: str) -> SectionCodes:
-    """Return the codes for a section begun by ``code``, which 0 after ``word`` ends."""
-    both = [code, *_codes_with(handler, remaps)]
-    return _section_codes(both, both, f"{code} {word}0", remaps, word)
-
-
-def _section_codes(
-    on: list[str], off: list[str], off_code: str, remaps: Collection[Remap], word: str = ""
-) -> SectionCodes:
-    begin, end = (frozenset(code_number(code)[1] for code in codes) for codes in (on, off))
+    begin = [code, *_codes_with(on, remaps)]
+    named = f"{code} {word}0" if word else f"G{float(code[1:]) + 1:g}"
+    ending = _codes_with(off, remaps) or [named]
+    if word:
+        ending = begin
+    elif named not in ending:
+        named = ending[0]
+    on_codes, off_codes = (frozenset(code_number(each)[1] for each in k) for k in (begin, ending))
     m_codes = [remap for remap in remaps if remap.number[0] == "M"]
     remapped = {remap.number[1] // 10: "ngc" in remap.keywords for remap in m_codes}
-    return SectionCodes(begin, end, off_code, remapped, word)
+    return SectionCodes(on_codes, off_codes, named, remapped, word)
 
 
 def _codes_with(handler: str, remaps: Collection[Remap]) -> list[str]:

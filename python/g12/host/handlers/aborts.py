@@ -17,7 +17,7 @@ from g12.host.machine import MACHINE
 from g12.host.program_lines import error_text
 
 REASON = 1  # the sub's entry
-END_OF_SUB = "o<g12_on_abort> endsub"
+SUB = "g12_on_abort"
 
 
 def g12_on_abort(interp: Interp) -> None:
@@ -26,14 +26,32 @@ def g12_on_abort(interp: Interp) -> None:
     None of them depends on the success of another one. The face ends with a flag that LinuxCNC has
     to meet at the operator's next line. So the sub's last line is executed here, before it.
     """
-    settings, reason = MACHINE.settings, round(interp.params[REASON])
-    _attempt(interp, borrowed.after_abort, time.monotonic())
-    for code in settings.opening_codes:
-        _attempt(interp, run_code, f"M{code}")
-    if settings.on_abort_command:
-        _attempt(interp, run_code, f"{settings.on_abort_command} [{reason}]")
+    command, reason = MACHINE.settings.on_abort_command, round(interp.params[REASON])
+    restore(interp)
+    if command:
+        _attempt(interp, run_code, f"{command} [{reason}]")
     if interp.call_level:
-        _attempt(interp, run_code, END_OF_SUB)
+        _attempt(interp, run_code, f"o<{SUB}> endsub")
+    leave_face(interp)
+
+
+def by_earlier_command(interp: Interp) -> None:
+    """Do the same for ON_ABORT_COMMAND = G13.1 P, which earlier versions of the package wrote.
+
+    If install has made it the user's own command since, all of it is done here already.
+    """
+    if interp.sub_context[interp.call_level - 1].subname != SUB:
+        restore(interp)
+        leave_face(interp)
+
+
+def restore(interp: Interp) -> None:
+    _attempt(interp, borrowed.after_abort, time.monotonic())
+    for code in MACHINE.settings.opening_codes:
+        _attempt(interp, run_code, f"M{code}")
+
+
+def leave_face(interp: Interp) -> None:
     interp.read("")  # or LinuxCNC would go on with the last block executed here
     if MACHINE.face:
         kinematics_switch.leave(interp)

@@ -4,33 +4,26 @@
 from __future__ import annotations
 
 import functools
-import itertools
 import math
 import re
 from collections.abc import Callable, Container
+from types import ModuleType
 from typing import NamedTuple
 
 from interpreter import INTERP_OK
 
 from g12.cycles import bore, circle_mill, frame, haas, mitsubishi, thread, yasnac
-from g12.cycles.plan import CyclePlan, EventPlanes, PocketEntry
+from g12.cycles.plan import CyclePlan, EventPlanes
 from g12.errors import Refusal
 from g12.host import borrowed, messages
 from g12.host.call_frame import set_locals_at
-from g12.host.interp import (
-    PER_REVOLUTION,
-    Interp,
-    ParsedBlock,
-    kept,
-    millimetres_per_unit,
-    words_in,
-)
+from g12.host.interp import Interp, ParsedBlock, kept, millimetres_per_unit, words_in
 from g12.host.machine import MACHINE
 from g12.host.state import read_state, tool_of_entry
 from g12.lengths import ROUNDING_MM
-from g12.request import CLOCKWISE, COUNTERCLOCKWISE, Words
+from g12.request import CLOCKWISE, COUNTERCLOCKWISE, WHOLE, Words
 from g12.section.block_rules import NO_CODE, GGroup
-from g12.state import State, Tool
+from g12.state import Tool
 
 PERIMETER, POCKET = False, True
 
@@ -39,14 +32,14 @@ def check_at_start() -> None:
     MACHINE.read("settings", "travel")
 
 
-def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> int:
+def hand_over(interp: Interp, words: Words, plan: CyclePlan) -> int:
     """Set the locals of a plan, take the modes to restore, and show the operator its messages.
 
     A form has the block refused where a program would be told.
     """
     if plan.message and is_strict(interp):
         raise Refusal(plan.message.removeprefix(f"{words.code}: "), words.code)
-    set_locals_at(interp, interp.call_level, {**plan.locals, **more})
+    set_locals_at(interp, interp.call_level, plan.locals)
     borrowed.begin(interp)
     remember(interp, plan, kept(interp, CommandedValues))
     if plan.message:
@@ -55,37 +48,23 @@ def hand_over(interp: Interp, words: Words, plan: CyclePlan, **more: float) -> i
     return INTERP_OK
 
 
-def entry_of_machine() -> PocketEntry:
-    settings = MACHINE.settings
-    return PocketEntry(settings.entry == "helix", settings.entry_angle, settings.plunge_feed)
+def prolog(run: Callable[..., int], *which: object) -> Callable[..., int]:
+    """Return the prolog of a code; ``which`` are the cycle and the arc, or the event, it means."""
+
+    @messages.handler
+    def prolog_of_code(self, **words):
+        messages.settle(self)
+        return run(self, *which)
+
+    return prolog_of_code
 
 
-def prepare_haas(interp: Interp, arc: int) -> int:
+def run_cycle(interp: Interp, cycle: ModuleType, arc: int) -> int:
     words = words_of_block(interp)
-    plan = haas.plan_pocket(words, MACHINE.settings.clearing, entry_of_machine())
-    hand = 1 if arc == COUNTERCLOCKWISE else -1
-    return hand_over(interp, words, plan, arc=arc, hand=hand)
+    return hand_over(interp, words, cycle.plan(words, arc, MACHINE.settings))
 
 
-def prepare_yasnac(interp: Interp, arc: int) -> int:
-    words = words_of_block(interp)
-    return hand_over(
-        interp,
-        words,
-        yasnac.plan_circle(words),
-        arc=arc,
-        traverse=MACHINE.settings.yasnac_traverse * words.context.machine_unit,
-        feed=interp.feed_rate,
-        per_revolution=interp.feed_mode == PER_REVOLUTION,
-    )
-
-
-def prepare_mitsubishi(interp: Interp, arc: int) -> int:
-    words = words_of_block(interp)
-    return hand_over(interp, words, mitsubishi.plan_circle(words), arc=arc)
-
-
-def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
+def run_event(interp: Interp, pocket: bool) -> int:
     """Check the event of a code block, or of the call if the code is in o<circle_mill>."""
     words, planes = words_of_block(interp), event_planes(interp)
     entries = entries_of_sub(interp, "circle_mill", len(circle_mill.EVENT_ENTRIES))
@@ -100,46 +79,20 @@ def prepare_circle_mill(interp: Interp, pocket: bool) -> int:
     return status
 
 
-def prepare_bore(interp: Interp, arc: int) -> int:
-    words = words_of_block(interp)
-    return hand_over(interp, words, bore.plan_bore(words, arc, MACHINE.settings.entry_angle))
-
-
-def prepare_thread(interp: Interp, arc: int) -> int:
-    words = words_of_block(interp)
-    return hand_over(interp, words, thread.plan_thread(words, arc))
-
-
-def prepare_frame(interp: Interp, arc: int) -> int:
-    words = words_of_block(interp)
-    return hand_over(interp, words, frame.plan_frame(words, arc, entry_of_machine()))
-
-
-def prolog(prepare: Callable[..., int], which: int) -> Callable[..., int]:
-    """Return the prolog of a code: it prepares the arc or the event that the code stands for."""
-
-    @messages.handler
-    def prolog_of_code(self, **words):
-        messages.settle(self)
-        return prepare(self, which)
-
-    return prolog_of_code
-
-
-g12_haas = prolog(prepare_haas, CLOCKWISE)
-g13_haas = prolog(prepare_haas, COUNTERCLOCKWISE)
-g12_yasnac = prolog(prepare_yasnac, CLOCKWISE)
-g13_yasnac = prolog(prepare_yasnac, COUNTERCLOCKWISE)
-g12_mitsubishi = prolog(prepare_mitsubishi, CLOCKWISE)
-g13_mitsubishi = prolog(prepare_mitsubishi, COUNTERCLOCKWISE)
-g12_bore = prolog(prepare_bore, CLOCKWISE)
-g13_bore = prolog(prepare_bore, COUNTERCLOCKWISE)
-g12_thread = prolog(prepare_thread, CLOCKWISE)
-g13_thread = prolog(prepare_thread, COUNTERCLOCKWISE)
-g12_frame = prolog(prepare_frame, CLOCKWISE)
-g13_frame = prolog(prepare_frame, COUNTERCLOCKWISE)
-circle_mill_perimeter = prolog(prepare_circle_mill, PERIMETER)  # G12.2, o<circle_mill> call
-circle_mill_pocket = prolog(prepare_circle_mill, POCKET)  # G13.2
+g12_haas = prolog(run_cycle, haas, CLOCKWISE)
+g13_haas = prolog(run_cycle, haas, COUNTERCLOCKWISE)
+g12_yasnac = prolog(run_cycle, yasnac, CLOCKWISE)
+g13_yasnac = prolog(run_cycle, yasnac, COUNTERCLOCKWISE)
+g12_mitsubishi = prolog(run_cycle, mitsubishi, CLOCKWISE)
+g13_mitsubishi = prolog(run_cycle, mitsubishi, COUNTERCLOCKWISE)
+g12_bore = prolog(run_cycle, bore, CLOCKWISE)
+g13_bore = prolog(run_cycle, bore, COUNTERCLOCKWISE)
+g12_thread = prolog(run_cycle, thread, CLOCKWISE)
+g13_thread = prolog(run_cycle, thread, COUNTERCLOCKWISE)
+g12_frame = prolog(run_cycle, frame, CLOCKWISE)
+g13_frame = prolog(run_cycle, frame, COUNTERCLOCKWISE)
+circle_mill_perimeter = prolog(run_event, PERIMETER)  # G12.2, o<circle_mill> call
+circle_mill_pocket = prolog(run_event, POCKET)  # G13.2
 
 
 @messages.handler
@@ -167,11 +120,19 @@ CYCLE_WORDS = "ABCDEHIJKLPQRUVWXYZ@^"
 def words_of_block(interp: Interp) -> Words:
     """Return the words of the block being remapped, and the state before it.
 
-    Refuses a second code that reads them.
+    Refuses a second code that reads them. In a preview the axes have no limits: it also shows
+    programs before the work offset is set.
     """
     commanded, block = kept(interp, CommandedValues), interp.blocks[interp.remap_level]
-    values = words_in(block, CYCLE_WORDS)
-    state = with_tools(interp, read_state(interp), commanded)
+    values, state = words_in(block, CYCLE_WORDS), read_state(interp)
+    last = last_cutter(interp, commanded)
+    usual = last or state.spindle_tool
+    state = state._replace(
+        last_cutter=last,
+        d_is_earlier=functools.partial(d_is_earlier, interp, commanded),
+        tools=tools_in_table(interp, values.get("D", usual.number if usual else 0)),
+        travel=MACHINE.travel if interp.task else None,
+    )
     other = code_reading_words(block, values)
     words = Words(messages.code_of_block(interp), values, state)
     if other:
@@ -210,31 +171,16 @@ def is_strict(interp: Interp) -> bool:
     return any((frame.subname or "").startswith(FORM) for frame in frames)
 
 
-def with_tools(interp: Interp, state: State, commanded: CommandedValues) -> State:
-    """Return the state with what only cycles and shapes need: tools, and the limits of the axes.
-
-    In a preview there are no limits: it also shows programs before the work offset is set.
-    """
-    return state._replace(
-        last_cutter=last_cutter(interp, commanded),
-        d_is_earlier=functools.partial(d_is_earlier, interp, commanded),
-        tool_in_table=functools.partial(tool_in_table, interp),
-        travel=MACHINE.travel if interp.task else None,
-    )
-
-
-def tool_in_table(interp: Interp, tool_number: int) -> Tool | None:
-    """Return the tool of that number from the tool table, None if it is not there.
+def tools_in_table(interp: Interp, number: float) -> dict[int, Tool]:
+    """Return the tool of that number, if the tool table has it and it is not 0.
 
     The table is in the order of the tool file; `find_tool_pocket` would return the pocket, which is
     another number. Entry 0 is the spindle, with a random tool changer the tool's only entry.
     """
     table = interp.tool_table
-    for index in itertools.chain(range(1, len(table)), (0,)):
-        entry = table[index]
-        if entry.toolno == tool_number:
-            return tool_of_entry(interp, entry)
-    return None
+    entries = (table[index] for index in (*range(1, len(table)), 0) if number)
+    entry = next((entry for entry in entries if abs(entry.toolno - number) < WHOLE), None)
+    return {entry.toolno: tool_of_entry(interp, entry)} if entry else {}
 
 
 def last_cutter(interp: Interp, commanded: CommandedValues) -> Tool | None:

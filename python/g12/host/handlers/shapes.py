@@ -12,8 +12,8 @@ from interpreter import INTERP_OK
 from g12.errors import Refusal
 from g12.host import borrowed, messages
 from g12.host.call_frame import locals_at, set_locals_at
-from g12.host.handlers import cycles, sections
-from g12.host.interp import Interp, kept
+from g12.host.handlers import sections
+from g12.host.interp import Interp
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
@@ -53,12 +53,11 @@ def polar_shape(self, **words):
         raise Refusal(sections.FACE_ON, name)
     section = Polar(start_of_shape(self, name), sections.section_machine())
     names = HOLE_CALLS[name][0] if name in HOLE_CALLS else SHAPE_CALLS[name][0]
-    state = cycles.with_tools(self, read_state(self), kept(self, cycles.CommandedValues))
-    entries = ShapeEntries(name, names, locals_at(self, level), state)
+    entries = ShapeEntries(name, names, locals_at(self, level), read_state(self))
     prepare = plan_of_holes if name in HOLE_CALLS else plan_of_shape
     plan = prepare(self, entries, section)
     set_locals_at(self, self.call_level - 1, plan.locals)
-    messages.begin_cut(self, name, entries.given, plan.cut)
+    messages.begin_cut(self, name, entries.given, plan.cut())
     borrowed.begin(self)
     self.execute(f"{STOP_HERE}G61" if name in HOLE_CALLS else STOP_HERE)
     return INTERP_OK
@@ -155,7 +154,7 @@ def shape_machine(section: Polar) -> ShapeMachine:
         entry_angle=MACHINE.settings.entry_angle,
         plunge_share=MACHINE.settings.plunge_feed / 100,
         pole=POLE_SHARE * section.tolerance,
-        pole_refused=section.planning.pole_refused,
+        pole_refused=section.pole_refused,
         nearest=abs(beside) + section.tolerance if beside else 0.0,
     )
 

@@ -20,6 +20,7 @@ from g12.tools.path.track import Track
 from g12.tools.preview.moves import IS_LENGTH, Move
 
 LOOK_AHEAD = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
+SAME_RADIUS = 1e-6  # mm
 
 
 @dataclass(frozen=True)
@@ -49,9 +50,6 @@ class Followed:
             return np.zeros(len(self.points))
         return np.linalg.norm(np.gradient(self.points, self.time, axis=0), axis=1)
 
-    def largest(self, moves: Sequence[int]) -> float:
-        return float(self.deviation[np.isin(self.move, moves)].max(initial=0.0))
-
 
 class Worst(NamedTuple):
     """The largest deviation of a run from the moves at feed, mm."""
@@ -78,66 +76,27 @@ def worst_of(real: Followed, moves: Sequence[Move]) -> Worst | None:
     )
 
 
-def follow(path: Track, samples: Samples, unit: float, moves: np.ndarray | None = None) -> Followed:
+def follow(path: Track, samples: Samples, unit: float) -> Followed:
     """Map the samples in motion onto a path; ``unit`` is one machine unit in mm.
 
     In a blended corner the tool has left the move of the line that LinuxCNC names. The distance is
-    the one to that move or to its neighbours, whichever is nearest. ``moves`` are the samples'
-    moves where another path has told them.
+    the one to that move or to its neighbours, whichever is nearest.
     """
     samples = samples.only(samples.moving())
     axes = _positions(samples, unit)
     axes[:, Y] += path.part.beside  # the tool is beside the joints' position
     axis_points = path.part.points(axes)
-    windows = windows_of(path, samples.line) if moves is None else _by_move(path, moves)
-    segment = _segments(path.axis_points, axis_points, windows.on_its_line)
+    segment, adjacent = (
+        _segments(path.axis_points, axis_points, window)
+        for window in windows_of(path, samples.line)
+    )
     following = np.minimum(segment + 1, len(path.move) - 1)
     positions = axes - _offsets(path, axis_points, segment, following)
     points = path.part.points(positions)
-    nearest = _programmed(path, points, segment)
-    adjacent = _segments(path.axis_points, axis_points, windows.with_neighbours)
-    other = _programmed(path, points, adjacent)
-    away, other_away = (np.linalg.norm(points - near, axis=1) for near in (nearest, other))
-    nearest = np.where((other_away < away)[:, None], other, nearest)
-    deviation = np.minimum(away, other_away)
-    move = path.move[following]
-    return Followed(samples.time, positions, points, move, nearest, deviation)
-
-
-def _programmed(path: Track, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
-    """Return the programmed points next to points: of arcs the arcs themselves."""
-    nearest = _nearest(path.points, points, segment)
-    move = path.move[np.minimum(segment + 1, len(path.move) - 1)]
-    for index in np.unique(move) if not path.part.turning else ():
-        if _is_plain_arc(path.moves[index]):
-            own = move == index
-            nearest[own] = _on_arc(path.moves[index], points[own], nearest[own])
-    return nearest
-
-
-def _is_plain_arc(move: Move) -> bool:
-    """Return whether a move is an arc of one radius in its plane."""
-    if move.kind != "arc":
-        return False
-    ends = (np.array([move.start[:3], move.end[:3]]) - move.centre) @ plane_axes(move).T
-    radius = np.hypot(ends[:, 0], ends[:, 1])
-    return bool(abs(radius[1] - radius[0]) < 1e-6 and abs(ends[1, 2] - ends[0, 2]) < 1e-6)
-
-
-def _on_arc(move: Move, points: np.ndarray, nearest: np.ndarray) -> np.ndarray:
-    """Return the points of an arc next to points, given the nearest ones of its chords.
-
-    A nearest point that is an end of the arc is not changed.
-    """
-    axes = plane_axes(move)
-    local = (points - move.centre) @ axes.T
-    radius = np.maximum(np.hypot(local[:, 0], local[:, 1]), 1e-9)
-    local[:, :2] *= (move.radius / radius)[:, None]
-    local[:, 2] = 0.0
-    exact = local @ axes + move.centre
-    ends = np.array([move.start[:3], move.end[:3]])
-    at_end = np.min(np.linalg.norm(nearest[:, None] - ends, axis=2), axis=1) < 1e-9
-    return np.where(at_end[:, None], nearest, exact)
+    near = np.stack([_nearest(path, points, each) for each in (segment, adjacent)])
+    away = np.linalg.norm(points - near, axis=2)
+    best = away.argmin(axis=0), np.arange(len(points))
+    return Followed(samples.time, positions, points, path.move[following], near[best], away[best])
 
 
 def _positions(samples: Samples, unit: float) -> np.ndarray:
@@ -156,44 +115,25 @@ def _offsets(path: Track, points: np.ndarray, segment: np.ndarray, following: np
     return path.offsets[segment] * (1 - share) + path.offsets[following] * share
 
 
-class Windows(NamedTuple):
-    """The first and the last possible segment (n, 2) of the path for each sample of a run.
+def windows_of(path: Track, lines: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the first and the last possible segment (n, 2) of the path for each sample of a run.
 
-    ``on_its_line``: among the moves of the line that LinuxCNC names. ``with_neighbours``: also the
-    moves before and after, for corners.
-    """
-
-    on_its_line: np.ndarray
-    with_neighbours: np.ndarray
-
-
-def windows_of(path: Track, lines: np.ndarray) -> Windows:
-    """Return the windows of samples by their lines in motion.
-
-    Where those lines do not come in the order of the moves, a window is the whole path.
+    First among the moves of the line in motion that LinuxCNC names, then with the moves before and
+    after, for corners. Where those lines do not come in the order of the moves, a window is the
+    whole path.
     """
     moves = path.moves
     going = [i for i, move in enumerate(moves) if move.start != move.end or move.kind == "arc"]
     groups = [list(group) for _, group in groupby(going, key=lambda index: moves[index].line)]
-    named = [same for same in np.split(lines, np.flatnonzero(np.diff(lines)) + 1) if len(same)]
-    if [moves[group[0]].line for group in groups] != [same[0] for same in named]:
+    at = np.concatenate([[0], np.cumsum(np.diff(lines) != 0)])[: len(lines)]
+    named = lines[np.unique(at, return_index=True)[1]]
+    if [moves[group[0]].line for group in groups] != named.tolist():
         everywhere = np.tile([0, max(0, len(path.move) - 2)], (len(lines), 1))
-        return Windows(everywhere, everywhere)
-    at = np.repeat(np.arange(len(named)), [len(same) for same in named])
-    return _windows(path, [(group[0], group[-1]) for group in groups], at)
-
-
-def _by_move(path: Track, moves: np.ndarray) -> Windows:
-    used, at = np.unique(moves, return_inverse=True)
-    return _windows(path, list(zip(used, used)), at)
-
-
-def _windows(path: Track, groups: Sequence[tuple[int, int]], at: np.ndarray) -> Windows:
-    """Return the windows of samples by the first and last move of groups; ``at`` has theirs."""
-    first = np.array([path.vertices(begin).start for begin, _ in groups], int)
-    last = np.array([max(0, path.vertices(end).stop - 2) for _, end in groups], int)
+        return everywhere, everywhere
+    first = np.array([path.vertices(group[0]).start for group in groups], int)
+    last = np.array([max(0, path.vertices(group[-1]).stop - 2) for group in groups], int)
     earlier, later = np.append(first[:1], first[:-1]), np.append(last[1:], last[-1:])
-    return Windows(np.stack([first, last], axis=1)[at], np.stack([earlier, later], axis=1)[at])
+    return np.stack([first, last], axis=1)[at], np.stack([earlier, later], axis=1)[at]
 
 
 def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.ndarray:
@@ -222,15 +162,32 @@ def _segments(path: np.ndarray, points: np.ndarray, within: np.ndarray) -> np.nd
     return found
 
 
-def _nearest(path: np.ndarray, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
-    """Return the nearest point of the path to each point, close to its segment."""
-    last = max(0, len(path) - 2)
-    near, distance = points.copy(), np.full(len(points), np.inf)
+def _nearest(path: Track, points: np.ndarray, segment: np.ndarray) -> np.ndarray:
+    """Return the nearest programmed point to each point, close to its segment."""
+    last = len(path.points) - 1
+    near, away = points.copy(), np.full(len(points), np.inf)
+    move = np.zeros(len(points), int)
     for shift in (-2, -1, 0, 1, 2):
-        index = np.clip(segment + shift, 0, last)
-        following = np.minimum(index + 1, len(path) - 1)
-        found = on_segments(points, path[index], path[following] - path[index])
-        away = np.linalg.norm(points - found, axis=1)
-        better = away < distance
-        near[better], distance[better] = found[better], away[better]
+        index = np.clip(segment + shift, 0, max(0, last - 1))
+        following = np.minimum(index + 1, last)
+        found = on_segments(points, path.points[index], path.points[following] - path.points[index])
+        distance = np.linalg.norm(points - found, axis=1)
+        better = distance < away
+        near[better], away[better] = found[better], distance[better]
+        move[better] = path.move[following[better]]
+    if not path.part.turning:
+        for own in np.split(np.arange(len(move)), np.flatnonzero(np.diff(move)) + 1):
+            near[own] = _on_arc(path.moves[move[own[0]]], near[own])
     return near
+
+
+def _on_arc(move: Move, points: np.ndarray) -> np.ndarray:
+    """Return points of a move's chords, of an arc with one radius moved outwards onto the arc."""
+    if move.kind != "arc":
+        return points
+    axes = plane_axes(move)
+    local, end = ((at - move.centre) @ axes.T for at in (points, np.array(move.end[:3])))
+    if abs(math.hypot(*end[:2]) - move.radius) > SAME_RADIUS:
+        return points
+    local[:, :2] *= (move.radius / np.hypot(local[:, 0], local[:, 1]))[:, None]
+    return local @ axes + move.centre

@@ -40,7 +40,7 @@ PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switche
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
 TINY = 1e-9  # a smaller slope of an axis along the path, among others, counts as this
 POLE_RADIUS = 1e-6  # mm: there C has no angle
-Derivatives = tuple[np.ndarray, np.ndarray]  # of an axis along the path: the first, the second
+Pair = tuple[np.ndarray, np.ndarray]  # of an axis: two values at each point of the path
 
 
 class Rates(NamedTuple):
@@ -228,20 +228,14 @@ def _size(values: np.ndarray) -> np.ndarray:
 
 def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> float:
     """Return the time of a stretch from stop to stop, at most at these speeds."""
-    gains = (2.0 * stretch.step * braking).tolist()
-    squares = np.square(speeds).tolist()
-    for order in (range(len(squares)), range(len(squares) - 1, -1, -1)):
-        reached = 0.0
-        for at in order:
-            squares[at] = min(squares[at], reached)
-            reached = squares[at] + gains[at]
-    return seconds_at(squares, stretch.step)
+    gains = 2.0 * stretch.step * braking
+    return _quickest(np.square(speeds), stretch.step, [(gains, np.zeros(len(gains)))])
 
 
 def axis_derivatives(
     radius: np.ndarray, along: np.ndarray, around: np.ndarray, bend: np.ndarray | float
-) -> tuple[Derivatives, Derivatives]:
-    """Return the derivatives of the slide's position and C's angle on a path of curvature ``bend``.
+) -> tuple[Pair, Pair]:
+    """Return both derivatives of the slide's position and C's angle, on a path of some curvature.
 
     ``along`` and ``around`` are its direction's components along the radius and around the pole.
     At the pole they are nan.
@@ -262,7 +256,7 @@ def least_seconds(
     """
     step = float(abs(np.diff(points)).mean())
     most = np.square(np.broadcast_to(np.asarray(speed, float), points.shape))
-    reserves, swings = [], []
+    limits = []
     for axis, (velocity, acceleration) in (
         (np.abs(points), slide),
         (np.unwrap(np.angle(points)), spindle),
@@ -271,45 +265,34 @@ def least_seconds(
         bend = np.gradient(slope, step)
         slope = np.where(np.abs(slope) < TINY, TINY, slope)
         most = np.minimum(most, np.square(velocity / slope))
-        reserves.append(2.0 * step * acceleration / np.abs(slope))
-        swings.append(2.0 * step * bend / slope)
-    apart = np.maximum(np.abs(swings[0] - swings[1]), TINY**2)
-    most = np.minimum(most, (reserves[0] + reserves[1]) / apart)
-    limits = [*zip(*(zip(*each) for each in zip(reserves, swings)))]
-    reachable = _reachable(most.tolist(), limits)
-    return seconds_at(_gained(reachable, limits), step)
+        limits.append((2.0 * step * acceleration / np.abs(slope), 2.0 * step * bend / slope))
+    (reserve, swing), (other, other_swing) = limits
+    apart = np.maximum(np.abs(swing - other_swing), TINY**2)
+    return _quickest(np.minimum(most, (reserve + other) / apart), step, limits)
 
 
-def seconds_at(squares: list[float], step: float) -> float:
-    """Return the time of a path from the squares of the speed at points one step apart."""
-    speeds = np.sqrt(np.maximum(squares, 0.0))
-    return float((2.0 * step / np.maximum(speeds[1:] + speeds[:-1], 1e-9)).sum())
+def _quickest(most: np.ndarray, step: float, limits: Sequence[Pair]) -> float:
+    """Return the least time from stop to stop over points one step apart.
 
-
-def _reachable(most: list[float], limits: list) -> list[float]:
-    """Return the greatest squares of the speed from which the rest can be followed."""
-    reachable = [0.0] * len(most)
-    for at in range(len(most) - 2, -1, -1):
-        greatest = most[at]
-        for reserve, swing in limits[at]:
-            if swing < 1.0:
-                greatest = min(greatest, (reachable[at + 1] + reserve) / (1.0 - swing))
-        reachable[at] = greatest
-    return reachable
-
-
-def _gained(reachable: list[float], limits: list) -> list[float]:
-    """Return the greatest of these squares of the speed that can be reached from rest.
-
+    ``most`` are the squares of the speed there. The limits are those of an axis each: by how much
+    the square can change in a step (its reserve), and by what share of it more or less (its swing).
     An axis that brakes more at a higher speed is evaluated at the step's end: no step brakes below
     zero.
     """
-    squares = [0.0]
-    for axes, greatest in zip(limits, reachable[1:]):
-        square = squares[-1]
+    axes = [*zip(*(zip(*(values.tolist() for values in limit)) for limit in limits))]
+    squares, greatest = most.tolist(), 0.0
+    for at in reversed(range(len(squares))):  # from which the rest can be followed
+        squares[at] = min(squares[at], greatest)
+        swinging = (pair for pair in axes[at - 1] if pair[1] < 1.0)
+        braked = ((squares[at] + reserve) / (1.0 - swing) for reserve, swing in swinging)
+        greatest = min(braked, default=math.inf)
+    squares[0] = 0.0
+    for at in range(len(squares) - 1):  # of these, what can be reached
+        square = squares[at]
         gained = (
             (square + reserve) / (1.0 + swing) if swing > 0.0 else square + reserve - swing * square
-            for reserve, swing in axes
+            for reserve, swing in axes[at]
         )
-        squares.append(min(*gained, greatest))
-    return squares
+        squares[at + 1] = min(squares[at + 1], *gained)
+    speeds = np.sqrt(np.maximum(squares, 0.0))
+    return float((2.0 * step / np.maximum(speeds[1:] + speeds[:-1], 1e-9)).sum())

@@ -40,7 +40,8 @@ def pace_of(
     expected = sum(path.seconds(index) for index in every)
     feeds = [(path.part_feed(i), i) for i in cutting if path.part_length(i) > LEAST_LENGTH]
     lowest, move = min(feeds, default=(0.0, every[0]))
-    programmed = Pace(lowest, path.end(move), move, expected, expected)
+    end = tuple(path.part.points(np.array(path.moves[move].end))[0])
+    programmed = Pace(lowest, end, move, expected, expected)
     if real is None:
         return programmed
     times = real.time[np.isin(real.move, every)]

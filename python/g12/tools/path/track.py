@@ -5,16 +5,15 @@ Lengths are millimetres, angles of rotary axes degrees, times seconds.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property, partial
-from typing import NamedTuple
+from functools import cached_property
 
 import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
-from g12.tools.path.part import CHORD_ERROR, Part
+from g12.tools.path.part import Part
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 
 UNLIMITED = math.inf
@@ -30,52 +29,63 @@ class Limits:
     path: float
 
 
-class Vertices(NamedTuple):
-    """A polyline: per vertex the machine position, the tool length offset, the move, the time.
-
-    ``positions`` (n, 9) are those of the controlled point, ``offsets`` (n, 9) the tool length
-    offset in force, ``move`` (n,) the index of the move that ends at or passes the vertex,
-    ``time`` (n,) the seconds since the start.
-    """
-
-    positions: np.ndarray
-    offsets: np.ndarray
-    move: np.ndarray
-    time: np.ndarray
-
-
 @dataclass(frozen=True)
 class Track:
-    """Moves as one polyline in time, computed when its vertices are first used; see ``track``.
+    """Moves as one polyline in time, or only those in ``own``; it is made when it is first used.
 
-    ``seconds`` returns the time of a move by its index, with every move at its feed, as far as the
-    axes' speeds allow.
+    Every move is at its feed, as far as the axes' speeds allow. ``spindle_speed`` (rev/min) is for
+    moves in G95.
     """
 
     part: Part
     moves: Sequence[Move]
-    draw: Callable[[], Vertices]
-    seconds: Callable[[int], float]
+    limits: Limits
+    spindle_speed: float = 0.0
+    own: range | None = None
+
+    def seconds(self, index: int) -> float:
+        """Return the time of a move."""
+        return duration(self.moves[index], self.limits, self.spindle_speed)
+
+    @property
+    def _drawn(self) -> range:
+        return range(len(self.moves)) if self.own is None else self.own
 
     @cached_property
-    def _vertices(self) -> Vertices:
-        return self.draw()
+    def _vertices(self) -> tuple[np.ndarray, np.ndarray]:
+        lines = [self.part.machine_points(self.moves[index]) for index in self._drawn]
+        lines[1:] = [line[1:] for line in lines[1:]]
+        if not lines:
+            return np.zeros((1, len(AXIS_LETTERS))), np.zeros(1, int)
+        return np.concatenate(lines), np.repeat(self._drawn, [len(line) for line in lines])
 
     @property
     def positions(self) -> np.ndarray:
-        return self._vertices.positions
-
-    @property
-    def offsets(self) -> np.ndarray:
-        return self._vertices.offsets
+        """Machine positions (n, 9) of the controlled point."""
+        return self._vertices[0]
 
     @property
     def move(self) -> np.ndarray:
-        return self._vertices.move
+        """The index of the move that ends at or passes each vertex."""
+        return self._vertices[1]
 
-    @property
+    def _along(self, at_ends: Sequence[float]) -> np.ndarray:
+        """Return a value at each vertex, from those at the start and at the end of each move."""
+        ends = np.searchsorted(self.move, self._drawn, side="right") - 1
+        return np.interp(np.arange(len(self.move)), [0, *ends], at_ends)
+
+    @cached_property
     def time(self) -> np.ndarray:
-        return self._vertices.time
+        """The seconds since the start."""
+        return self._along(np.cumsum([0.0, *map(self.seconds, self._drawn)]))
+
+    @cached_property
+    def offsets(self) -> np.ndarray:
+        """The tool length offsets (n, 9) in force, which change along a move with G43."""
+        first = self._drawn.start
+        before = self.moves[first - 1].tool_offset if first else (0.0,) * len(AXIS_LETTERS)
+        at_ends = before, *(self.moves[index].tool_offset for index in self._drawn)
+        return np.stack([self._along(values) for values in zip(*at_ends)], axis=1)
 
     @cached_property
     def points(self) -> np.ndarray:
@@ -91,9 +101,6 @@ class Track:
         """Return the vertices of a move, its start included."""
         first, last = np.searchsorted(self.move, (index, index + 1))
         return slice(max(0, first - (1 if index else 0)), last)
-
-    def end(self, index: int) -> tuple[float, ...]:
-        return tuple(self.part.points(np.array(self.moves[index].end))[0])
 
     def part_length(self, index: int) -> float:
         """Return the length along the part of a move, mm."""
@@ -153,58 +160,3 @@ def feed_length(move: Move) -> float:
     change = np.subtract(move.end, move.start)
     lengths = (math.hypot(*change[:3]), math.hypot(*change[6:]), math.hypot(*change[3:6]))
     return next((length for length in lengths if length >= CART_FUZZ), 0.0)
-
-
-def track(
-    part: Part,
-    moves: Sequence[Move],
-    limits: Limits,
-    spindle_speed: float = 0.0,
-    chord_error: float = CHORD_ERROR,
-    *,
-    own: range | None = None,
-) -> Track:
-    """Return the polyline of moves, only of those in ``own`` if given."""
-    own = range(len(moves)) if own is None else own
-
-    def seconds(index: int) -> float:
-        return duration(moves[index], limits, spindle_speed)
-
-    drawn = partial(vertices_of, part, moves, own, seconds, chord_error)
-    return Track(part, moves, drawn, seconds)
-
-
-def vertices_of(
-    part: Part,
-    moves: Sequence[Move],
-    own: range,
-    seconds: Callable[[int], float],
-    chord_error: float,
-) -> Vertices:
-    positions, offsets, owner, times = [], [], [], [np.zeros(1)]
-    before = moves[own.start - 1].tool_offset if own.start else (0.0,) * 9
-    for index in own:
-        move = moves[index]
-        points = part.machine_points(move, chord_error)
-        skip = 1 if index > own.start else 0
-        share = np.linspace(0.0, 1.0, len(points))
-        positions.append(points[skip:])
-        offsets.append(offsets_between(before, move.tool_offset, share)[skip:])
-        owner.append(len(points) - skip)
-        times.append(times[-1][-1] + seconds(index) * share[1:])
-        before = move.tool_offset
-    return Vertices(
-        np.concatenate(positions or [np.zeros((1, 9))]),
-        np.concatenate(offsets or [np.zeros((1, 9))]),
-        np.repeat(own, owner) if owner else np.zeros(1, int),
-        np.concatenate(times),
-    )
-
-
-def offsets_between(
-    before: Sequence[float], after: Sequence[float], share: np.ndarray
-) -> np.ndarray:
-    """Return tool length offsets (n, 9) at shares of a move on which they change."""
-    if before == after:
-        return np.broadcast_to(after, (len(share), len(after)))
-    return np.multiply.outer(1 - share, before) + np.multiply.outer(share, after)

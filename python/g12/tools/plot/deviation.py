@@ -15,6 +15,7 @@ from g12.tools.units import Unit
 
 DETAIL_SIZE = 1.9  # inches: the detail view's sides
 NEIGHBOURS = 3  # number of moves drawn before and after
+SAMPLES = 500  # of the motion drawn before and after
 HALF_VIEW = 6.0  # half the view's side, in deviations
 LEAST_WINDOW = 1e-4  # mm
 
@@ -24,11 +25,11 @@ def size_of(worst: Worst, unit: Unit) -> str:
     return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
 
 
-def draw_window(figure: Figure, corner: tuple[float, float], scene: Scene) -> None:
-    """Draw the detail view with its lower left corner at a point (inches)."""
+def draw_window(figure: Figure, left: float, top: float, scene: Scene) -> None:
+    """Draw the detail view with its upper left corner so many inches to the right and down."""
     worst = worst_of(scene.real, scene.moves)
     if worst is not None:
-        _draw(style.add_axes(figure, *corner, DETAIL_SIZE, DETAIL_SIZE), scene, worst)
+        _draw(style.add_axes(figure, left, top, DETAIL_SIZE, DETAIL_SIZE), scene, worst)
 
 
 def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
@@ -39,7 +40,8 @@ def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
     origin = worst.nearest[pair]
     around = moves[max(0, real.move[worst.sample] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
     programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
-    sampled = _stretch(real.points, worst, half)[:, pair] - origin
+    near = real.points[max(0, worst.sample - SAMPLES) : worst.sample + SAMPLES]
+    sampled = near[:, pair] - origin
     style.draw(axes, programmed, style.PATH, 2.6)
     style.draw(axes, [sampled], style.REAL, 1.0, 3.5)
     axes.plot(*sampled.T, ".", color=style.REAL, markersize=3, zorder=3.5)
@@ -65,13 +67,3 @@ def clearest_axes(deviation: np.ndarray, direction: np.ndarray) -> list[int]:
     """Return the two axes of the part, in order, that show a deviation and its path best."""
     score = sum(vector**2 / max(vector @ vector, 1e-30) for vector in (deviation, direction))
     return sorted(np.argsort(-score, kind="stable")[:2].tolist())
-
-
-def _stretch(points: np.ndarray, worst: Worst, half: float) -> np.ndarray:
-    """Return the consecutive samples about the worst one within the view."""
-    away = np.max(np.abs(points - worst.point), axis=1) > 3 * half
-    before = np.flatnonzero(away[: worst.sample])
-    after = np.flatnonzero(away[worst.sample :])
-    first = before[-1] if len(before) else 0
-    last = worst.sample + after[0] if len(after) else len(points) - 1
-    return points[first : last + 1]

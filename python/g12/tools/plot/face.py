@@ -16,27 +16,24 @@ from g12.machine_ini import AXIS_LETTERS
 from g12.tools.path.part import C, Y, slide_positions, spindle_angles
 from g12.tools.path.track import limits_of
 from g12.tools.plot import style
-from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE
 from g12.tools.plot.plan_view import (
     SceneView,
     bounds_of,
     draw_plan,
+    finish,
     first_shown,
     floors_of,
     legend_entries,
-    mark_worst,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 
-WIDTH, HEIGHT = 11.9, 8.0
-DETAIL_HEIGHT = 1.25  # with the detail view of the largest deviation
-LEFT, TOP = style.MARGIN, 1.05
 FACE_SIZE = 5.0  # side of the face's view
-ROOM = 13  # entries of the legend
+BELOW = 0.55  # the distance of legend and detail view from it
+PANELS_LEFT, PANELS_WIDTH = 6.0, 4.55
+ROWS, PANEL, GAP = 5, 1.0, 0.3  # panels: number, height, gap
 TIME_IN_RAPIDS = style.swatch(style.FAINT, None, "time spent in rapids")
-PANELS_LEFT, PANELS_WIDTH = 6.75, 4.55
-ROWS, PANEL, GAP = 5, 0.996, 0.3  # panels: number, height, gap
 
 
 class History(NamedTuple):
@@ -56,19 +53,21 @@ class History(NamedTuple):
 
 def draw_face(scene: Scene) -> Figure:
     floors = floors_of(scene)
-    height = HEIGHT if scene.real is None else HEIGHT + DETAIL_HEIGHT
-    figure = style.new_figure(WIDTH, height, scene.title, scene.subtitle)
-    face = style.add_axes(figure, LEFT, height - TOP - FACE_SIZE, FACE_SIZE, FACE_SIZE)
-    frame_face(face, scene, floors)
-    draw_plan(SceneView(face, scene), floors)
-    entries = [*legend_entries(scene, floors, ROOM), TIME_IN_RAPIDS]
-    columns = 2 if scene.real is None else 1
-    style.draw_legend(figure, entries, LEFT - 0.1, height - TOP - FACE_SIZE - 0.5, columns)
-    draw_history([panel_axes(figure, row) for row in range(ROWS)], scene, "part")
-    if scene.real is not None:
-        mark_worst(SceneView(face, scene))
-        draw_window(figure, (LEFT + FACE_SIZE - DETAIL_SIZE, 0.55), scene)
-    return figure
+    page = style.new_page(scene.title, scene.subtitle)
+    view = SceneView(style.add_axes(page, 0, 0, FACE_SIZE, FACE_SIZE), scene)
+    frame_face(view.axes, scene, floors)
+    draw_plan(view, floors)
+    draw_history(panels_of(page, PANELS_LEFT, 0, PANELS_WIDTH, ROWS), scene, "part")
+    entries = [*legend_entries(scene, floors), TIME_IN_RAPIDS]
+    below = FACE_SIZE + BELOW
+    legend = (0, below, 2 if scene.real is None else 1)
+    return finish(page, [view], entries, legend, (FACE_SIZE - DETAIL_SIZE, below + GAP))
+
+
+def panels_of(page: Figure, left: float, top: float, width: float, rows: int) -> list[Axes]:
+    """Return panels one below the other, the first one's upper left corner there."""
+    tops = (top + row * (PANEL + GAP) for row in range(rows))
+    return [style.add_axes(page, left, each, width, PANEL) for each in tops]
 
 
 def frame_face(axes: Axes, scene: Scene, floors: list) -> None:
@@ -107,13 +106,6 @@ def draw_history(panels: Sequence[Axes], scene: Scene, along: str) -> None:
         axes.set_xlim(0, history.time[-1])
         axes.tick_params(labelbottom=axes is feed)
     feed.set_xlabel("time, s" if scene.real is not None else "time, s, at the programmed feeds")
-
-
-def panel_axes(figure: Figure, row: int) -> Axes:
-    height = figure.get_figheight()
-    panel = PANEL + (height - HEIGHT) / ROWS
-    bottom = height - TOP - panel - row * (panel + GAP)
-    return style.add_axes(figure, PANELS_LEFT, bottom, PANELS_WIDTH, panel)
 
 
 def history_of(scene: Scene) -> History:

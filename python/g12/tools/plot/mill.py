@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of a mill program: plan view over side view, with the cutter's swept area.
+"""The pictures of a mill's part, from above and from the side, and of a turned one.
 
 Lengths are millimetres until they are drawn; those of the layout are inches on the page.
 """
@@ -7,86 +7,58 @@ Lengths are millimetres until they are drawn; those of the layout are inches on 
 from collections.abc import Sequence
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from shapely.geometry import LineString, Polygon, box
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.plot import style
-from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
+from g12.tools.plot.deviation import DETAIL_SIZE
 from g12.tools.plot.plan_view import (
+    ONE_DEPTH,
     Floor,
     SceneView,
     bounds_of,
+    draw_arrows,
     draw_paths,
     draw_plan,
+    draw_signs,
     draw_stock,
+    finish,
     floors_of,
     legend_entries,
-    mark_worst,
+    motion_entries,
     top_of,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.units import plain
 from g12.tools.verify.model.finding import Finding
 
-PAGE_WIDTH = 11.0  # wide
+PAGE = 9.75  # wide
 WIDE = 2.0  # a plan wider than this times its height has the legend below
-LEFT, RIGHT, TOP, BETWEEN, BOTTOM = style.MARGIN, 0.5, 1.05, 0.5, 0.55
-LEGEND = 2.75  # width
+LEGEND, BESIDE = 2.75, 0.2  # the width of one beside the views, and its distance from them
+BELOW = 0.6  # the distance of one below them
 MOST_PLAN, LEAST_PLAN = 5.6, 1.2  # high
+BETWEEN = 0.5  # the views
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8
+MOST_PROFILE, LEAST_PROFILE = 6.5, 2.0
 ROW = 0.22  # a line of the legend
 COLUMNS = 4
 XZ = [0, 2]  # the axes of the side view
-DETAIL_ROOM = DETAIL_SIZE + 0.75  # the detail view of the largest deviation, with its texts
-
-
-class Layout:
-    """The layout of the page; ``size`` is width, height and depth of the view."""
-
-    def __init__(self, size: np.ndarray, rows: int, with_window: bool) -> None:
-        width, height, depth = size
-        self.below = width > WIDE * height
-        beside = RIGHT if self.below else LEGEND + RIGHT
-        room = PAGE_WIDTH - LEFT - beside
-        scale = min(room / width, MOST_PLAN / height)
-        self.plan = (width * scale, max(LEAST_PLAN, height * scale))
-        self.side = min(MOST_SIDE, max(LEAST_SIDE, depth * scale))
-        self.stretch = self.side / (depth * scale)
-        legend = ROW * (-(-rows // COLUMNS) if self.below else rows) + 0.2
-        window = DETAIL_ROOM if with_window else 0.0
-        foot = max(legend, window) if self.below else 0.0
-        views = self.plan[1] + BETWEEN + self.side + BOTTOM
-        self.height = TOP + max(views + foot, 0.0 if self.below else legend + window)
-        self.width = PAGE_WIDTH if self.below else LEFT + self.plan[0] + beside
-        self.under = self.height - TOP - views
-
-    def axes(self, figure: Figure) -> tuple[Axes, Axes]:
-        low = self.height - TOP - self.plan[1]
-        plan = style.add_axes(figure, LEFT, low, *self.plan)
-        side = style.add_axes(figure, LEFT, low - BETWEEN - self.side, self.plan[0], self.side)
-        return plan, side
-
-    def draw_legend(self, figure: Figure, shown: Sequence) -> None:
-        beside = (LEFT + self.plan[0] + 0.2, self.height - TOP + 0.08, 1)
-        at = (LEFT - 0.1, self.under, COLUMNS) if self.below else beside
-        style.draw_legend(figure, shown, *at)
-
-    def window_corner(self) -> tuple[float, float]:
-        """Return the lower left corner of the detail view of the largest deviation."""
-        beside = (LEFT + self.plan[0] + RIGHT, BOTTOM)
-        return (self.width - RIGHT - DETAIL_SIZE, 0.4) if self.below else beside
+PROFILE = [2, 0]  # of a turned part: Z to the right, X up
 
 
 def draw_mill(scene: Scene) -> Figure:
     floors = floors_of(scene)
     low, high = bounds_of(scene, floors)
-    shown = legend_entries(scene, floors)
-    layout = Layout(high - low, len(shown), scene.real is not None)
-    figure = style.new_figure(layout.width, layout.height, scene.title, scene.subtitle)
-    plan, side = layout.axes(figure)
+    width, height, depth = high - low
+    is_wide = width > WIDE * height
+    scale = min((PAGE if is_wide else PAGE - LEGEND) / width, MOST_PLAN / height)
+    across, up = width * scale, max(LEAST_PLAN, height * scale)
+    deep = float(np.clip(depth * scale, LEAST_SIDE, MOST_SIDE))
+    page = style.new_page(scene.title, scene.subtitle)
+    plan = style.add_axes(page, 0, 0, across, up)
+    side = style.add_axes(page, 0, up + BETWEEN, across, deep)
     style.frame(plan, low[:2], high[:2], scene.unit, "XY")
     plan.set_aspect("equal", adjustable="datalim")
     plan.set_xlabel("")
@@ -94,13 +66,36 @@ def draw_mill(scene: Scene) -> Figure:
     views = SceneView(plan, scene), SceneView(side, scene, XZ)
     draw_plan(views[0], floors)
     style.frame(side, low[XZ], high[XZ], scene.unit, "XZ")
-    draw_side(views[1], floors, layout.stretch)
-    layout.draw_legend(figure, shown)
-    if scene.real is not None:
-        for view in views:
-            mark_worst(view)
-        draw_window(figure, layout.window_corner(), scene)
-    return figure
+    draw_side(views[1], floors, deep / (depth * scale))
+    entries = legend_entries(scene, floors)
+    bottom = up + BETWEEN + deep
+    if is_wide:
+        corner = (across - DETAIL_SIZE, bottom + BELOW)
+        return finish(page, views, entries, (0, bottom + BELOW, COLUMNS), corner)
+    return finish(page, views, entries, (across + BESIDE, 0, 1), beside(across, bottom, entries))
+
+
+def beside(across: float, bottom: float, entries: Sequence) -> tuple[float, float]:
+    """Return the corner of the detail view beside the views: below the legend, or at the bottom."""
+    return across + 2 * BESIDE, max(bottom - DETAIL_SIZE, ROW * len(entries) + BETWEEN)
+
+
+def draw_turn(scene: Scene) -> Figure:
+    """Draw the toolpath in Z and X, as seen from the front of the lathe."""
+    low, high = (corner[PROFILE] for corner in bounds_of(scene, []))
+    low[1] = min(low[1], 0.0)
+    width, (across, up) = PAGE - LEGEND, high - low
+    height = float(np.clip(width * up / across, LEAST_PROFILE, MOST_PROFILE))
+    page = style.new_page(scene.title, scene.subtitle)
+    view = SceneView(style.add_axes(page, 0, 0, width, height), scene, PROFILE)
+    style.frame(view.axes, low, high, scene.unit, ("Z", "X (radius)"))
+    view.axes.set_aspect("equal", adjustable="datalim")
+    view.axes.axhline(0, **style.CENTRE_LINE)
+    draw_paths(view)
+    draw_arrows(view)
+    draw_signs(view)
+    entries = [style.stroke(style.shade(ONE_DEPTH).line, "cut"), *motion_entries(scene)]
+    return finish(page, [view], entries, (width + BESIDE, 0, 1), beside(width, height, entries))
 
 
 def draw_side(view: SceneView, floors: Sequence[Floor], stretch: float) -> None:

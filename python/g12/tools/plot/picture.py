@@ -4,9 +4,8 @@
 from matplotlib.figure import Figure
 
 from g12.tools.plot.face import draw_face
-from g12.tools.plot.mill import draw_mill
+from g12.tools.plot.mill import draw_mill, draw_turn
 from g12.tools.plot.scene import Scene
-from g12.tools.plot.turning import draw_turn
 from g12.tools.plot.unrolled import draw_unrolled
 
 

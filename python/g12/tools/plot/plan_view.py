@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from shapely.affinity import scale as scaled
 from shapely.geometry.base import BaseGeometry
@@ -19,6 +20,7 @@ from g12.tools.material.material import NOTHING, Material, Removed
 from g12.tools.path.follow import worst_of
 from g12.tools.path.part import paths
 from g12.tools.plot import style
+from g12.tools.plot.deviation import draw_window
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
 from g12.tools.verify.model.solid import pieces
@@ -26,7 +28,6 @@ from g12.tools.verify.model.solid import pieces
 PICTURE_CHORD = 0.01
 SAME_DEPTH, ONE_DEPTH = 1e-3, 0.35  # mm; the shade of a single one
 THIN = 0.02  # mm: a narrower strip of a floor is not shown
-LEAST_LEVELS = 2  # entries in a short legend
 MOST_SHOWN_LEVELS = 10  # in a legend
 MANY_LEVELS, BANDS = 100, 24
 MOST_ARROWS = 80
@@ -319,21 +320,37 @@ def mark_worst(view: SceneView) -> None:
 # ------------------------------------------------------------ the legend
 
 
-def legend_entries(scene: Scene, floors: Sequence[Floor], room: int | None = None) -> list:
-    """Return the legend, with fewer depths where ``room`` limits its entries."""
-    listed = []
+def finish(
+    page: Figure,
+    views: Sequence[SceneView],
+    entries: Sequence,
+    legend: tuple[float, float, int],
+    window: tuple[float, float],
+) -> Figure:
+    """Return a page with its legend, and after a run with the detail of its largest deviation.
+
+    Both have their upper left corner so many inches to the right and down; a legend has columns.
+    """
+    style.draw_legend(page, entries, *legend)
+    scene = views[0].scene
+    if scene.real is not None:
+        for view in views:
+            mark_worst(view)
+        draw_window(page, *window, scene)
+    return page
+
+
+def legend_entries(scene: Scene, floors: Sequence[Floor]) -> list:
+    letter = scene.path.part.letters[2]
+    listed = [
+        style.swatch(floor.shade.floor, floor.edge, f"swept at {letter}{scene.unit.text(floor.z)}")
+        for floor in few(floors)
+    ]
     for tool in sorted({scene.moves[index].tool for index in {*scene.fed} - {*scene.turned}}):
         listed.append(style.marker(style.INK, cutter_text(scene, tool), CUTTER, hollow=True))
     if plunges_of(scene):
         listed.append(style.marker(style.INK, "plunge"))
-    listed += motion_entries(scene)
-    room = MOST_SHOWN_LEVELS if room is None else max(room - len(listed), LEAST_LEVELS)
-    letter = scene.path.part.letters[2]
-    depths = [
-        style.swatch(floor.shade.floor, floor.edge, f"swept at {letter}{scene.unit.text(floor.z)}")
-        for floor in few(floors, min(room, MOST_SHOWN_LEVELS))
-    ]
-    return [*depths, *listed]
+    return listed + motion_entries(scene)
 
 
 def cutter_text(scene: Scene, tool: int) -> str:
@@ -379,8 +396,7 @@ def warning_entries(scene: Scene) -> list:
     return listed
 
 
-def few(items: Sequence, most: int = MOST_SHOWN_LEVELS) -> list:
-    """Return at most so many of the items, the first and the last among them."""
-    if len(items) <= most:
-        return list(items)
-    return [items[i] for i in np.linspace(0, len(items) - 1, most).round().astype(int)]
+def few(items: Sequence) -> list:
+    """Return at most MOST_SHOWN_LEVELS of the items, the first and the last among them."""
+    shown = np.linspace(0, len(items) - 1, min(len(items), MOST_SHOWN_LEVELS))
+    return [items[index] for index in shown.round().astype(int)]

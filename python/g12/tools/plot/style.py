@@ -70,8 +70,9 @@ FLOORS = colors.LinearSegmentedColormap.from_list(
 SIGN = {"marker": "^", "color": CRASH}
 HIT = {"marker": "X", "color": CRASH, "markeredgecolor": "white"}
 DPI = 150
-LETTERS_PER_INCH = 14.0  # characters of the subtitle to an inch
-MARGIN = 0.75  # inches left of titles and axes
+TITLE, SUBTITLE = 0.89, 0.61  # inches above the views
+SUBTITLE_WIDTH = 140  # characters
+MARGIN = 0.2  # inches around the picture
 CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorder": 1.9}
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
@@ -85,21 +86,22 @@ def check_format(path: Path) -> None:
         raise UsageError(f"{path.parent}: no such directory")
 
 
-def new_figure(width: float, height: float, title: str, subtitle: str) -> Figure:
-    """Return a page with its title; sizes in inches."""
-    figure = Figure(figsize=(width, height), facecolor="white")
-    left, top = MARGIN / width, 1 - 0.16 / height
-    figure.text(left, top, utf8_text(title), size=13, weight="bold", va="top")
-    letters = int((width - MARGIN - 0.3) * LETTERS_PER_INCH)
-    lines = "\n".join(textwrap.wrap(utf8_text(subtitle), letters))
-    figure.text(left, top - 0.28 / height, lines, size=8.5, color=MUTED, va="top")
+def new_page(title: str, subtitle: str) -> Figure:
+    """Return a page with its title above the views.
+
+    Its coordinates are inches to the right and upwards from the upper left corner of the views. It
+    has no size: the saved picture holds whatever is drawn.
+    """
+    figure = Figure(figsize=(1, 1), facecolor="white")
+    figure.text(0, TITLE, utf8_text(title), size=13, weight="bold", va="top")
+    lines = "\n".join(textwrap.wrap(utf8_text(subtitle), SUBTITLE_WIDTH))
+    figure.text(0, SUBTITLE, lines, size=8.5, color=MUTED, va="top")
     return figure
 
 
-def add_axes(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
-    """Return axes placed in inches from the page's lower left corner."""
-    across, up = figure.get_size_inches()
-    axes = figure.add_axes([left / across, bottom / up, width / across, height / up])
+def add_axes(page: Figure, left: float, top: float, width: float, height: float) -> Axes:
+    """Return axes whose upper left corner is so many inches to the right and down."""
+    axes = page.add_axes([left, -top - height, width, height])
     axes.spines["top"].set_visible(False)
     axes.spines["right"].set_visible(False)
     return axes
@@ -126,13 +128,10 @@ def frame_detail(axes: Axes, centre: Sequence[float], half: float, title: str, t
     axes.set_xlabel(text, size=8, color=WORST, loc="left")
 
 
-def draw_legend(
-    figure: Figure, entries: Sequence, left: float, top: float, columns: int = 1, **layout
-) -> None:
-    """Draw the legend with its upper left corner at a point in inches."""
-    across, up = figure.get_size_inches()
-    at = {"loc": "upper left", "bbox_to_anchor": (left / across, top / up)}
-    figure.legend(handles=entries, ncol=columns, columnspacing=1.6, **at, **layout)
+def draw_legend(page: Figure, entries: Sequence, left: float, top: float, columns: int = 1) -> None:
+    """Draw the legend with its upper left corner so many inches to the right and down."""
+    at = {"loc": "upper left", "bbox_to_anchor": (left, -top), "borderaxespad": 0.0}
+    page.legend(handles=entries, ncol=columns, columnspacing=1.6, **at)
 
 
 def fill(axes: Axes, area: BaseGeometry, face, edge=None, order: float = 1.0, **style) -> None:
@@ -236,4 +235,5 @@ def marker(colour, text: str, size: float = 4.0, hollow: bool = False) -> Line2D
 
 def save(figure: Figure, path: Path) -> None:
     kind = path.suffix.lower().lstrip(".")
-    figure.savefig(path, format=kind, dpi=DPI, metadata=SAVE[kind])
+    fit = {"bbox_inches": "tight", "pad_inches": MARGIN}
+    figure.savefig(path, format=kind, dpi=DPI, metadata=SAVE[kind], **fit)

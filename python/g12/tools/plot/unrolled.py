@@ -15,28 +15,25 @@ from matplotlib.ticker import MaxNLocator
 from shapely.geometry import box
 
 from g12.tools.plot import style
-from g12.tools.plot.deviation import DETAIL_SIZE, draw_window
-from g12.tools.plot.face import TIME_IN_RAPIDS, draw_history
+from g12.tools.plot.deviation import DETAIL_SIZE
+from g12.tools.plot.face import GAP, PANEL, TIME_IN_RAPIDS, draw_history, panels_of
 from g12.tools.plot.marks import DrawnStock
 from g12.tools.plot.plan_view import (
     SceneView,
     bounds_of,
     draw_plan,
+    finish,
     floors_of,
     legend_entries,
-    mark_worst,
 )
 from g12.tools.plot.scene import Scene
 from g12.tools.verify.model.finding import Finding
 
-WIDTH, MOST, LEAST = 11.9, 4.6, 0.9  # of the page; the surface's height
-LEFT, RIGHT, TOP = style.MARGIN, 0.35, 1.3
-UNDER = 0.95  # margins: the surface's labels, the panels' captions
-PANEL, GAP, ROWS = 1.0, 0.32, 3
+WIDTH, MOST, LEAST = 10.8, 4.6, 0.9  # of the surface; its greatest and least height
+ABOVE, UNDER = 0.25, 0.95  # for its angles; between its labels and the panels' captions
 BETWEEN = 0.75  # the two columns of panels
-BOTTOM = 0.5
+COLUMN = (WIDTH - BETWEEN) / 2  # its width
 NICE_ANGLES = (1, 1.5, 1.8, 3, 3.6, 4.5, 9, 10)
-DETAIL_ROW = 1.2  # with the detail view of the largest deviation
 
 
 def draw_unrolled(scene: Scene) -> Figure:
@@ -44,36 +41,23 @@ def draw_unrolled(scene: Scene) -> Figure:
     floors = floors_of(flat)
     low, high = (corner[:2] for corner in bounds_of(flat, floors))
     size = high - low
-    scale = min((WIDTH - LEFT - RIGHT) / size[0], MOST / size[1])
+    scale = min(WIDTH / size[0], MOST / size[1])
     across, up = size[0] * scale, max(LEAST, size[1] * scale)
-    more = DETAIL_ROW if scene.real is not None else 0.0
-    page = TOP + up + UNDER + ROWS * (PANEL + GAP) + BOTTOM + more
-    figure = style.new_figure(WIDTH, page, flat.title, flat.subtitle)
+    page = style.new_page(flat.title, flat.subtitle)
     flat = with_bar(flat, scene.marks.stock, low, high)
-    view = SceneView(style.add_axes(figure, LEFT, page - TOP - up, across, up), flat)
+    view = SceneView(style.add_axes(page, 0, ABOVE, across, up), flat)
     frame_surface(view.axes, flat, low, high, scene.x0_text)
     draw_plan(view, floors)
-    panels = panels_of(figure, page - TOP - up - UNDER)
-    draw_history(panels, flat, "surface")
-    panels[ROWS - 1].tick_params(labelbottom=True)
-    panels[ROWS - 1].set_xlabel(panels[-1].get_xlabel())
-    column = LEFT + (WIDTH - LEFT - RIGHT + BETWEEN) / 2
+    below, right = ABOVE + up + UNDER, WIDTH - COLUMN
+    columns = panels_of(page, 0, below, COLUMN, 3), panels_of(page, right, below, COLUMN, 2)
+    draw_history([*columns[0], *columns[1]], flat, "surface")
+    for column in columns:
+        column[-1].tick_params(labelbottom=True)
+        column[-1].set_xlabel(columns[1][-1].get_xlabel())
     entries = [*legend_entries(flat, floors), TIME_IN_RAPIDS]
-    top = page - TOP - up - UNDER - 2 * (PANEL + GAP) - GAP
-    style.draw_legend(figure, entries, column - 0.1, top, 1 if more else 2)
-    if scene.real is not None:
-        mark_worst(view)
-        draw_window(figure, (WIDTH - RIGHT - DETAIL_SIZE, 0.55), flat)
-    return figure
-
-
-def panels_of(figure: Figure, top: float) -> list[Axes]:
-    """Return the axes over time: X, Z and C in one column, the speeds in another."""
-    width = (WIDTH - LEFT - RIGHT - BETWEEN) / 2
-    columns, rows = (LEFT, LEFT + width + BETWEEN), range(ROWS)
-    cells = [(columns[0], row) for row in rows] + [(columns[1], row) for row in rows[:-1]]
-    lows = [(left, top - PANEL - row * (PANEL + GAP)) for left, row in cells]
-    return [style.add_axes(figure, left, low, width, PANEL) for left, low in lows]
+    top = below + 2 * (PANEL + GAP) + GAP
+    legend = (right, top, 2 if scene.real is None else 1)
+    return finish(page, [view], entries, legend, (WIDTH - DETAIL_SIZE, top + GAP))
 
 
 def frame_surface(axes: Axes, scene: Scene, low: np.ndarray, high: np.ndarray, x0: str) -> None:

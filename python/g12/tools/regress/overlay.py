@@ -21,9 +21,8 @@ from g12.tools.regress.recording_text import Recording
 from g12.tools.units import Unit, counted_as
 
 CHORD_ERROR, FINEST_CHORD_ERROR = 0.005, 2e-5
-LEFT, RIGHT, TOP, BOTTOM = style.MARGIN, 0.3, 1.0, 0.55
 LARGEST_VIEW, LEAST_VIEW = np.array([7.0, 5.6]), np.array([3.0, 1.4])  # across and up
-LEGEND, ROWS = 2.9, 1.6
+BESIDE, ROWS = 0.35, 1.6  # the legend's distance from the view, its height
 GAP_VIEW_SIZE = 2.0  # sides of the detail view of the largest gap
 REACH, LEAST_REACH = 4.0, 1e-3  # half the view's side: in gaps, in mm
 VISIBLE = 0.08  # of the picture's size: a larger gap needs no detail view
@@ -51,22 +50,21 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     more = np.maximum(0.0, LEAST_VIEW / scale - (high - low)) / 2
     low, high = low - more, high + more
     across, up = (high - low) * scale
-    height = TOP + max(up, ROWS + GAP_VIEW_SIZE) + BOTTOM
     title = now.facts["program"].rpartition(" ")[0]
     text = f"{counted_as(len(found), 'difference')}: {found[0].text}"
-    page = style.new_figure(LEFT + across + LEGEND + RIGHT, height, title, text)
-    axes = style.add_axes(page, LEFT, height - TOP - up, across, up)
+    page = style.new_page(title, text)
+    axes = style.add_axes(page, 0, 0, across, up)
     letters = ("towards C0", "towards C90", "Z") if part.turning else "XYZ"
     style.frame(axes, low, high, unit, [letters[axis] for axis in pair])
     draw_paths(axes, drawn, pair, unit)
-    left, top = LEFT + across + 0.35, height - TOP + 0.08
-    style.draw_legend(page, legend(drawn, gap, unit), left, top, borderaxespad=0.0)
+    left = across + BESIDE
+    style.draw_legend(page, legend(drawn, gap, unit), left, 0)
     if gap:
         ring = {"color": style.WORST, "markersize": 9, "fillstyle": "none"}
         axes.plot(*gap.point[pair] / unit.mm, "o", **ring)
     if gap and gap.size < VISIBLE * max(high - low):
-        corner = (left, top - ROWS - GAP_VIEW_SIZE, GAP_VIEW_SIZE, GAP_VIEW_SIZE)
-        draw_gap(style.add_axes(page, *corner), drawn, pair, gap, unit)
+        view = style.add_axes(page, left, ROWS, GAP_VIEW_SIZE, GAP_VIEW_SIZE)
+        draw_gap(view, drawn, pair, gap, unit)
     return page
 
 

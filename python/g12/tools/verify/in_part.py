@@ -46,9 +46,8 @@ PLUNGE_FAST = kind(
 
 def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Yield every rapid through solid material, and those that cannot be judged."""
-    turned = program.turned_at
-    if turned is not None:
-        yield program.found(ROTARY, turned)
+    if program.turned_at is not None:
+        yield program.found(ROTARY, program.turned_at)
     for index, move in enumerate(program.moves):
         if move.kind == "rapid" and program.is_known(index):
             yield from _judge(index, program, solids)

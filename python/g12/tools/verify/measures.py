@@ -16,7 +16,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X
 from g12.tools.path.section_times import Leg, SectionTimes, lathe_axes, section_times
 from g12.tools.path.slowest import pace_of
-from g12.tools.path.track import track
+from g12.tools.path.track import Track
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.deviation import allowed_off, circles_of, off_circles
@@ -53,7 +53,7 @@ def _pace(cut: Cut, judgement: Judgement) -> dict[str, Any]:
     if cut.at >= cut.end:
         return {}
     part, speed = program.part_at(cut.surface, cut.at), program.trace.modes.speed
-    path = track(part, program.moves, program.limits, speed, own=cut.moves)
+    path = Track(part, program.moves, program.limits, speed, cut.moves)
     pace = pace_of(cut.moves, program.fed(cut), path, program.real)
     taps = cut.is_tap  # no trace has the time of a synchronized move
     return {

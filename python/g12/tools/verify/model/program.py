@@ -22,7 +22,7 @@ from g12.tools.path.nearest import shares_along
 from g12.tools.path.part import C, Part, X, Y, Z, last_zero, part_of, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.surface import Surface
-from g12.tools.path.track import Track, limits_of, track
+from g12.tools.path.track import Track, limits_of
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.units import plain
 from g12.tools.verify.model.cut import Cut, cuts_of
@@ -115,7 +115,7 @@ class TracedProgram:
     @cached_property
     def path(self) -> Track:
         """The moves as one polyline in time."""
-        return track(self.part, self.moves, self.limits, self.trace.modes.speed)
+        return Track(self.part, self.moves, self.limits, self.trace.modes.speed)
 
     @cached_property
     def real(self) -> Followed | None:

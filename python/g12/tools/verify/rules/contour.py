@@ -81,7 +81,7 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     """Return whether the lead-in begins on the part's side of a contour."""
     if outline.is_closed:
         start = Point(outline.lead.real, outline.lead.imag)
-        if outline.polygon.exterior.distance(start) < AT_EDGE:
+        if outline.polygon.boundary.distance(start) < AT_EDGE:
             return False
         return bool(outline.polygon.contains(start)) != outline.tool_inside
     along = outline.points[1] - outline.points[0]

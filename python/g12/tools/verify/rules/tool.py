@@ -68,9 +68,8 @@ def no_d(site: Site) -> Values:
 )
 def length_deeper(site: Site) -> Values:
     off = _off_length(site)
-    if off <= SIZE or _is_chosen(site):
-        return None
-    return {"offset": site.program.moves[site.at].tool_offset[Z], "tool": site.tool, "off": off}
+    chosen = site.program.chosen_length(site.at)
+    return {"tool": site.tool, "off": off} if off > SIZE and not chosen else None
 
 
 @rule(
@@ -80,8 +79,8 @@ def length_deeper(site: Site) -> Values:
     plain=True,
 )
 def length_higher(site: Site) -> Values:
-    off = _off_length(site)
-    if site.tool <= 0 or abs(off) <= SIZE or (off > 0 and not _is_chosen(site)):
+    off, chosen = _off_length(site), site.program.chosen_length(site.at)
+    if site.tool <= 0 or abs(off) <= SIZE or (off > 0 and not chosen):
         return None
     return {"tool": site.tool, "off": abs(off), "how": "higher" if off < 0 else "deeper"}
 
@@ -89,10 +88,6 @@ def length_higher(site: Site) -> Values:
 def _off_length(site: Site, axis: int = Z) -> float:
     """Return by how much the tool is longer than the length in force, 0 without any length."""
     return site.program.missing_length(site.at, axis) if site.program.uses_lengths else 0.0
-
-
-def _is_chosen(site: Site) -> bool:
-    return site.program.chosen_length(site.at)
 
 
 @rule(
@@ -104,9 +99,8 @@ def _is_chosen(site: Site) -> bool:
 )
 def length_not_used(site: Site) -> Values:
     off = site.program.missing_length(site.at)
-    if site.program.uses_lengths or abs(off) <= SIZE:
-        return None
-    return {"tool": site.tool, "off": off}
+    missing = not site.program.uses_lengths and abs(off) > SIZE
+    return {"tool": site.tool, "off": off} if missing else None
 
 
 @rule(
@@ -129,8 +123,8 @@ def length_mixed(site: Site) -> Values:
 
 @rule("offset-beside", FINDING, "it cuts {off:fine} beside: the offset in X is not T{tool}'s")
 def offset_beside(site: Site) -> Values:
-    off = _off_length(site, X)
-    beside = site.program.turning and abs(off) > SIZE and not _is_chosen(site)
+    off, chosen = _off_length(site, X), site.program.chosen_length(site.at)
+    beside = site.program.turning and abs(off) > SIZE and not chosen
     return {"tool": site.tool, "off": abs(off)} if beside else None
 
 
