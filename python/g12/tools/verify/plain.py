@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Feed moves of a mill that no code of the package makes: the given stock, taps, D of G41 and G42."""
+"""Feed moves of a mill that no code of the package makes: stock, taps, D of G41 and G42."""
 
 import re
 from collections.abc import Iterator

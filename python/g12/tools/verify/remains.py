@@ -257,7 +257,7 @@ def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield a first level that is far below what stands, or a level far below the one before."""
     program, top = solids.program, solids.top(cut.surface)
     radius, levels, wanted = program.cutter(cut.at), cut.levels, cut.goes
-    if wanted.is_empty:
+    if wanted.is_empty and (cut.is_section or cut.is_shape):
         wanted, _ = solids.swept_in(solids.of(cut.surface).shape, cut.moves, cut.surface)
     if cut.is_section:
         levels = [level for level in cut.steps_down if level < top] or cut.levels
