@@ -83,6 +83,8 @@ def test_nothing_but_x_y_and_z_moves_on_the_face_by_hand(lathe):
     lathe.mdi("C5")
     lathe.wait_for_error("C does not move by itself on the face")
     lathe.wait_for(lambda _: not on_the_face(lathe))
+    lathe.settle()
+    lathe.errors()  # of motion, which LinuxCNC may report after that of the kinematics
     type_each(lathe, "G13.1", *ON)
     lathe.manual()
     lathe.wait_for(lambda status: status.task_mode == "manual")
