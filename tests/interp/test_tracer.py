@@ -129,22 +129,6 @@ def ends(traced):
 # Positions and feeds.
 
 
-def test_positions_are_mm_whatever_the_program_uses(mill):
-    metric = mill.trace_text("G21\nG1 X25.4 Y-12.7 F254\nG2 X50.8 I12.7")
-    inch = mill.trace_text("G20\nG1 X1 Y-.5 F10\nG2 X2 I.5")
-    assert [move.end for move in metric.moves] == [near(move.end) for move in inch.moves]
-    assert [move.feed for move in metric.moves + inch.moves] == near([254.0] * 4)
-    assert metric.moves[1].centre == near((38.1, -12.7, 0.0))
-    assert metric.moves[1].turns == -1
-    assert {*metric.moves} == {*metric.moves[::-1]}  # moves are values: no list in them
-
-
-def test_an_inch_machine_gives_the_same(ini, mill):
-    blocks = "G21 G1 X10 F100\nG20 X1\nG3 X2 R.5"
-    inch = trace_text(blocks, ini, overrides={"TRAJ": {"LINEAR_UNITS": "inch"}})
-    assert ends(mill.trace_text(blocks)) == list(map(near, ends(inch)))
-
-
 def test_work_offset_g92_and_rotation_are_resolved(mill):
     offsets = {5221: 100.0, 5222: 50.0, 5230: 90.0}
     assert ends(mill.trace_text("G1 X10 Y5 F100", parameters=offsets)) == [near((95.0, 60.0, 0.0))]
@@ -367,3 +351,11 @@ def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):
         with pytest.raises(TraceFailure, match="died"):
             tracer.trace_text("G1 X1 F1")
         assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
+
+
+@pytest.mark.parametrize("code", ["G17.1", "G18.1", "G19.1"])
+def test_a_plane_of_u_v_and_w_is_refused_by_its_line(code, mill):
+    error = mill.trace_text(f"G21\nG0 X1\n{code}\nM2").error
+    assert error.line == 3
+    assert error.text.startswith(f"{code}: ")
+    assert mill.trace_text("G17\nG1 X1 F1\nM2").error is None

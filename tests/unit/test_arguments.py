@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the commands share: wrong words and files in one line, interrupts, closed outputs."""
 
+import argparse
 import os
 import subprocess
 import sys
@@ -31,20 +32,25 @@ def ends(capsys, *words):
     return code, capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_wrong_words_are_reported_in_one_line(name, capsys):
-    code, said = ends(capsys, name, "--nonsense", "3")
+TRANSLATE = "--control and a program are needed, or --list alone"
+WRONG_WORDS = [
+    *((f"{name} --nonsense 3", "") for name in COMMANDS),
+    ("translate --list --control haas-mill", TRANSLATE),
+    ("translate part.nc", TRANSLATE),
+    ("install", "the INI is missing, --with is missing"),
+    ("install mill.ini --with", "expected at least one argument"),
+    ("install mill.ini --with heidenhain", "no feature 'heidenhain'"),
+]
+
+
+@pytest.mark.parametrize(("words", "says"), WRONG_WORDS)
+def test_wrong_words_are_reported_in_one_line(words, says, capsys):
+    name, *rest = words.split()
+    code, said = ends(capsys, name, *rest)
     assert code == 2
-    assert said.startswith(f"g12 {name}: ")
+    assert said.startswith(f"g12 {name}: ") and says in said
     assert said.endswith(f"(usage: python3 python/g12 {name} --help)\n")
     assert said.count("\n") == 1
-
-
-@pytest.mark.parametrize("words", [["--list", "--control", "haas-mill"], ["part.nc"]])
-def test_translate_needs_a_control_and_a_program_or_lists_the_controls(words, capsys):
-    code, said = ends(capsys, "translate", *words)
-    assert code == 2
-    assert "--control and a program are needed, or --list alone" in said
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -72,7 +78,7 @@ def test_help_is_plain_text_with_examples(name, capsys):
 )
 def test_numbers_of_the_command_line(reader, right, wrong, rule):
     assert reader(right) == float(right)
-    with pytest.raises(arguments.argparse.ArgumentTypeError, match=f"^'{wrong}' is not {rule}$"):
+    with pytest.raises(argparse.ArgumentTypeError, match=f"^'{wrong}' is not {rule}$"):
         reader(wrong)
 
 
@@ -164,6 +170,16 @@ def test_the_command_is_named_as_it_was_typed(tmp_path):
         assert f"\n  python3 {typed} trace pocket.ngc --ini mill.ini" in said.stdout
 
 
+def raise_in(monkeypatch, raised):
+    """Let every command raise an exception."""
+
+    def ended(_options):
+        raise raised
+
+    module = SimpleNamespace(main=ended, command_parser=argparse.ArgumentParser)
+    monkeypatch.setattr(main, "import_module", lambda _name: module)
+
+
 @pytest.mark.parametrize(
     ("raised", "code", "said"),
     [
@@ -172,11 +188,8 @@ def test_the_command_is_named_as_it_was_typed(tmp_path):
     ],
 )
 def test_what_ends_a_command_is_one_line(monkeypatch, capsys, raised, code, said):
-    def ended(_arguments):
-        raise raised
-
-    monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=ended))
     monkeypatch.setattr(main, "nobody_reads", lambda: False)
+    raise_in(monkeypatch, raised)
     assert ends(capsys, "verify") == (code, f"g12 verify: {said}\n")
 
 
@@ -200,13 +213,8 @@ NO_SUB = "INTERP_REMAP: NGC file not found: ngc=g12_haas"
         (NO_SUB, f"; see {COMMAND} check"),
     ],
 )
-def test_of_a_log_the_most_specific_line_is_reported(line, cure, capsys):
-    log = ["Starting", line, "Recommend: both"]
-
-    @arguments.one_line("run")
-    def command(_words):
-        raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))
-
-    assert command([]) == 2
-    said = capsys.readouterr().err
-    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {line}{cure}\n"
+def test_of_a_log_the_most_specific_line_is_reported(line, cure, monkeypatch, capsys):
+    log = ["lathe.ini: LinuxCNC ended; its log ends:", "Starting", line, "Recommend: both"]
+    raise_in(monkeypatch, StartupError("\n".join(log)))
+    said = f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {line}{cure}\n"
+    assert ends(capsys, "run") == (2, said)
