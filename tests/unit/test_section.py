@@ -18,7 +18,7 @@ from g12.section.effects import (
     codes_of_section,
     modes_after,
 )
-from g12.section.line import BlockLocation, split_line
+from g12.section.line import BlockLocation, split_line, split_words
 
 MODES = SectionModes(incremental=False, per_revolution=False, feed=100.0, speed=500.0, motion=10)
 
@@ -58,6 +58,15 @@ O_WORDS = {
 @pytest.mark.parametrize(("kind", "lines"), O_WORDS.items())
 def test_o_words(kind, lines):
     assert [split_line(raw, POLAR_WORDS).control for raw in lines] == [kind] * len(lines)
+
+
+def test_words_are_split_at_their_values():
+    text = "g1x-[1+[2*3]]c#<_x>i##1j-sin[30]katan[1]/[2]$0@5#1=[2]"
+    assert list(split_words(text)) == [
+        ("g", "1"), ("x", "-[1+[2*3]]"), ("c", "#<_x>"), ("i", "##1"), ("j", "-sin[30]"),
+        ("k", "atan[1]/[2]"), ("$", "0"), ("@", "5"), ("#", "1=[2]"),
+    ]  # fmt: skip
+    assert list(split_words("gx1")) == [("g", ""), ("x", "1")]  # no value hides nothing
 
 
 @pytest.mark.parametrize(
