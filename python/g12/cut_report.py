@@ -8,7 +8,7 @@ Lengths are in program units, X is a radius, positions are the program's, angles
 from cmath import rect
 from collections.abc import Sequence
 from math import radians
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, get_args
 
 SCHEMA = 1  # another number: records that mean something else
 ASKED = "g12_reports"  # attribute of the interpreter: a dict where reports are asked for
@@ -28,10 +28,6 @@ class ProgramFrame(NamedTuple):
     zero: tuple[float, float, float, float]
     rotation: float
     shifted: bool
-
-    def turned_by(self, zero: float) -> "ProgramFrame":
-        """Return the frame with the zero of another rotary axis in the place of C's."""
-        return self._replace(zero=(*self.zero[:3], zero))
 
     def level(self, z: float) -> float:
         """Return a program's Z on the machine, in mm."""
@@ -218,17 +214,8 @@ PlannedCut = (
     | RoundPocketCut
     | HolesCut
 )
-KINDS: dict[str, type[PlannedCut]] = {
-    "pocket": PocketCut,
-    "event": EventCut,
-    "thread": ThreadCut,
-    "frame": FrameCut,
-    "section": SectionCut,
-    "polygon": PolygonCut,
-    "slot": SlotCut,
-    "round pocket": RoundPocketCut,
-    "holes": HolesCut,
-}
+NAMES = "pocket, event, thread, frame, section, polygon, slot, round pocket, holes"  # in that order
+KINDS: dict[str, type[PlannedCut]] = dict(zip(NAMES.split(", "), get_args(PlannedCut)))
 
 
 class CutReport(NamedTuple):

@@ -162,10 +162,6 @@ class Remap:
     def handlers(self) -> list[str]:
         return [self.keywords[word] for word in HANDLERS if word in self.keywords]
 
-    def like(self, model: Remap) -> str:
-        """Return the line with another one's keywords and this one's code."""
-        return f"REMAP = {' '.join([self.code, *model.text.split()[1:]])}"
-
 
 def coordinates_of(find: Find) -> str:
     """Return the letters of the machine's axes, each once."""

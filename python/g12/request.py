@@ -119,6 +119,10 @@ class Words:
             raise self.refuse_word(letter, value, f"must be at most {most}")
         return whole
 
+    def check_least(self, letter: str, value: float, least: float) -> None:
+        if value < least:
+            raise self.refuse_word(letter, value, f"must be at least {number(least)}")
+
     def check_pair(self, first: str, second: str) -> None:
         """Refuse one of two words without the other."""
         for present, absent in ((first, second), (second, first)):

@@ -11,7 +11,7 @@ from g12.cycles import bore, frame, thread
 from g12.request import COUNTERCLOCKWISE, Words
 from g12.settings import Settings
 from g12.state import Tool
-from g12.tools.headless.run import run_program
+from g12.tools.headless.machine import run_program
 from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM, words_of
 from support.sim_machines import SIM

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """G12.1 and G7.1: real deviation, section times, interpreting time."""
 
+import cmath
 import math
 
 import numpy as np
 
 from bench import Figure
 from bench.haas import against_plain
+from g12.geometry.curve import Arc, Line
 from g12.tools.preview.tracer import Tracer
-from support.contour_geometry import FROM_COLUMNS, distance, spaced
+from support.contour_geometry import FROM_COLUMNS, Round, distance, shape_of, spaced
 from support.operated_machine import Machine
-from support.polar_programs import INCHES, MILLIMETRES, Cut, feed_moves, toolpath_of
+from support.polar_programs import INCHES, MILLIMETRES, Cut, feed_moves
 from support.sim_machines import PROGRAMS, SIM
 
 MM_PER_INCH = 25.4
@@ -90,9 +92,21 @@ def against_equal_angles(lathe):
 
 
 def contour_of(name, ini):
-    """Return the toolpath of a sample's contour."""
-    path = toolpath_of(name, ini)
-    return [segment for block in BLOCKS[name] for segment in path[block]]
+    """Return the toolpath of a sample's contour: parallels of its elements, arcs about corners."""
+    with Tracer(ini, reports=True) as lathe:
+        traced = lathe.trace(SAMPLES / f"{name}.ngc")
+    cut, path = traced.cuts[0], []
+    mm, radius = cut.report.frame.mm, traced.radius(cut.at)
+    for each in cut.report.cut.elements:
+        if each.line in BLOCKS[name] and each.start is not None:
+            start, end = each.start * mm, each.end * mm
+            curve = Arc(start, each.centre * mm, each.sweep) if each.centre else Line(start, end)
+            own = shape_of(curve.offset(each.side * radius))
+            if path and abs(own.start - path[-1].end) > TOLERANCE:
+                turn = cmath.phase((own.start - start) / (path[-1].end - start))
+                path.append(Round(path[-1].end, start, turn))
+            path.append(own)
+    return path
 
 
 def distance_of(run, segments):

@@ -13,9 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from g12.tools.machine.ini import read_ini
 from support import hole_blocks, mode_matrix
-from support.judged_programs import prove
 from support.sim_machines import ROOT, SIM, kept_tracer, trace_text
 
 KINDS = pytest.mark.parametrize("kind", hole_blocks.MAKERS)
@@ -168,40 +166,3 @@ def test_the_threads_of_the_page_are_computed():
             large = float(Fraction(size)) / 2
             due = [large, pitch, large - 5 / 8 * HEIGHT * pitch, large - 17 / 24 * HEIGHT * pitch]
         assert shown == pytest.approx(due, abs=6e-4 if not kind else 6e-5), name
-
-
-# ---------------------------------------------------------------- verify
-
-HOLES = """\
-G21 G17 G40 G90 G94 G64 P.01 F300
-T1 M6
-S3000 M3
-G0 X0 Y0 Z5
-G13.5 Z-12 R0 I5.188 P.3 Q2 D1
-G13.6 Z-10 R0 I6 P1.5 D1
-G13.7 X50 Z-3 I40 J30 R4 Q3 E.2 D1
-G0 X0 Z5
-M2
-"""
-EDITS = [  # an edit of the program, and what verify says of it
-    ("G13.5 Z-12 R0 I5.188 P.3 Q2 D1\n", "", "H1 is missing"),
-    ("T1 M6", "T2 M6", "the path is that of ⌀ 6"),
-    ("Z-12 R0", "Z-5 R0", "rapid"),
-    ("G13.7", "G0 Z-2\nG13.7", "rapid"),
-]
-
-
-def test_verify_has_no_finding_in_a_bore_its_thread_and_a_frame(tmp_path):
-    program = tmp_path / "holes.ngc"
-    program.write_text(HOLES)
-    proof = prove(program, read_ini(SIM / "mill_mm_headless.ini"), tools=hole_blocks.TOOLS)
-    assert proof.findings == []
-
-
-@pytest.mark.parametrize(("old", "new", "code"), EDITS)
-def test_verify_finds_what_is_wrong_with_one(tmp_path, old, new, code):
-    program = tmp_path / "holes.ngc"
-    assert old in HOLES
-    program.write_text(HOLES.replace(old, new))
-    proof = prove(program, read_ini(SIM / "mill_mm_headless.ini"), tools=hole_blocks.TOOLS)
-    assert any(code in str(finding) for finding in proof.findings), proof.findings

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from g12.tools.commands import check, install, uninstall
+from g12.tools.commands.main import main
 from g12.tools.install.config import features
 from g12.tools.install.lathe.hal import pins_missing, pins_taken
 from g12.tools.system import COMMAND
@@ -38,7 +38,7 @@ OWN = "[PYTHON]\nPATH_PREPEND = mine\nTOPLEVEL = mine/toplevel.py\n"
 
 def kinds(ini, capsys):
     """Return what check finds wrong, and that its exit code says so."""
-    code = check.main([str(ini)])
+    code = main(["check", str(ini)])
     found = re.findall(r"^(problem|warning) \[(.*?)\]: ", capsys.readouterr().out, re.MULTILINE)
     assert code == any(level == "problem" for level, _ in found)
     return [kind for _, kind in found]
@@ -50,7 +50,7 @@ def kinds(ini, capsys):
 def test_a_good_config_is_good_and_left_alone(tmp_path, capsys):
     ini = write_config(tmp_path, GOOD)
     before = content_of(tmp_path)
-    assert check.main([str(ini)]) == 0
+    assert main(["check", str(ini)]) == 0
     said = capsys.readouterr().out
     assert "loads in LinuxCNC 2." in said
     assert "G12    haas" in said
@@ -105,7 +105,7 @@ def test_another_file_in_front_of_the_sub(tmp_path, capsys):
 
 
 def installed(ini, *arguments):
-    return install.main([str(ini), "--with", *arguments])
+    return main(["install", str(ini), "--with", *arguments])
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,7 @@ def test_a_shared_include_is_tried_with_every_machine_that_has_it(tmp_path, caps
     assert installed(ini, "haas") == 0
     capsys.readouterr()
     assert kinds(other, capsys) == []
-    assert uninstall.main([str(ini)]) == 0
+    assert main(["uninstall", str(ini)]) == 0
     other.write_text(text.replace("X Y Z", "X Z"))
     before = content_of(tmp_path)
     assert installed(ini, "haas") == 1

@@ -8,7 +8,7 @@ interpreter; `sim/test_install_samples.py` runs others.
 import pytest
 
 from g12.machine_ini import remap_from_value
-from g12.tools.commands import install, uninstall
+from g12.tools.commands.main import main
 from g12.tools.forms.table import HANDLERS
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import PROBLEM, Refused
@@ -111,7 +111,7 @@ KINDS = [
 def test_the_full_set_loads_in_the_stock_interpreter(samples, name):
     path = samples / name
     before, names = tree(path.parent), full_set(read_ini(path))
-    assert install.main([str(path), "--with", *names]) == 0
+    assert main(["install", str(path), "--with", *names]) == 0
     config = load_config(IniText(path))
     found = findings_of(config)
     assert [finding for finding in found if finding.level == PROBLEM] == []
@@ -119,7 +119,7 @@ def test_the_full_set_loads_in_the_stock_interpreter(samples, name):
     assert there == {*names} - {"forms", "cycles-page"}
     assert bool(config.ini.all("DISPLAY", "NGCGUI_SUBFILE")) == ("forms" in names)
     installed = tree(path.parent)
-    assert install.main([str(path), "--with", names[0]]) == 0  # again: nothing
+    assert main(["install", str(path), "--with", names[0]]) == 0  # again: nothing
     assert tree(path.parent) == installed
-    assert uninstall.main([str(path)]) == 0
+    assert main(["uninstall", str(path)]) == 0
     assert tree(path.parent) == before

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G7.1 with A and B on a mill: what LinuxCNC reads of the flat drawing is what lies round the part.
+"""G7.1 with A and B on a mill: words, refusals, settings, and what AXIS shows of the part.
 
-The words, refusals and settings that a lathe's cylinder shares are in test_cylinder.py.
+Its geometry is proved in test_valid_cuts.py; what a lathe's cylinder shares is in test_cylinder.py.
 """
 
 import math
-import random
 import re
 from functools import partial
 from itertools import groupby
@@ -15,62 +14,10 @@ import pytest
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from support import polar_programs
-from support.flat_contours import (
-    FIRST,
-    SENSE,
-    WITH_B,
-    FlatContour,
-    apart,
-    flat_path,
-    flat_program,
-    unrolled_path,
-    wrapped_program,
-)
 from support.sim_machines import SIM, kept_tracer
 
-TOOL = 3.0  # mm, the radius of T3
-TOLERANCE = 0.005  # POLAR_TOLERANCE, mm
-RADII = (3.0, 25.0, 80.0)
-CONTOURS = 60
-
-mill = kept_tracer("mill_mm")
+FIRST = polar_programs.FIRST.replace("G18", "G17")
 mill_a = kept_tracer("mill_a_mm", overrides={"G12": {"CYLINDER_X": "refuse"}})
-mill_b = kept_tracer("mill_a_mm", overrides=WITH_B)
-reversed_a = kept_tracer("mill_a_mm", overrides={"G12": {"ROTARY_SENSE": "reversed"}})
-
-
-def check_contours(mill, machine, turn, sense, seed, count):
-    """Compare random contours round a part with what LinuxCNC makes of them in the plane.
-
-    One that crosses itself may gouge the part: LinuxCNC cuts it, and the section refuses it.
-    """
-    judged, number = {40: 0, 41: 0, 42: 0}, 0
-    while min(judged.values()) < count // 4:
-        contour = FlatContour(random.Random(f"{seed} {number}"), TOOL)
-        radius = RADII[number % len(RADII)]
-        number += 1
-        trace = machine.trace_text(wrapped_program(contour, turn, radius, sense))
-        if trace.error and contour.side != 40 and "cannot follow both" in trace.error.text:
-            continue
-        flat = flat_path(mill.trace_text(flat_program(contour)))
-        round_part = unrolled_path(trace, turn, radius, sense)
-        assert apart(flat, round_part) <= TOLERANCE, f"{seed} {number - 1}"
-        across = {"A": 1, "B": 0}[turn]
-        assert {move.end[across] for move in trace.moves} == {0.0}
-        judged[contour.side] += 1
-    return sum(judged.values())
-
-
-def test_a_contour_round_a_is_that_of_the_flat_program(mill, mill_a):
-    check_contours(mill, mill_a, "A", 1.0, "A", CONTOURS)
-
-
-def test_a_contour_round_b_is_that_of_the_flat_program(mill, mill_b):
-    check_contours(mill, mill_b, "B", 1.0, "B", CONTOURS)
-
-
-def test_a_table_that_turns_the_other_way_mirrors_nothing(mill, reversed_a):
-    check_contours(mill, reversed_a, "A", -1.0, "reversed", CONTOURS // 3)
 
 
 # ---------------------------------------------------------------- words, messages, settings
@@ -230,7 +177,8 @@ def test_a_drawing_reads_right_on_the_part_that_axis_shows(turn, geometry, sense
     for x, y in ((3.0, 4.0), (-3.0, 4.0), (3.0, -4.0)):
         words = {"X": x, "Y": y, "Z": radius}
         letter = {"A": "Y", "B": "X"}[turn]
-        words[turn] = math.degrees(SENSE[turn] * sense * words.pop(letter) / radius)
+        grows = {"A": -sense, "B": sense}[turn]
+        words[turn] = math.degrees(grows * words.pop(letter) / radius)
         shown = drawn_by_axis(geometry, dict.fromkeys("XYZAB", 0.0) | words)
         flat = {"A": (x, radius * math.sin(y / radius)), "B": (radius * math.sin(x / radius), y)}
         assert shown == pytest.approx(flat[turn])

@@ -18,10 +18,10 @@ from interp.test_translate_cam import (
 )
 from support.cam_parts import PARTS, mill_program
 from support.contour_geometry import FROM_COLUMNS, distances
-from support.flat_contours import WITH_B
 from support.foreign_programs import FOREIGN, translation
 from support.shape_geometry import polygon
 from support.sim_machines import SIM
+from support.valid_programs import WITH_B
 
 SETTINGS = {"POLAR_Z": "allow", "CYLINDER_X": "allow", "LIVE_SPINDLE": "0"}
 DIAMETER = 50.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The other cycles in a headless LinuxCNC: real motion, refusals, abort; Haas: test_haas.py."""
+"""The other cycles in a headless LinuxCNC: real motion, refusals; Haas: test_haas.py."""
 
 import pytest
 
@@ -20,13 +20,10 @@ def sample(name):
     return (PROGRAMS / name).read_text().replace("F300", "F12000")
 
 
-MILLS = {  # its programs, a block to abort
-    "mill_yasnac_mm": ([sample("yasnac/example.ngc")], "G12 I50 D10"),
-    "mill_mitsubishi_mm": ([sample("mitsubishi/planes.ngc")], "G12 I50 D10"),
-    "mill_mm": (
-        [f"{EVENT}{block}\nM2\n" for block in (POCKET, CALL, OUTSIDE)],
-        OUTSIDE.replace("R5", "R50"),
-    ),
+MILLS = {
+    "mill_yasnac_mm": [sample("yasnac/example.ngc")],
+    "mill_mitsubishi_mm": [sample("mitsubishi/planes.ngc")],
+    "mill_mm": [f"{EVENT}{block}\nM2\n" for block in (POCKET, CALL, OUTSIDE)],
 }
 BORED = {"mill_yasnac_mm": "bore 80"}  # the tool enters its holes by rapid
 AIR = {"mill_mitsubishi_mm": ["air"]}  # circles in three planes, above the part
@@ -38,34 +35,15 @@ def mill(request):
     tools = {1: 6.0} if request.param == "mill_mm" else None
     ini = SIM / f"{request.param}_headless.ini"
     with Machine(ini, tools=tools, overrides=BRISK) as machine:
-        if tools:
-            machine.mdi("T1 M6")
         yield request.param, machine
 
 
 def test_verify_finds_nothing_wrong_in_the_real_motion(mill):
     name, machine = mill
-    for text in MILLS[name][0]:
+    for text in MILLS[name]:
         proof = machine.proof_of_run(text, BORED.get(name, ""))
         assert proof.pockets and proof.finding_codes == AIR.get(name, [])
         assert max(each.values["off_circles"] for each in proof.pockets) < DEVIATION
-
-
-def test_mdi_then_abort_then_mdi_again(mill):
-    name, machine = mill
-    machine.mdi("G21 G17 G90 G91.1 G94 G49 G64 P0.01 F12000 G0 X0 Y0 Z5")
-    before = machine.stat()
-    block = MILLS[name][1]
-    machine.feed_override(0.1)  # beyond X20 for some seconds
-    machine.mdi(block, wait=False)
-    machine.wait_for(lambda status: status.position[0] > 20)
-    machine.abort()
-    machine.feed_override(1.0)
-    machine.errors()
-    machine.mdi("G90 G0 X0 Y0 Z5")
-    machine.mdi(block)
-    assert machine.errors() == []
-    assert machine.stat().position[:2] == pytest.approx(before.position[:2], abs=1e-6)
 
 
 def test_w_lasts_from_one_mdi_block_to_the_next_but_not_into_another_program(tmp_path):

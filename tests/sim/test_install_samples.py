@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from shapely.geometry import LineString, Point
 
-from g12.tools.commands import install, uninstall
+from g12.tools.commands.main import main
 from g12.tools.install.config.findings import PROBLEM
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import load_config
@@ -40,12 +40,12 @@ def sim(tmp_path_factory):
 def run_installed(ini, feature, program):
     """Install, check, run headless, uninstall; return the run and the size of a unit in mm."""
     before = tree(ini.parent)
-    assert install.main([str(ini), "--with", feature]) == 0
+    assert main(["install", str(ini), "--with", feature]) == 0
     found = findings_of(load_config(IniText(ini)))
     assert [finding for finding in found if finding.level == PROBLEM] == []
     with Machine(ini) as machine:
         run, unit = machine.run_text(program, timeout=300), machine.mm
-    assert uninstall.main([str(ini)]) == 0
+    assert main(["uninstall", str(ini)]) == 0
     assert tree(ini.parent) == before
     return run, unit
 
@@ -89,13 +89,13 @@ def test_a_section_on_a_sample_lathe(lathe):
 @needs_kinematics
 def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     before = tree(lathe.parent)
-    assert install.main([str(lathe), "--with", "polar", "polar-kinematics", "--dry-run"]) == 0
+    assert main(["install", str(lathe), "--with", "polar", "polar-kinematics", "--dry-run"]) == 0
     shown = capsys.readouterr().out
     assert "+KINEMATICS = polar_xzc coordinates=XZC" in shown
     assert "+# was: KINEMATICS = trivkins coordinates=XZC" in shown
     assert tree(lathe.parent) == before
-    assert install.main([str(lathe), "--with", "polar", "polar-kinematics"]) == 0
-    assert install.main([str(lathe), "--with", "polar-kinematics"]) == 0
+    assert main(["install", str(lathe), "--with", "polar", "polar-kinematics"]) == 0
+    assert main(["install", str(lathe), "--with", "polar-kinematics"]) == 0
     assert "installed already, nothing to do" in capsys.readouterr().out
     found = findings_of(load_config(IniText(lathe)))
     assert [finding for finding in found if finding.level == PROBLEM] == []
@@ -107,5 +107,5 @@ def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     there = (x * np.exp(1j * angle))[run.samples.line == 4]
     assert np.abs(np.abs(there) - 60).max() < DEVIATION
     assert np.degrees(angle).max() == pytest.approx(90, abs=0.1)
-    assert uninstall.main([str(lathe)]) == 0
+    assert main(["uninstall", str(lathe)]) == 0
     assert tree(lathe.parent) == before

@@ -20,8 +20,8 @@ from support.sim_machines import ROOT, SIM, copy_of_machines
 def g12_run(tmp_path, capsys):
     """Run a text by ``g12 run``; return exit code, lines and errors, with PROGRAM for its path."""
 
-    def run_text(text, *words, machine="mill_mm"):
-        program, ini = tmp_path / "part.ngc", SIM / f"{machine}.ini"
+    def run_text(text, *words, machine="mill_mm", name="part.ngc"):
+        program, ini = tmp_path / name, SIM / f"{machine}.ini"
         program.write_text(text)
         code = main.main(["run", str(program), "--ini", str(ini), *map(str, words)])
         said = capsys.readouterr()
@@ -80,6 +80,13 @@ def test_a_run_that_is_refused_on_its_way_says_where_it_stopped(g12_run):
     assert place == "stopped at X5 Y0 Z-1 (machine position, mm)"
     assert float(seconds.removesuffix(" s in motion")) > 0
     assert ": G12 line 6: R5 is not a word of this cycle" in errors
+
+
+def test_the_refusal_of_a_filtered_program_is_reported(g12_run):
+    text = "%\nO1\nT2 M6\nG20 G90 G0 X0\nG12 I.1 Z-.2 D2 F20.\nM30\n%\n"
+    code, _, errors = g12_run(text, machine="mill_inch", name="part.nc")
+    assert code == 2
+    assert "PROGRAM (filtered): G12 line 5: I0.1 must be greater than the tool radius" in errors
 
 
 def test_a_run_starts_with_the_tools_and_offsets_of_files(g12_run, tmp_path):

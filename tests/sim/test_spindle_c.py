@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.commands import check, install, run, uninstall
+from g12.tools.commands.main import main
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -262,16 +262,16 @@ def test_installed_on_a_plain_lathe(tmp_path):
     before = ini.read_bytes()
     pins.write_text(PINS)
     options = ["--with", "polar", "spindle-c", "--pins", str(pins)]
-    assert install.main([str(ini), *options]) == 0
-    assert check.main([str(ini)]) == 0
+    assert main(["install", str(ini), *options]) == 0
+    assert main(["check", str(ini)]) == 0
     with Machine(ini) as machine:
         machine.motion_of([*FIRST, "S300 M3", "G4 P1", *FLATS, "S300 M3", "G33 Z-5 K1", "M2"])
         machine.mdi("M254")
         assert machine.get("spindle-c-on")
         machine.mdi("G0 C90")
         assert machine.get("encoder-turns.out") % 1 == pytest.approx(0.25, abs=1e-3)
-    assert install.main([str(ini), *options]) == 0  # again: nothing
-    assert uninstall.main([str(ini)]) == 0
+    assert main(["install", str(ini), *options]) == 0  # again: nothing
+    assert main(["uninstall", str(ini)]) == 0
     assert ini.read_bytes() == before
 
 
@@ -280,7 +280,7 @@ def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
     before = ini.read_bytes()
     pins.write_text(PINS.replace("drive-pid.command", "drive-pid.comand"))
     program.write_text("M2\n")
-    assert install.main([str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
+    assert main(["install", str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
     wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
     assert capsys.readouterr().err == (f"g12 install: {wrong}; cure: correct its name\n")
     assert ini.read_bytes() == before
@@ -291,9 +291,9 @@ def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
     ):
         (ini.parent / "wrong.hal").write_text("# of ours\nnet c-follows drive-pid.comand\n")
         ini.write_bytes(before.replace(b"plain.hal\n", f"plain.hal\n{line}\n".encode()))
-        assert check.main([str(ini)]) == 1
+        assert main(["check", str(ini)]) == 1
         assert "there is no pin drive-pid.comand" in capsys.readouterr().out
-        assert run.main([str(program), "--ini", str(ini)]) == 2
+        assert main(["run", str(program), "--ini", str(ini)]) == 2
         assert says in capsys.readouterr().err.splitlines()[-1]
 
 
@@ -302,7 +302,7 @@ def test_installed_with_the_kinematics_of_the_face(tmp_path):
     ini, pins = plain_lathe(tmp_path), tmp_path / "spindle.toml"
     pins.write_text(PINS)
     features = ["polar", "polar-kinematics", "spindle-c"]
-    assert install.main([str(ini), "--with", *features, "--pins", str(pins)]) == 0
+    assert main(["install", str(ini), "--with", *features, "--pins", str(pins)]) == 0
     with Machine(ini) as machine:
         machine.motion_of([*FIRST, *FLATS, "S300 M3", "G33 Z-5 K1", "M5", *FLATS, "M2"])
         for block in ("M254", "G0 X20 C90", "M255"):

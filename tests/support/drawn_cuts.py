@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What pockets, events and sections have to cut, by the page of each code, and whether they did.
+"""What pockets and events have to cut, by the page of each code, and whether they did.
 
-It shares nothing with the planners. Of a report it takes what LinuxCNC knew, words, position, modes
-and frame, and of a section the contour as it was read. Lengths are mm; the plane of a pocket is
-seen from its centre, levels are measured from the tool before the block.
+It shares nothing with the planners. Of a report it takes what LinuxCNC knew: words, position, modes
+and frame. Lengths are mm; the plane of a pocket is seen from its centre, levels are measured from
+the tool before the block.
 """
 
 import cmath
@@ -14,20 +14,12 @@ from itertools import groupby, pairwise
 import numpy as np
 import pytest
 
-from g12.cut_report import EventCut, SectionCut
-from g12.machine_ini import face_of
+from g12.cut_report import EventCut
 from g12.request import LEFT_OUT
-from g12.tools.path.part import Part, arc_points, plane_axes
-from g12.tools.path.surface import Surface
-from g12.tools.path.track import feed_length, rate
-from support.contour_geometry import apart
-from support.toolpath import contour_path, elements_of
+from g12.tools.path.part import arc_points, plane_axes
 
 NEAR = 1e-4  # mm, of a pocket's toolpath
-ROUNDED = 5e-4  # mm: arcs whose words are rounded do not close any better
 SAME = 1e-5  # relative: a trace prints feeds with nine decimals
-SECTION_FEED = 0.003  # relative: the same, beside C in degrees
-SLOWEST = 0.05  # of the feed, on the face: what C cannot follow is slower
 STRAIGHT = 1e-3  # radians of a corner
 NARROWER = 0.254  # of an event's pocket: rings without J
 ENTRIES = {"I": "W", "E": "O", "Q": "L", "H": "C", **{name: name for name in "XYZRKJPDF"}}
@@ -245,65 +237,7 @@ def check_cuts(trace, ini, dialect):
     """Check every cut of a trace with reports."""
     planes = {}
     for cut in trace.cuts:
-        if isinstance(cut.report.cut, SectionCut):
-            check_section(cut, trace, ini)
-        elif isinstance(cut.report.cut, EventCut):
+        if isinstance(cut.report.cut, EventCut):
             check_event(Pocket(cut, trace, ini), planes)
         else:
             POCKETS[dialect](Pocket(cut, trace, ini))
-
-
-# ---------------------------------------------------------------- sections
-
-
-def check_section(cut, trace, ini):
-    """Compare the moves of each block of a section with its toolpath, and its feed."""
-    planned, mm = cut.report.cut, cut.report.frame.mm
-    height = cut.report.at[0 if planned.surface else 2] * mm
-    wanted = contour_path(elements_of(cut.report, planned), height, trace.radius(cut.at))
-    blocks = [(line, list(steps)) for line, steps in groupby(wanted, key=lambda step: step.line)]
-    moves = [move for move in trace.moves[cut.at : cut.end] if length_of(move) > NEAR / 100]
-    made = [(line, list(some)) for line, some in groupby(moves, key=lambda move: move.line)]
-    assert [line for line, _ in made] == [line for line, _ in blocks], cut.line
-    seen = seen_as(cut, ini)
-    on_face = bool(face_of(ini.get)) and not planned.surface
-    for (line, some), (_, steps) in zip(made, blocks):
-        points = np.concatenate([seen(move) for move in some])
-        path = np.concatenate([step.points() for step in steps])
-        tolerance = ini.settings.tolerance(ini.mm) * ini.mm + ROUNDED
-        assert apart(points, path, step=1) < tolerance, line
-        check_feed(some, steps, on_face)
-
-
-def check_feed(moves, steps, on_face):
-    """Compare a block's time with that of its toolpath at F; on the face it may be slower."""
-    given = [length_of(move) / rate(move, 0.0) for move in moves if rate(move, 0.0)]
-    wanted = [60.0 * step.length / step.feed for step in steps if step.feed]
-    if len(given) == len(moves) and len(wanted) == len(steps):
-        rounding = ROUNDED / sum(step.length for step in steps)
-        least = SLOWEST if on_face else 1.0 - SECTION_FEED - rounding
-        share = sum(wanted) / sum(given)
-        assert least < share < 1.0 + SECTION_FEED + rounding, steps[0].line
-
-
-def length_of(move):
-    return move.length if move.kind == "arc" else feed_length(move)
-
-
-def seen_as(cut, ini):
-    """Return what draws a move of a section as points: two of its plane, and the level."""
-    frame, surface = cut.report.frame, cut.report.cut.surface * cut.report.frame.mm
-    x, _, z = (value * frame.mm for value in frame.zero[:3])
-    angle = math.radians(frame.zero[3] + (0.0 if surface else cut.report.at[3]))
-    part = Part(True, ini.tool_beside, x)
-    zero, axis, base = 0j, cmath.rect(1.0, angle), z
-    if surface:
-        part = Surface(True, ini.tool_beside, x, radius=surface)
-        zero, axis, base = complex(angle * surface, z), 1 + 0j, x
-
-    def seen(move):
-        points = part.polyline(move)
-        flat = (points[:, 0] + 1j * points[:, 1] - zero) / axis
-        return np.column_stack([flat.real, flat.imag, points[:, 2] - base])
-
-    return seen

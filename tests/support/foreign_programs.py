@@ -68,7 +68,9 @@ def kept_tracers():
 
 def translation(path, control, *options):
     """Return what the command prints for a program, without printing it."""
-    requested = translate.parsed(["--control", str(control), str(path), *options])
+    requested = translate.command_parser().parse_args(
+        ["--control", str(control), str(path), *options]
+    )
     return translate.translated(
         requested, translate.changed(read_control(requested.control), requested)
     )

@@ -2,15 +2,12 @@
 """Polar sections for tests: programs around them, and their moves seen in the plane again."""
 
 import math
-from collections import defaultdict
 from itertools import groupby
 
 import numpy as np
 
 from g12.tools.preview.tracer import Tracer
-from support.contour_geometry import shape_of
-from support.sim_machines import PROGRAMS, SIM
-from support.toolpath import contour_path, elements_of
+from support.sim_machines import SIM
 
 FIRST = "G21 G18 G8 G40 G49 G54 G64 G80 G90 G91.1 G94 G97"
 START = "G0 X20 Z5 C0"
@@ -46,19 +43,6 @@ def refused(lathe, program):
 def tracer(**overrides):
     """Return a Tracer of the millimetre lathe; ``overrides`` are settings of [G12]."""
     return Tracer(SIM / "lathe_mm.ini", overrides={"G12": overrides} if overrides else None)
-
-
-def toolpath_of(name, ini):
-    """Return the lines and arcs of the part's plane that each line of a sample commands, in mm."""
-    path = defaultdict(list)
-    with Tracer(ini, reports=True) as lathe:
-        traced = lathe.trace(PROGRAMS / "polar" / f"{name}.ngc")
-    for at, *_, report in traced.cuts:
-        elements, height = elements_of(report, report.cut), report.at[2] * report.frame.mm
-        for step in contour_path(elements, height, traced.radius(at)):
-            if step.curve.length:
-                path[step.line].append(shape_of(step.curve))
-    return path
 
 
 def in_plane(position, zero=0.0):

@@ -27,6 +27,7 @@ class Text:
         self.chance, self.scale = chance, 1.0 if unit == "mm" else INCH
         self.code = {"mm": "G21", "inch": "G20"}[unit]
         modes, self.polar = "G18" if polar else "G17", polar
+        self.shifts = ["G10 L2 P1"] if polar else ["G10 L2 P1", "G10 L2 P1", "G52"]
         self.plane = self.between(1, 3)  # of events, above the part
         self.lines = [f"{self.code} {modes} G40 G49 G54 G80 G90 G94 G91.1 G64 P{self.n(0.01)}"]
 
@@ -52,9 +53,9 @@ class Text:
         return " ".join([code, *words])
 
     def shift(self, *words):
-        """Move the program's zero: by G10, or by G52 on top of it, which a lathe's X does not."""
+        """Move the program's zero: by G10, or by G52 on top of it, which a section's does not."""
         at = " ".join(f"{letter}{self.n(self.between(*ends))}" for letter, *ends in words)
-        self.add("G10 L2 P1" if self.polar else self.one_of("G10 L2 P1", "G10 L2 P1", "G52"), at)
+        self.add(self.one_of(*self.shifts), at)
 
     def height(self, k):
         """Return a shift of Z before the first cut; later the part would stand higher or lower."""
@@ -70,8 +71,8 @@ class Text:
         if kind == "sub":
             self.lines += [f"o{name} call"] * self.one_of(1, 2)
 
-    def end(self):
-        self.add("G90", f"G0 Z{self.n(20)}")
+    def end(self, height=20):
+        self.add("G90", f"G0 Z{self.n(height)}")
         self.add("M2")
         return "\n".join([*self.lines, ""])
 
@@ -379,42 +380,53 @@ def _free(text, *_):
 # ---------------------------------------------------------------- sections on a cylinder
 
 
-def cylinder_program(chance, unit, count, kind=""):
-    """Return a program of sections on cylinders: grooves, arcs, turns, walls with compensation.
+# The letters of the angle, along its axis, and of the height.
+ON_MILL = {"a": ("A", "X", "Z"), "reversed": ("A", "X", "Z"), "b": ("B", "Y", "Z")}
 
-    ``kind`` sloping: X may change along lines, and G7.1 has diameters.
+
+def cylinder_program(chance, unit, count, kind=""):
+    """Return a program of sections round a part: grooves, arcs, turns, walls with compensation.
+
+    ``kind`` sloping: the height may change along lines, and G7.1 has diameters; a, b: on a mill.
     """
-    text = Text(chance, unit, polar=True)
-    text.sloping = kind == "sloping"
-    text.diameter = chance.random() < 0.5
-    text.add("G7" if text.diameter else "G8", f"G97 S{SPEED}")
+    text = Text(chance, unit, polar=kind not in ON_MILL)
+    text.turn, text.along, text.height = ON_MILL.get(kind, ("C", "Z", "X"))
+    text.sloping, text.reversed = kind == "sloping", kind == "reversed"
+    text.diameter, text.shifts = text.polar and chance.random() < 0.5, text.shifts[:1]
+    tools = (AXIAL if text.polar else CUTTERS)[unit]
+    text.add(("G7" if text.diameter else "G8") if text.polar else "", f"G97 S{SPEED}")
     for _ in range(count):
-        loaded = chance.choice(list(AXIAL[unit]))
+        loaded = chance.choice(list(tools))
         radius = text.between(15, 60)
         z, c = -text.between(20, 80), chance.choice([0, 90, -45, 400])
         if chance.random() < 0.15:
-            text.shift(("X", -3, 3), ("Z", -9, 9))
+            text.shift((text.height, -3, 3), (text.along, -9, 9))
         text.add(f"T{loaded} M6 G43")
         text.add(f"S{SPEED} M3")
-        text.add(f"G0 X{_x(text, 90)}")
-        text.add(f"G0 X{_x(text, radius + 5)} Z{text.n(z)} C{c}")
+        text.add("G0", _height(text, 90), "" if text.polar else {"A": "Y0", "B": "X0"}[text.turn])
+        text.add("G0", _height(text, radius + 5), f"{text.along}{text.n(z)} {text.turn}{c}")
         text.add(text.one_of("", "G61", f"G64 P{text.n(0.01)}"))
-        text.add(f"G7.1 C{text.n(radius * (2 if text.sloping else 1))}")
-        text.add(f"G1 X{_x(text, radius - text.between(0.5, 4))} F{text.n(text.between(50, 300))}")
+        text.add(f"G7.1 {text.turn}{text.n(radius * (2 if text.sloping else 1))}")
+        deep, feed = radius - text.between(0.5, 4), text.between(50, 300)
+        text.add("G1", _height(text, deep), f"F{text.n(feed)}")
         text.add(f"F{text.n(text.between(100, 1500))}")
         if chance.random() < 0.5:
             _groove(text, radius, complex(radius * math.radians(c), z))
         else:
-            _wall(text, radius, complex(radius * math.radians(c), z), AXIAL[unit][loaded] / 2)
-        text.add(f"G1 X{_x(text, radius + 5)}")
-        text.add("G7.1 C0")
-    return text.end()
+            _wall(text, radius, complex(radius * math.radians(c), z), tools[loaded] / 2)
+        text.add("G1", _height(text, radius + 5))
+        text.add(f"G7.1 {text.turn}0")
+    return text.end(20 if text.polar else 90)
+
+
+def _height(text, radius):
+    return f"{text.height}{_x(text, radius)}"
 
 
 def _around(text, radius, point, words="G1", more=""):
-    """Add a block to a point of the unrolled surface, its first axis along C."""
-    c = f"C{math.degrees(point.real / radius):.5f}"
-    text.add(words, f"Z{text.n(point.imag)} {c}", more)
+    """Add a block to a point of the unrolled surface, its first axis along the angle."""
+    angle = f"{text.turn}{math.degrees(point.real / radius):.5f}"
+    text.add(words, f"{text.along}{text.n(point.imag)} {angle}", more)
 
 
 def _groove(text, radius, at):
@@ -426,14 +438,15 @@ def _groove(text, radius, at):
         _act(text)
         slope = ""
         if text.sloping and text.one_of(0, 1):
-            slope = f"X{_x(text, radius - text.between(0.5, 4))}"
+            slope = _height(text, radius - text.between(0.5, 4))
         if kind == "arc" and abs(to - at) > 1.0:
             bow = abs(to - at) * text.chance.uniform(0.55, 0.9) * text.one_of(1, -1)
             _around(text, radius, to, text.one_of("G2", "G3"), f"R{text.n(bow)} {slope}")
         elif kind == "circle":
-            text.add(text.one_of("G2", "G3"), f"J{text.n(text.between(1, 9))} K{text.n(2)}")
+            centre = f"J{text.n(text.between(1, 9))} {'K' if text.polar else 'I'}{text.n(2)}"
+            text.add(text.one_of("G2", "G3"), centre)
             to = at
-        elif kind == "turns":
+        elif kind == "turns" and text.polar:
             text.add("G1", f"W{text.n(text.between(1, 9))} H{text.one_of(-720, 540, 360)}")
             return
         else:
@@ -442,17 +455,21 @@ def _groove(text, radius, at):
 
 
 def _wall(text, radius, start, cutter):
-    """Add a wall along C with a step, the tool on the side that it comes from, and back."""
-    below = text.chance.random() < 0.5
-    away = (cutter + text.between(1, 8)) * (1j if below else -1j)
-    wall, ahead = start + away, text.between(10, 60)
-    to_the_right = text.chance.random() < 0.5
-    ahead = ahead if to_the_right else -ahead
-    left = below != to_the_right
-    _around(text, radius, wall, "G41 G1" if left else "G42 G1")
-    for part in (0.4, 1.0):
-        _around(text, radius, wall + part * ahead)
-    _around(text, radius, start + ahead, "G40 G1")
+    """Add a wall of a line, an arc and a line, the tool on the side that it comes from."""
+    heading, below = text.one_of(1, -1), text.one_of(True, False)
+    out = (cutter + text.between(1, 8)) * (-1j if below else 1j) / heading  # seen along the wall
+    at, bow = start - out * heading, 2.5 * cutter + text.between(1, 20)
+    codes = {True: "G41 G1", False: "G42 G1"}
+    _around(text, radius, at, codes[(below != (heading == 1)) != text.reversed])
+    at += text.between(5, 30) * heading
+    _around(text, radius, at)
+    bend = text.one_of(1, -1) * 1j
+    centre, sweep = at + bend * bow * heading, cmath.exp(bend * text.chance.uniform(0.2, 1))
+    at, heading = centre + (at - centre) * sweep, heading * sweep
+    _around(text, radius, at, "G3" if (bend.imag > 0) != text.reversed else "G2", f"R{text.n(bow)}")
+    at += text.between(5, 30) * heading
+    _around(text, radius, at)
+    _around(text, radius, at + out * heading, "G40 G1")
 
 
 # ---------------------------------------------------------------- shapes on the face
@@ -542,6 +559,15 @@ MACHINES = {  # a machine, and settings of [G12] in place of its own
     "cylinder": ("lathe_mm", {}),
     "cylinder inch": ("lathe_inch", {}),
     "cylinder sloping": ("lathe_mm", {"CYLINDER_X": "allow", "CYLINDER_WORD": "diameter"}),
+    "cylinder a": ("mill_a_mm", {"CYLINDER_X": "refuse"}),
+    "cylinder reversed": ("mill_a_mm", {"ROTARY_SENSE": "reversed"}),
+    "cylinder b": ("mill_a_mm", {}),
+}  # fmt: skip
+WITH_B = {
+    "TRAJ": {"COORDINATES": "X Y Z B"},
+    "KINS": {"KINEMATICS": "trivkins coordinates=XYZB"},
+    "AXIS_B": {"MIN_LIMIT": "-99999", "MAX_LIMIT": "99999", "MAX_VELOCITY": "360",
+               "MAX_ACCELERATION": "3600"},
 }  # fmt: skip
 LATHE_PROGRAMS = {"polar": polar_program, "shapes": shapes_program, "cylinder": cylinder_program}
 POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle": circle_mill, "haas": haas}
@@ -550,7 +576,8 @@ POCKETS = {"yasnac": yasnac, "mitsubishi": mitsubishi, "circle": circle_mill, "h
 def machine_of(kind):
     """Return the machine of a kind with its settings."""
     name, settings = MACHINES[kind]
-    return read_ini(SIM / f"{name}_headless.ini").replaced({"G12": settings})
+    own = WITH_B if kind == "cylinder b" else {}
+    return read_ini(SIM / f"{name}_headless.ini").replaced({"G12": settings, **own})
 
 
 def valid_program(kind, chance, count):

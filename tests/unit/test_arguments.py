@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the commands share: wrong words and files in one line, interrupts, closed outputs."""
 
+import argparse
 import os
 import subprocess
 import sys
@@ -72,7 +73,7 @@ def test_help_is_plain_text_with_examples(name, capsys):
 )
 def test_numbers_of_the_command_line(reader, right, wrong, rule):
     assert reader(right) == float(right)
-    with pytest.raises(arguments.argparse.ArgumentTypeError, match=f"^'{wrong}' is not {rule}$"):
+    with pytest.raises(argparse.ArgumentTypeError, match=f"^'{wrong}' is not {rule}$"):
         reader(wrong)
 
 
@@ -164,6 +165,16 @@ def test_the_command_is_named_as_it_was_typed(tmp_path):
         assert f"\n  python3 {typed} trace pocket.ngc --ini mill.ini" in said.stdout
 
 
+def raise_in(monkeypatch, raised):
+    """Let every command raise an exception."""
+
+    def ended(_options):
+        raise raised
+
+    module = SimpleNamespace(main=ended, command_parser=argparse.ArgumentParser)
+    monkeypatch.setattr(main, "import_module", lambda _name: module)
+
+
 @pytest.mark.parametrize(
     ("raised", "code", "said"),
     [
@@ -172,11 +183,8 @@ def test_the_command_is_named_as_it_was_typed(tmp_path):
     ],
 )
 def test_what_ends_a_command_is_one_line(monkeypatch, capsys, raised, code, said):
-    def ended(_arguments):
-        raise raised
-
-    monkeypatch.setattr(main, "import_module", lambda _name: SimpleNamespace(main=ended))
     monkeypatch.setattr(main, "nobody_reads", lambda: False)
+    raise_in(monkeypatch, raised)
     assert ends(capsys, "verify") == (code, f"g12 verify: {said}\n")
 
 
@@ -200,13 +208,8 @@ NO_SUB = "INTERP_REMAP: NGC file not found: ngc=g12_haas"
         (NO_SUB, f"; see {COMMAND} check"),
     ],
 )
-def test_of_a_log_the_most_specific_line_is_reported(line, cure, capsys):
-    log = ["Starting", line, "Recommend: both"]
-
-    @arguments.one_line("run")
-    def command(_words):
-        raise StartupError("\n".join(["lathe.ini: LinuxCNC ended; its log ends:", *log]))
-
-    assert command([]) == 2
-    said = capsys.readouterr().err
-    assert said == f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {line}{cure}\n"
+def test_of_a_log_the_most_specific_line_is_reported(line, cure, monkeypatch, capsys):
+    log = ["lathe.ini: LinuxCNC ended; its log ends:", "Starting", line, "Recommend: both"]
+    raise_in(monkeypatch, StartupError("\n".join(log)))
+    said = f"g12 run: lathe.ini: LinuxCNC ended; its log ends: … {line}{cure}\n"
+    assert ends(capsys, "run") == (2, said)

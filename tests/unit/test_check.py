@@ -4,6 +4,7 @@
 import pytest
 
 from g12.tools.commands import check
+from g12.tools.commands.main import main
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, PROBLEM
@@ -358,7 +359,7 @@ def test_what_is_in_order_in_hal_files(hal_findings, line):
 )
 def test_wrong_use_is_one_line_and_exit_code_2(tmp_path, capsys, name, says):
     write_config(tmp_path, **{"mill.ini_expanded": MILL}, odd_ini=f"{MILL}\0")
-    assert check.main([str(tmp_path / name)]) == 2
+    assert main(["check", str(tmp_path / name)]) == 2
     error = capsys.readouterr().err
     assert error.startswith("g12 check: ") and says in error
     assert error.count("\n") == 1

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import HealthCheck, given
@@ -12,7 +13,8 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from g12.tools import progress
-from g12.tools.commands import install, uninstall
+from g12.tools.commands import uninstall
+from g12.tools.commands.main import main
 from g12.tools.install import installation, package_copy
 from g12.tools.install.config.findings import Refused
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniText
@@ -174,7 +176,7 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
 def test_markers_that_are_not_both_there_are_refused(tmp_path, ini, capsys, marker):
     ini.write_text(ini.read_text().replace(marker, "# gone", 1))
     before, says = content_of(tmp_path), r"mill\.ini:\d+: a marker of install without its other one"
-    assert uninstall.main([str(ini)]) == 2
+    assert main(["uninstall", str(ini)]) == 2
     (said,) = capsys.readouterr().err.splitlines()
     assert re.search(says, said)
     with pytest.raises(IniError, match=says):
@@ -347,7 +349,7 @@ def test_modes_links_and_old_versions_are_kept(tmp_path, monkeypatch):
 )
 def test_wrong_use_of_install(arguments, says, capsys):
     with pytest.raises(SystemExit) as stopped:
-        install.main(arguments)
+        main(["install", *arguments])
     assert stopped.value.code == 2
     said = capsys.readouterr().err
     assert said.startswith("g12 install: ")
@@ -359,7 +361,7 @@ def test_uninstall_shows_first_and_is_done_to_its_end_though_nobody_reads(
     tmp_path, ini, capsys, monkeypatch
 ):
     before = content_of(tmp_path)
-    assert uninstall.main([str(ini), "--dry-run"]) == 0
+    assert main(["uninstall", str(ini), "--dry-run"]) == 0
     assert "-REMAP = G12 " in capsys.readouterr().out
     assert content_of(tmp_path) == before
 
@@ -368,7 +370,7 @@ def test_uninstall_shows_first_and_is_done_to_its_end_though_nobody_reads(
 
     monkeypatch.setattr(progress, "print", broken, raising=False)
     with pytest.raises(BrokenPipeError):
-        uninstall.main([str(ini)])
+        uninstall.main(SimpleNamespace(ini=ini, dry_run=False))
     assert content_of(tmp_path).keys() == {"mill.ini", "mill.tbl"}
     assert list(map(str, planned(ini, "haas").text.changes())) == [str(ini)]
 

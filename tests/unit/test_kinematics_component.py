@@ -130,9 +130,8 @@ def test_type_0_is_the_axes_of_its_letters(kinematics, letters, joints, axes):
     assert kinematics.inverse(pose, *[0] * len(joints)) == joints
 
 
-@pytest.mark.parametrize("letters", ["XZ", "ZC", "XYZC", "XZCC", "X ZC"])
-def test_letters_that_have_no_face(kinematics, letters):
-    assert kinematics.set_up(letters) == -1
+def test_letters_that_have_no_face(kinematics):
+    assert {kinematics.set_up(text) for text in ("XZ", "ZC", "XYZC", "XZCC", "X ZC")} == {-1}
 
 
 def test_a_centre_off_the_joints_zero(kinematics):
@@ -161,7 +160,9 @@ def test_round_trip(library, radius, zero, turn, ahead, beside):
 
 
 def test_the_face_of_a_tool_beside_the_x_line(kinematics):
-    kinematics.pins.tool_offset = 10.0
+    kinematics.face(20, 0, 0)
+    kinematics.pins.tool_offset = 10.0  # which counts when the face is switched on
+    assert kinematics.forward(20, 0, 0).y == 0
     pose = kinematics.face(20, 5, 30)
     assert (pose.x, pose.y, pose.c) == (20, 10, 30)
     pose = kinematics.forward(20, 5, 120)
@@ -170,12 +171,6 @@ def test_the_face_of_a_tool_beside_the_x_line(kinematics):
     assert kinematics.inverse(pose, 20, 5, 120) == pytest.approx((0, 5, 30), abs=0.002)
     pose.y = 9.999
     assert kinematics.inverse(pose, 20, 5, 120) is None
-
-
-def test_the_tool_offset_counts_when_the_face_is_switched_on(kinematics):
-    kinematics.face(20, 0, 0)
-    kinematics.pins.tool_offset = 10.0
-    assert kinematics.forward(20, 0, 0).y == 0
 
 
 def test_c_keeps_its_angle_in_the_centre(kinematics):
@@ -207,11 +202,22 @@ def test_type_0_is_declared_the_identity_where_linuxcnc_asks(library, tmp_path):
 # ---------------------------------------------------------------- the guard
 
 
-def test_guard_waits_until_the_machine_stands(kinematics):
-    assert kinematics.guard(request=1.0, stands=0) == 0
-    assert kinematics.guard(stands=1) == 1
-    assert kinematics.guard(request=0.0, stands=0) == 1
-    assert kinematics.guard(stands=1) == 0
+ON, OFF = {"request": 1.0}, {"request": 0.0}
+STEPS = [  # pins that change, and the type after that
+    [({**ON, "stands": 0}, 0), ({"stands": 1}, 1), ({**OFF, "stands": 0}, 1), ({"stands": 1}, 0)],
+    # a request counts once
+    *([(ON, 1), (ended, 0), ({"enabled": 1, "program": 1}, 0), (OFF, 0), (ON, 1)]
+      for ended in ({"enabled": 0}, {"end_request": 1})),
+    # not under a jog, at once when the machine is off
+    [(ON, 1), ({"program": 0, **OFF}, 1), ({"program": 1, **OFF}, 0), (ON, 1),
+     ({"enabled": 0, "stands": 0}, 0)],
+    [(ON, 1), ({"program": 0}, 1), ({"program": 1}, 0), (OFF, 0), (ON, 1)],
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_the_guard_chooses_the_type(kinematics, steps):
+    assert [kinematics.guard(**pins) for pins, _ in steps] == [kind for _, kind in steps]
 
 
 def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
@@ -222,23 +228,6 @@ def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
         kinematics.library.run_guard()
         types.append(kinematics.pins.type)
     assert types == [0] * 5 + [1] * 5
-
-
-@pytest.mark.parametrize("ended", [{"enabled": 0}, {"program": 0}, {"end_request": 1}])
-def test_guard_lets_a_request_count_once(kinematics, ended):
-    kinematics.guard(request=1.0)
-    kinematics.guard(**ended)
-    assert kinematics.guard(enabled=1, program=1) == 0
-    kinematics.guard(request=0.0)
-    assert kinematics.guard(request=1.0) == 1
-
-
-def test_guard_goes_back_at_once_when_the_machine_is_off_and_not_under_a_jog(kinematics):
-    kinematics.guard(request=1.0)
-    assert kinematics.guard(program=0, request=0.0) == 1
-    assert kinematics.guard(program=1, request=0.0) == 0
-    kinematics.guard(request=1.0)
-    assert kinematics.guard(enabled=0, stands=0) == 0
 
 
 def test_no_jog_on_the_face(kinematics):

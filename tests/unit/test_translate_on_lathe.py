@@ -17,9 +17,8 @@ DRILL = "G98 G81 X10. Y5. Z-6. R3. F80.\n"
 
 
 def with_options(name, *options):
-    return translate.changed(
-        read_control(name), translate.parsed(["--control", name, "part.nc", *options])
-    )
+    words = ["--control", name, "part.nc", *options]
+    return translate.changed(read_control(name), translate.command_parser().parse_args(words))
 
 
 FACE = with_options("mill-on-face")

@@ -58,8 +58,7 @@ def plan(words: Words, arc: int, settings: Settings) -> CyclePlan:
 def open_radius(words: Words, wall: float) -> float:
     """Return K, the radius that is already open, 0 without."""
     opened = words.take("K") or 0.0
-    if opened < 0:
-        raise words.refuse_word("K", opened, "must be at least 0")
+    words.check_least("K", opened, 0)
     if opened >= wall - words.context.rounding:
         raise words.refuse_word("K", opened, f"must be less than I{number(wall)}")
     return opened

@@ -302,8 +302,7 @@ def rings_of(entries: EventEntries, outermost: float, tool: Tool, width: float |
             f"J is missing: its default, the tool diameter {context.tool_size(2 * tool.radius)}"
             f" less {number(narrower)}, is too small"
         )
-    if widest < least:
-        raise words.refuse_word("J", widest, f"must be at least {number(least)}")
+    words.check_least("J", widest, least)
     return max(1, steps_between(0.0, outermost, widest, context.rounding))
 
 
@@ -339,10 +338,9 @@ def side_finish_of(entries: EventEntries, circle: EventCircle, tool: Tool) -> di
 
     Inside, the entry arc has the direction of the cut; outside, the opposite one.
     """
-    smallest = entries.words.context.smallest_ring
-    if 0 < entries.finish < smallest:
-        rule = f"must be at least {number(smallest)}"
-        raise entries.words.refuse_word(entries.letters.finish, entries.finish, rule)
+    words, finish = entries.words, entries.finish
+    if finish:
+        words.check_least(entries.letters.finish, finish, words.context.smallest_ring)
     other = opposite(circle.finish_arc)
     return {
         "side_finish": entries.finish > 0,

@@ -89,8 +89,7 @@ def frame_of(words: Words) -> Frame:
     half_x = words.require_positive("I", "the length along X") / 2
     half_y = words.require_positive("J", "the length along Y") / 2
     corner = words.require("R", "the corner radius")
-    if corner < 0:
-        raise words.refuse_word("R", corner, "must be at least 0")
+    words.check_least("R", corner, 0)
     for letter, half in (("I", half_x), ("J", half_y)):
         if corner > half + words.context.rounding:
             rule = f"must be at most half of {letter}{number(2 * half)}"
@@ -98,21 +97,14 @@ def frame_of(words: Words) -> Frame:
     kind = words.take_whole("H", least=POCKET, most=WALL_OUTSIDE, default=POCKET)
     finish = words.take("E") or 0.0
     if finish:
-        check_arc(words, "E", finish)
+        words.check_least("E", finish, 2 * words.context.smallest_ring)  # for a half circle
     return Frame(half_x, half_y, min(corner, half_x, half_y), kind, finish)
-
-
-def check_arc(words: Words, letter: str, growth: float) -> None:
-    """Refuse a growth whose half circle would be too small."""
-    least = 2 * words.context.smallest_ring
-    if growth < least:
-        raise words.refuse_word(letter, growth, f"must be at least {number(least)}")
 
 
 def check_stepover(words: Words, frame: Frame, stepover: float, cutter: Cutter) -> None:
     if frame.kind != POCKET:
         raise words.refuse_word("Q", stepover, "is the stepover of a pocket (H0)")
-    check_arc(words, "Q", stepover)
+    words.check_least("Q", stepover, 2 * words.context.smallest_ring)
     if stepover > WIDEST * 2 * cutter.radius:
         size = words.context.tool_size(2 * cutter.radius)
         rule = f"must not exceed {WIDEST} x the tool diameter {size} ({cutter.source})"

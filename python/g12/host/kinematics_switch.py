@@ -19,6 +19,7 @@ from g12.errors import Refusal, number
 from g12.host.interp import Interp
 from g12.host.machine import MACHINE
 from g12.machine_ini import ACCELERATION_PINS
+from g12.moves.steps import FaceSwitch
 from g12.section.effects import decimal
 
 OVERRIDE_PIN, UNIT_PIN = "polar-xzc.most-override", "polar-xzc.unit"
@@ -107,23 +108,21 @@ def is_older() -> bool:
 def to_face(
     interp: Interp,
     machine_unit: float,
+    step: FaceSwitch,
     refuse: Callable[[str], Refusal],
     of_ini: Sequence[float],
-    share: float = 1.0,
-    override: float = 1.0,
 ) -> Iterator[str]:
     """Switch to the face; yield the block to wait for.
 
-    ``machine_unit`` is one in program units, ``of_ini`` are the accelerations of X and Y, ``share``
-    what of it the face has, ``override`` the highest feed override. Refuses a machine that cannot
-    switch before anything is changed.
+    ``machine_unit`` is one in program units, ``of_ini`` are the accelerations of X and Y. Refuses a
+    machine that cannot switch before anything is changed.
     """
     if interp.task:
         wrong = refusal(of_ini)
         if wrong:
             raise refuse(wrong)
-        set_accelerations([share * acceleration for acceleration in of_ini])
-        hal.set_p(OVERRIDE_PIN, repr(override))
+        set_accelerations([step.share * acceleration for acceleration in of_ini])
+        hal.set_p(OVERRIDE_PIN, repr(step.override))
         hal.set_p(UNIT_PIN, repr(1.0 / machine_unit))
     centre = interp.origin_offset_x + interp.axis_offset_x + interp.tool_offset.x
     interp.execute(f"M68E{CENTRE_OUTPUT}Q{decimal(centre / machine_unit)}")

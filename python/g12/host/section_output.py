@@ -236,14 +236,8 @@ class SectionOutput:
         of_ini = borrowed.saved_modes(interp).accelerations
         self.on_face = True
         if step.on:
-            yield from kinematics_switch.to_face(
-                interp,
-                self.machine_unit,
-                refuse,
-                of_ini,
-                step.share,
-                step.override,
-            )
+            unit = self.machine_unit
+            yield from kinematics_switch.to_face(interp, unit, step, refuse, of_ini)
             interp.execute(kinematics_switch.ON_THE_FACE)
             self.path.renew()
         else:

@@ -44,7 +44,6 @@ WITHOUT_COMPENSATION = 40
 SECTION_WORDS, PLAIN_LETTERS = "XYZABCIJRKFSPQLE", "XYZABCIJR"
 PLAIN_FIELDS = chain.from_iterable(WORD_FIELDS[letter] for letter in PLAIN_LETTERS)
 plain_words = attrgetter(*WORD_FIELDS["F"], "motion_to_be", *PLAIN_FIELDS)
-PlaneWords = tuple[float | None, float | None, float | None]  # first, second, height
 
 
 def block_of(parsed: ParsedBlock) -> SectionBlock:
@@ -252,7 +251,16 @@ class SectionReader:
         if motion not in SECTION_MOTIONS:
             code = f"G{motion / 10:g}"
             raise self.location.refuse(f"{code} is active: the block needs G1, G2 or G3 of its own")
-        first, second, height = self._scaled(words)
+        contour, line = self.contour, self.program.shown_line
+        here = contour.first, contour.second, contour.height
+        first, second, height = (
+            None
+            if letter not in words
+            else words[letter] * scale + at
+            if letter in incremental
+            else words[letter] * scale
+            for (letter, scale), at in zip(self._scales, here)
+        )
         i, j = (
             next((words[letter] for letter in letters if letter in words), None)
             for letters in known.centre
@@ -260,33 +268,12 @@ class SectionReader:
         in_plane = any(word is not None for word in (first, second, i, j))
         if height is not None and in_plane and not self.rules.height_with_others:
             raise self.location.refuse(known.own_block)
-        if incremental:
-            first, second, height = self._absolute((first, second, height), incremental)
-        contour, line = self.contour, self.program.shown_line
         if block_rules.G1 < motion <= block_rules.G3:
             turn, r = 1 if motion == block_rules.G3 else -1, words.get("R")
             contour.arc(turn, first, second, height, i=i, j=j, radius=r, at=line, feed=self._feed())
         else:
             feed = self._feed() if motion else self._rapid_feed()
             contour.straight(first, second, height, at=line, feed=feed)
-
-    def _scaled(self, words: Mapping[str, float]) -> PlaneWords:
-        """Return the words of the plane's axes as lengths, None for those that are not there."""
-        first, second, height = (
-            None if (word := words.get(letter)) is None else word * scale
-            for letter, scale in self._scales
-        )
-        return first, second, height
-
-    def _absolute(self, values: PlaneWords, relative: str) -> PlaneWords:
-        """Return absolute coordinates of the plane; values of ``relative`` axes are increments."""
-        contour, plane = self.contour, self.known.plane
-        here = contour.first, contour.second, contour.height
-        first, second, height = (
-            value + at if value is not None and axis in relative else value
-            for axis, value, at in zip(plane, values, here)
-        )
-        return first, second, height
 
     def _separate(self) -> None:
         """Mark the end of a block before another on the same line, as in a loop."""

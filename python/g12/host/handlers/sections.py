@@ -80,7 +80,7 @@ def begin_report(interp: Interp, kind: SectionKind, contour: Contour) -> None:
     home = interp.filename
     report = report._replace(  # since the lines of the section were read other modes are in force
         file="" if home == running_file(interp) else os.path.basename(home),
-        frame=report.frame.turned_by(turn_zero),
+        frame=report.frame._replace(zero=(*report.frame.zero[:3], turn_zero)),
         at=(*start.state.xyz, start.state.position(turn)),
         feed=start.state.feed,
         per_revolution=start.state.per_revolution,
@@ -141,28 +141,29 @@ def following_lines(interp: Interp) -> ProgramLines:
 
 
 def run_section(
-    interp: Interp,
-    kind: type[SectionKind],
-    codes_of: Callable[[str], SectionCodes],
-    begin: Callable[[SectionStart], SectionKind],
+    interp: Interp, kind: type[SectionKind], codes: SectionCodes, **options: bool
 ) -> Iterator[int]:
-    """Run the section that begins with the block being remapped.
-
-    ``codes_of`` returns its codes for the one that began it, ``begin`` the section for its start.
-    """
+    """Run the section of a kind, with its options, that begins with the block being remapped."""
     program, running = following_lines(interp), running_file(interp)
     frame, c = CallFrame(interp, program.home.filename), interp.CC_current
     try:
         start = start_of_section(interp, program.shown_line, kind.on_words)
         if face_in_force(interp):
             raise start.location.refuse(FACE_ON)
-        section = begin(start)
+        section, drag = kind(start, section_machine(), **options), drag_codes(kind)
         check_clamp(start.location.refuse)
         borrowed.begin(interp)
-        codes = codes_of(start.location.code)
-        yield from _running(interp, section, codes, frame, program).run()
-        for code in MACHINE.settings.drag(kind.words.axes.turn)[1:]:
-            run_code(interp, f"M{code}")
+        yield from Section(
+            section,
+            codes,
+            frame,
+            SectionReader(interp, section, program),
+            SectionOutput(interp, section, canon=emccanon),
+            first="".join(drag[:1]),
+            report=partial(begin_report, interp, section),
+        ).run()
+        for code in drag[1:]:
+            run_code(interp, code)
         if kind.unwinds:
             report_turns(interp, interp.CC_current - c)
     except Exception as error:
@@ -196,22 +197,9 @@ def check_clamp(refuse: Callable[[str], Refusal]) -> None:
         raise refuse(unknown)
 
 
-def _running(
-    interp: Interp,
-    kind: SectionKind,
-    codes: SectionCodes,
-    frame: CallFrame,
-    program: ProgramLines,
-) -> Section:
-    return Section(
-        kind,
-        codes,
-        frame,
-        SectionReader(interp, kind, program),
-        SectionOutput(interp, kind, canon=emccanon),
-        first="".join(f"M{code}" for code in MACHINE.settings.drag(kind.words.axes.turn)[:1]),
-        report=lambda contour: begin_report(interp, kind, contour),
-    )
+def drag_codes(kind: type[SectionKind]) -> list[str]:
+    """Return the codes that begin and end the drag of the section's rotary axis, if any."""
+    return [f"M{code}" for code in MACHINE.settings.drag(kind.words.axes.turn)]
 
 
 MDI_LINE = 0  # the number of a line in MDI
@@ -232,9 +220,9 @@ def polar_on(self, **words) -> Iterator[int]:
     in_shape = self.sub_context[self.call_level - 1].subname in SHAPE_SUBS
     if not in_shape:
         messages.settle(self)
-    yield from run_section(
-        self, Polar, _polar_codes, lambda start: Polar(start, section_machine(), in_shape=in_shape)
-    )
+    handlers, code = (polar_on.__name__, polar_off.__name__), messages.code_of_block(self)
+    codes = codes_of_section(code, MACHINE.remaps.values(), *handlers)
+    yield from run_section(self, Polar, codes, in_shape=in_shape)
 
 
 @messages.waiting_handler
@@ -270,10 +258,6 @@ def _leave_face(interp: Interp) -> Iterator[int]:
         raise Refusal(kinematics_switch.not_switched(), code)
 
 
-def _polar_codes(code: str) -> SectionCodes:
-    return codes_of_section(code, MACHINE.remaps.values(), polar_on.__name__, polar_off.__name__)
-
-
 @messages.waiting_handler
 def cylinder_mode(self, **words) -> Iterator[int]:
     """Read, plan and execute a section; outside one C0 is a safety line and does nothing."""
@@ -283,8 +267,9 @@ def cylinder_mode(self, **words) -> Iterator[int]:
     if given.get(letter) != 0.0:
         refuse_typed(self)
         messages.settle(self)
-        kind, codes = CYLINDERS[letter], partial(_cylinder_codes, letter)
-        yield from run_section(self, kind, codes, lambda start: kind(start, section_machine()))
+        remaps, handler = MACHINE.remaps.values(), cylinder_mode.__name__
+        codes = codes_of_section(code, remaps, handler, handler, letter)
+        yield from run_section(self, CYLINDERS[letter], codes)
     elif words_in(block, MOVE_WORDS.replace(letter, "")):
         raise Refusal(f"{letter}0 must be alone in its block", code)
 
@@ -292,8 +277,3 @@ def cylinder_mode(self, **words) -> Iterator[int]:
 def _rotary_axis() -> str:
     """Return the letter of the axis that a cylinder of this machine turns with."""
     return next((letter for letter in CYLINDERS if letter in MACHINE.coordinates), "C")
-
-
-def _cylinder_codes(letter: str, code: str) -> SectionCodes:
-    handler = cylinder_mode.__name__
-    return codes_of_section(code, MACHINE.remaps.values(), handler, handler, letter)

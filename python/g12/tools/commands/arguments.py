@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Shared by the commands: command line arguments, and errors in one line."""
+"""Shared by the commands: command line arguments, the program that they name, errors."""
 
 import argparse
-import functools
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
 from g12.tools.errors import ERROR, ProgramError, UsageError, print_error
 from g12.tools.headless.errors import MachineError, StartupError
 from g12.tools.machine.files import existing
-from g12.tools.machine.filter import OpenedProgram
+from g12.tools.machine.filter import OpenedProgram, opened_program
 from g12.tools.machine.ini import Ini, IniError, read_machine_ini
 from g12.tools.machine.tables import tool_table, var_file
 from g12.tools.preview.tracer import TraceFailure
@@ -83,6 +83,7 @@ def _reader(kind: type, is_good: Callable[[float], bool], expected: str) -> Call
 def program_parser(name: str, description: str, epilog: str) -> Parser:
     """Return the parser of a command, with the arguments for a program and its machine."""
     parser = Parser(f"g12 {name}", description, epilog)
+    parser.set_defaults(command=name)
     parser.add_argument("program", type=Path, help="program file")
     parser.add_argument("--ini", type=Path, required=True, help="INI file of the machine")
     parser.add_argument("--tools", type=Path, help="tool table in place of the INI's")
@@ -96,29 +97,19 @@ def add_override(parser: argparse.ArgumentParser, whose: str) -> None:
     parser.add_argument("--override", **percent, help=text)
 
 
-def report_line_numbers(name: str, opened: OpenedProgram) -> None:
-    """Report if a command's text or lines are not what the user expects of the file."""
-    if opened.note:
-        print_error(f"g12 {name}", opened.note)
+@contextmanager
+def program_of(options: argparse.Namespace) -> Iterator[tuple[OpenedProgram, Ini]]:
+    """Yield the program and the machine that a command line names.
 
-
-def one_line(name: str) -> Callable:
-    """Turn a command's errors into one line on standard error and an exit code."""
-
-    def decorate(command: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
-        @functools.wraps(command)
-        def guarded(arguments: list[str]) -> int:
-            try:
-                return command(arguments)
-            except BrokenPipeError:  # main() handles it
-                raise
-            except (*WRONG_USE, *FAILURES) as problem:
-                print_error(f"g12 {name}", sentence_of(problem))
-                return ERROR
-
-        return guarded
-
-    return decorate
+    In the end the command says so if the text or the lines are not those that the user expects.
+    """
+    ini = checked_ini(options)
+    with opened_program(options.program, ini) as opened:
+        try:
+            yield opened, ini
+        finally:
+            if opened.note:
+                print_error(f"g12 {options.command}", opened.note)
 
 
 def checked_ini(options: argparse.Namespace) -> Ini:

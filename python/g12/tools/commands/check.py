@@ -4,10 +4,11 @@
 The config is read the way LinuxCNC reads it and loaded in the stock interpreter.
 """
 
+import argparse
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
+from g12.tools.commands.arguments import FINDING, GOOD, Parser
 from g12.tools.install.config.features import MEANING
 from g12.tools.install.config.findings import PROBLEM, ConfigFinding
 from g12.tools.install.config.ini_edit import read_config_text
@@ -28,9 +29,7 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("check")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     config = load_config(read_config_text(options.ini))
     found = findings_of(config)
     print("\n".join(report_of(config, found)))

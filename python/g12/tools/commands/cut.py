@@ -5,7 +5,7 @@ import argparse
 from pathlib import Path
 
 from g12.tools.commands.arguments import Parser, add_override, program_parser
-from g12.tools.headless.run import run_program
+from g12.tools.headless.machine import run_program
 from g12.tools.machine.ini import Ini
 from g12.tools.material.stock import StockText
 from g12.tools.path.samples import Samples

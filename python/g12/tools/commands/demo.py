@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """``g12 demo``: run the manuals' programs in headless LinuxCNC, draw and measure their cuts."""
 
+import argparse
 import os
 from pathlib import Path
 
-from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, one_line, sentence_of
+from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, sentence_of
 from g12.tools.demo.report import show
 from g12.tools.demo.samples import PROGRAM_FOLDER, SAMPLES, runs
 from g12.tools.errors import UsageError
@@ -19,9 +20,7 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("demo")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     if not PROGRAM_FOLDER.is_dir():
         raise UsageError(f"{PROGRAM_FOLDER}: the sample programs are not there")
     options.output.mkdir(parents=True, exist_ok=True)

@@ -9,10 +9,11 @@ It prints nothing if any line is refused. For a [FILTER] of LinuxCNC's INI:
   DYN = python3 /path/to/g12/python/g12 dynapath --units inch
 """
 
+import argparse
 from pathlib import Path
 
 from g12.errors import Refusal
-from g12.tools.commands.arguments import GOOD, Parser, one_line
+from g12.tools.commands.arguments import GOOD, Parser
 from g12.tools.dynapath import program_from_events
 from g12.tools.errors import ProgramError
 from g12.tools.machine.files import existing
@@ -33,9 +34,7 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("dynapath")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     text = existing(options.file).read_text(encoding="latin-1")
     try:
         program = program_from_events(text, options.units)

@@ -6,10 +6,11 @@ new config is loaded in the stock interpreter before any of the user's files is 
 by `check` is refused.
 """
 
+import argparse
 from pathlib import Path
 from typing import Any
 
-from g12.tools.commands.arguments import FINDING, GOOD, Parser, one_line
+from g12.tools.commands.arguments import FINDING, GOOD, Parser
 from g12.tools.errors import UsageError, print_error
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import Refused
@@ -50,19 +51,16 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("install")
-def main(arguments: list[str]) -> int:
-    parser = command_parser()
-    options = parser.parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     ini, requested = options.ini, options.features
     if not ini and requested[1:] and requested[-1] not in features.FEATURE_NAMES:
         *requested, ini = requested  # the INI may come last
     unknown = [name for name in requested if name not in features.FEATURE_NAMES]
     if unknown:
-        parser.error(f"no feature {unknown[0]!r}")
+        command_parser().error(f"no feature {unknown[0]!r}")
     missing = [name for name, given in (("the INI", ini), ("--with", requested)) if not given]
     if missing:
-        parser.error(", ".join(f"{name} is missing" for name in missing))
+        command_parser().error(", ".join(f"{name} is missing" for name in missing))
     values = {name: getattr(options, name) for name in ("decimals", "units")}
     of_translate = "".join(f" --{name} {value}" for name, value in values.items() if value)
     if of_translate and features.CONTROLS.keys().isdisjoint(requested):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands of ``python3 python/g12``: one line each, loaded when called.
 
-A command is a module with ``main(arguments) -> exit code``.
+A command is a module with ``command_parser()`` and ``main(options) -> exit code``.
 """
 
 import io
@@ -12,6 +12,7 @@ from importlib import import_module
 from types import ModuleType
 
 from g12 import __version__
+from g12.tools.commands.arguments import FAILURES, WRONG_USE, sentence_of
 from g12.tools.errors import ERROR, print_error
 from g12.tools.system import COMMAND
 
@@ -76,7 +77,15 @@ def command(name: str, arguments: list[str]) -> int:
     if name not in COMMANDS:
         print_error("g12", f"no command {name!r} (usage: {COMMAND} --help)")
         return ERROR
-    return module_of(name).main(arguments)
+    module = module_of(name)
+    options = module.command_parser().parse_args(arguments)
+    try:
+        return module.main(options)
+    except BrokenPipeError:  # main() handles it
+        raise
+    except (*WRONG_USE, *FAILURES) as problem:
+        print_error(f"g12 {name}", sentence_of(problem))
+        return ERROR
 
 
 def nobody_reads() -> bool:

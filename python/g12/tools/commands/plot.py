@@ -12,16 +12,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from g12.tools.commands.arguments import (
-    GOOD,
-    Parser,
-    checked_ini,
-    one_line,
-    report_line_numbers,
-)
+from g12.tools.commands.arguments import GOOD, Parser, program_of
 from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
 from g12.tools.errors import UsageError
-from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import offset_at_start, stored_values
 from g12.tools.plot import style
@@ -53,13 +46,10 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("plot")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
-    ini = checked_ini(options)
+def main(options: argparse.Namespace) -> int:
     style.check_format(options.output)
-    _ = ini.settings  # wrong ones are reported before a picture is written
-    with opened_program(options.program, ini) as opened:
+    with program_of(options) as (opened, ini):
+        _ = ini.settings  # wrong ones are reported before a picture is written
         found = moves_to_draw(opened.path, ini, options)
         in_source = found.in_source(opened)
         samples = samples_of_run(opened.path, options, found, ini)
@@ -78,7 +68,6 @@ def main(arguments: list[str]) -> int:
     judged = dict.fromkeys(judged_texts(judgement, scene)) if judgement else ()
     texts = [f"{options.output} written", *notes, *judged, *message_lines(in_source.messages)]
     print("\n".join(texts))
-    report_line_numbers("plot", opened)
     ended(options.program, in_source)
     return GOOD
 

@@ -19,7 +19,6 @@ from g12.tools.commands.arguments import (
     count_from,
     number_above,
     number_from,
-    one_line,
 )
 from g12.tools.progress import working
 from g12.tools.regress.differences import TOLERANCE, Tolerance
@@ -90,9 +89,7 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="report as JSON")
 
 
-@one_line("regress")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     tolerance = Tolerance(options.tolerance, options.feed_tolerance)
     pictures = getattr(options, "picture", None)
     with working("") as report:

@@ -5,6 +5,7 @@ It is isolated from any other LinuxCNC on the computer, and nothing of the machi
 written. It resumes at M0 and M1.
 """
 
+import argparse
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,17 +16,13 @@ from g12.tools.commands.arguments import (
     GOOD,
     Parser,
     add_override,
-    checked_ini,
     number_above,
-    one_line,
+    program_of,
     program_parser,
-    report_line_numbers,
 )
 from g12.tools.commands.cut import run_text
 from g12.tools.errors import ProgramError
-from g12.tools.headless.machine import Run
-from g12.tools.headless.run import run_anyhow
-from g12.tools.machine.filter import opened_program
+from g12.tools.headless.machine import Run, run_anyhow
 from g12.tools.machine.ini import Ini
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.ended import block_at, explained_text
@@ -99,24 +96,19 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("run")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
-    ini = checked_ini(options)
-    with opened_program(options.program, ini) as opened:
+def main(options: argparse.Namespace) -> int:
+    with program_of(options) as (opened, ini):
         files = (options.ini, options.tools, options.var)
         preview = preview_of(opened.path, *files)
         timeout = options.timeout or default_timeout(preview, ini, options.override)
         with working(run_text(options.program, options.override, preview, ini), clock=True):
             result = run_anyhow(opened.path, *files, options.override, timeout=timeout)
-    for text in lines_of_run(result, ini):
-        print(text)
-    if result.error:
-        found = line_of_preview(result.error, preview)
-        line = opened.source_line(found)
-        location = f"{options.program}:{line}" if line else options.program
-        explained = explained_text(result.error.text, options.ini, block_at(opened.path, found))
-        text = opened.in_source(explained)
-        report_line_numbers("run", opened)
-        raise ProgramError(f"{location}: {text}")
+        for text in lines_of_run(result, ini):
+            print(text)
+        if result.error:
+            line = line_of_preview(result.error, preview)
+            block = block_at(opened.path, line)
+            text = explained_text(result.error.text, options.ini, block)
+            location = f"{opened.path}:{line}" if line else opened.path
+            raise ProgramError(f"{location}: {text}")
     return GOOD

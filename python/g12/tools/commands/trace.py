@@ -6,19 +6,17 @@ degrees, whatever the program and the machine use; positions are those of the co
 in machine coordinates. A line begins with the program's own line number.
 """
 
+import argparse
 from typing import Any
 
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.commands.arguments import (
     GOOD,
     Parser,
-    checked_ini,
     count_from,
-    one_line,
+    program_of,
     program_parser,
-    report_line_numbers,
 )
-from g12.tools.machine.filter import opened_program
 from g12.tools.machine.stored_positions import offset_at_start
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Move
@@ -52,14 +50,10 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("trace")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
-    ini = checked_ini(options)
-    with opened_program(options.program, ini) as opened:
+def main(options: argparse.Namespace) -> int:
+    with program_of(options) as (opened, ini):
         found = trace(opened.path, ini, tools=options.tools, parameters=options.var)
         found = explained(found, options.ini, opened.path)
-    report_line_numbers("trace", opened)
     traced = found.in_source(opened)
     if shifted := offset_at_start(options.var, ini):
         print(f"{0:6d} note  {shifted}")

@@ -21,11 +21,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from g12.lengths import is_inch
-from g12.tools.commands.arguments import GOOD, Parser, number_above, one_line
+from g12.tools.commands.arguments import GOOD, Parser, number_above
 from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.files import existing
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.translate.blocks.control import Control, ControlError, read_control, shipped_controls
+from g12.tools.translate.blocks.control import Control, read_control, shipped_controls
 from g12.tools.translate.blocks.lexer import program_text
 from g12.tools.translate.on_machine import on_machine
 from g12.tools.translate.program import RefusedBlock, translate_program
@@ -44,16 +44,14 @@ PROGRESS_EVERY = 0.2  # s
 OTHERS_NAMED = 4
 
 
-@one_line("translate")
-def main(arguments: list[str]) -> int:
-    options = parsed(arguments)
-    try:
-        if options.list:
-            print(contents(), end="")
-            return GOOD
-        control = changed(read_control(options.control), options)
-    except ControlError as problem:
-        raise UsageError(str(problem)) from None
+def main(options: argparse.Namespace) -> int:
+    given = options.control, options.program
+    if any(given) if options.list else not all(given):
+        command_parser().error("--control and a program are needed, or --list alone")
+    if options.list:
+        print(contents(), end="")
+        return GOOD
+    control = changed(read_control(options.control), options)
     sys.stdout.flush()
     sys.stdout.buffer.write(translated(options, control).encode())  # independent of the locale
     return GOOD
@@ -78,15 +76,6 @@ def command_parser() -> Parser:
     )
     parser.add_argument("--polar-x", choices=("diameter", "radius"), help="X in polar mode")
     return parser
-
-
-def parsed(arguments: list[str]) -> argparse.Namespace:
-    parser = command_parser()
-    options = parser.parse_args(arguments)
-    given = options.control, options.program
-    if any(given) if options.list else not all(given):
-        parser.error("--control and a program are needed, or --list alone")
-    return options
 
 
 def contents() -> str:

@@ -5,9 +5,10 @@ The copy of the package, and lines in included files, stay until the last INI of
 them is uninstalled.
 """
 
+import argparse
 from pathlib import Path
 
-from g12.tools.commands.arguments import GOOD, Parser, one_line
+from g12.tools.commands.arguments import GOOD, Parser
 from g12.tools.install.config.ini_edit import read_config_text
 from g12.tools.install.installation import uninstall
 from g12.tools.progress import print_all
@@ -27,8 +28,6 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("uninstall")
-def main(arguments: list[str]) -> int:
-    options = command_parser().parse_args(arguments)
+def main(options: argparse.Namespace) -> int:
     print_all(uninstall(read_config_text(options.ini), options.dry_run))
     return GOOD

@@ -5,19 +5,16 @@ What is solid is the given stock, or all below Z0. What is moved is LinuxCNC's m
 or with --run in a headless run.
 """
 
-from collections.abc import Sequence
+import argparse
 
 from g12.tools.commands.arguments import (
     FINDING,
     GOOD,
     Parser,
-    checked_ini,
     number_above,
-    one_line,
-    report_line_numbers,
+    program_of,
 )
 from g12.tools.commands.cut import cut_parser, samples_of_run, stock_of
-from g12.tools.machine.filter import opened_program
 from g12.tools.machine.stored_positions import stored_values
 from g12.tools.preview.ended import ended
 from g12.tools.progress import working
@@ -65,11 +62,8 @@ def command_parser() -> Parser:
     return parser
 
 
-@one_line("verify")
-def main(arguments: Sequence[str]) -> int:
-    options = command_parser().parse_args(arguments)
-    ini = checked_ini(options)
-    with opened_program(options.program, ini) as opened:
+def main(options: argparse.Namespace) -> int:
+    with program_of(options) as (opened, ini):
         path = opened.path
         with working(f"interpreting {path.name}"):
             trace = ended(path, traced(path, ini, options.tools, options.var))
@@ -86,7 +80,6 @@ def main(arguments: Sequence[str]) -> int:
             )
         unit = unit_of(trace.modes.gcodes, options.units)
         print(as_json(judgement) if options.json else as_text(judgement, unit, full=options.full))
-    report_line_numbers("verify", opened)
     return exit_code(judgement, options.strict)
 
 

@@ -7,7 +7,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import NamedTuple
 
-from g12.tools.headless.run import run_program
+from g12.tools.headless.machine import run_program
 from g12.tools.install.config.features import ROOT
 
 PROGRAM_FOLDER = ROOT / "tests" / "programs"

@@ -21,10 +21,12 @@ import numpy as np
 
 from g12.machine_ini import face_joints
 from g12.tools.channel import Channel
+from g12.tools.errors import ProgramError
 from g12.tools.headless.errors import SENT, MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
 from g12.tools.path.samples import Samples
+from g12.tools.preview.ended import explained_text
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import (
     Parameters,
@@ -37,6 +39,7 @@ from g12.tools.preview.tracer import (
 PACKAGE = Path(__file__).resolve().parents[3]  # the directory that holds the package g12
 ANSWER_MARGIN = 10.0  # s that an answer may take beyond the requested timeout
 START = 60.0  # s that LinuxCNC may take to start
+MOST_SECONDS = 24 * 3600.0  # of a run
 LOG_LINES = 60
 INI_ERROR = re.compile(r"\.ini:(\d+): error: (.*)")  # of LinuxCNC 2.10
 FAREWELL = "LinuxCNC terminated with an error"  # then come the files with the same text
@@ -245,6 +248,51 @@ class Machine:
         if "error" in answer:
             raise SENT[answer["error"]](answer["text"])
         return answer["result"]
+
+
+# Whole runs, each on a machine of its own.
+
+
+def run_program(
+    program: Path,
+    ini: Path,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    override: float = 100.0,
+) -> Run:
+    """Return the run of a program that runs to its end, or raise ProgramError.
+
+    ``override`` is the feed override in per cent.
+    """
+    result = run_anyhow(program, ini, tools, parameters, override)
+    if result.error:
+        raise ProgramError(f"{program}: {explained_text(result.error.text, ini)}")
+    return result
+
+
+def run_anyhow(
+    program: Path,
+    ini: Path,
+    tools: Tools = None,
+    parameters: Parameters = None,
+    override: float = 100.0,
+    timeout: float = MOST_SECONDS,
+) -> Run:
+    """Return the run of a program that may end with an error; ``timeout`` is in seconds.
+
+    LinuxCNC runs a copy of the program; the program's own name replaces the copy's in its texts.
+    """
+    faster = {"DISPLAY": {"MAX_FEED_OVERRIDE": max(1.0, override / 100.0)}}
+    with Machine(ini, tools=tools, parameters=parameters, overrides=faster) as machine:
+        machine.feed_override(override / 100.0)
+        try:
+            return machine.run(program, timeout)
+        except MachineError as problem:
+            copy = rf"[^\s'\"]*/{re.escape(program.name)}"
+            raise type(problem)(re.sub(copy, str(program), str(problem))) from None
+
+
+# The machine's INI and log.
 
 
 def position_pins(ini: Ini) -> dict[str, str]:

@@ -12,7 +12,6 @@ import fcntl
 import functools
 import json
 import os
-import shlex
 import shutil
 import stat
 import subprocess
@@ -52,11 +51,8 @@ class Isolated:
 
     def install(self, name: str, code: str) -> Path:
         """Install Python code as a program that the process finds by its name."""
-        script = self.folder / "bin" / f"{name}.py"
-        script.write_text(code, encoding="utf-8")
         program = self.folder / "bin" / name
-        command = f"#!/bin/sh\nexec {PYTHON} {shlex.quote(str(script))}\n"
-        program.write_text(command, encoding="utf-8")
+        program.write_text(f"#!{PYTHON}\n{code}", encoding="utf-8")
         program.chmod(0o755)
         return program
 

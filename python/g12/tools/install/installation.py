@@ -17,7 +17,7 @@ from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.features import COPY
 from g12.tools.install.config.findings import WARNING, ConfigFinding, refuse, refuse_problems
-from g12.tools.install.config.ini_edit import BEGIN_MARK, IniLine, IniText, other_inis
+from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText, other_inis
 from g12.tools.install.config.loaded import codes_of, load_config, remaps_in
 from g12.tools.install.config.screen import HERE
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
@@ -30,7 +30,7 @@ from g12.tools.machine.files import (
     equal_backups,
     write,
 )
-from g12.tools.machine.ini import broken_line
+from g12.tools.machine.ini import IniLine, broken_line
 from g12.tools.system import COMMAND
 from g12.tools.translate.blocks.control import Control, read_control
 

@@ -29,7 +29,7 @@ FILES = (  # the code, and the pages that a machinist reads at the machine
     "python/**/*.py",
     "python/g12/tools/regress/README.md",
     "python/g12/tools/translate/README.md",
-    "python/g12/tools/translate/controls/*.toml",
+    "python/**/*.toml",
 )
 EDITED_SUFFIX = ".edited"
 MANIFEST_ENTRY = re.compile(r"([0-9a-f]{64})  (\S.*)", re.MULTILINE)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Self, TypeVar
+from typing import NamedTuple, Self, TypeVar
 
 from g12.errors import Refusal
 from g12.lengths import MM_PER_INCH
@@ -42,7 +42,7 @@ MM_OF_UNIT = {  # with their lengths in mm
     "inch": MM_PER_INCH,
     "imperial": MM_PER_INCH,
 }
-ENCODING = {"encoding": "utf-8", "errors": "surrogateescape"}
+LINE = re.compile(r"[^\n]*\n|[^\n]+")
 
 Value = str | int | float | None | Sequence
 Overrides = Mapping[str, Mapping[str, Value]]
@@ -150,14 +150,77 @@ class Ini:
         return replace(self, lines=(*head, *_entries(key, value), *kept, *tail))
 
 
+class IniLine(NamedTuple):
+    """A line of the expanded INI: ``row`` counts from 0 in ``file``, ``text`` has no line end.
+
+    ``host`` is the index of the INI's own line for it: itself or an #INCLUDE.
+    """
+
+    file: Path
+    row: int
+    text: str
+    host: int
+
+    @property
+    def location(self) -> str:
+        return f"{self.file.name}:{self.row + 1}"
+
+
+class IniFiles:
+    """An INI file with the files that it includes, line by line; those not readable are left out.
+
+    Bytes that are no UTF-8 are surrogates.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path.absolute()
+        self.files: dict[Path, list[str]] = {self.path: _lines_in(self.path)}
+        for line in self._lines_of(self.path):
+            included = included_file(line.text, self.path.parent)
+            if included and included.is_file() and os.access(included, os.R_OK):
+                self.files[included] = _lines_in(included)
+
+    def _lines_of(self, file: Path, host: int | None = None) -> Iterator[IniLine]:
+        for row, text in enumerate(self.files[file]):
+            yield IniLine(file, row, text.rstrip("\r\n"), row if host is None else host)
+
+    def lines(self) -> list[IniLine]:
+        """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes."""
+        lines: list[IniLine] = []
+        for line in self._lines_of(self.path):
+            lines.append(line)
+            included = included_file(line.text, self.path.parent)
+            if included in self.files:
+                lines += self._lines_of(included, line.row)
+        return lines
+
+    def ini(self) -> Ini:
+        """Return the expanded INI.
+
+        The #INCLUDE of an included file is a comment, as it is for 2.9: 2.10 would look for that
+        file beside a copy of the INI.
+        """
+        texts = []
+        for line in self.lines():
+            is_include = INCLUDE.match(line.text)
+            if line.file != self.path:
+                texts.append(f"# {line.text}" if is_include else line.text)
+            elif not is_include:
+                texts.append(line.text)
+        return Ini(self.path, tuple(texts))
+
+
+def _lines_in(path: Path) -> list[str]:
+    content = path.read_bytes()
+    if b"\0" in content:
+        raise IniError(f"{path}: holds NUL bytes: it is no text")
+    return LINE.findall(content.decode("utf-8", "surrogateescape"))
+
+
 def read_ini(path: str | os.PathLike) -> Ini:
     """Return the INI file with its includes expanded."""
-    path = Path(path).absolute()
     try:
-        lines = path.read_text(**ENCODING).splitlines()
-        if any("\0" in line for line in lines):
-            raise IniError(f"{path}: holds NUL bytes: it is no text")
-        return Ini(path, tuple(_expanded(lines, path.parent)))
+        return IniFiles(Path(path)).ini()
     except OSError as error:
         raise IniError(f"{error.filename}: {error.strerror}") from error
 
@@ -168,24 +231,6 @@ def read_machine_ini(path: Path) -> Ini:
     if not MACHINE_SECTION.search(ini.text):
         raise UsageError(f"{path}: is not a machine INI: no section [RS274NGC] or [TRAJ]")
     return ini
-
-
-def _expanded(lines: list[str], directory: Path):
-    """As the script does, a file that cannot be read is left out."""
-    for line in lines:
-        included = included_file(line, directory)
-        if not included:
-            yield line
-        elif os.access(included, os.R_OK):
-            yield from map(as_included, included.read_text(**ENCODING).splitlines())
-
-
-def as_included(line: str) -> str:
-    """Return a line of an included file: its own #INCLUDE is a comment, as it is for 2.9.
-
-    2.10 would look for that file beside a copy of the INI.
-    """
-    return f"# {line}" if INCLUDE.match(line) else line
 
 
 def _without(lines: Sequence[str], key: str) -> Iterator[str]:

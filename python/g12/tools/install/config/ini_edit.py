@@ -10,36 +10,18 @@ import hashlib
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 from g12.errors import LONGEST_BLOCK
-from g12.machine_ini import entries_of, included_file, key_and_value, section_extent
+from g12.machine_ini import entries_of, key_and_value, section_extent
 from g12.tools.errors import UsageError
 from g12.tools.machine.files import existing
-from g12.tools.machine.ini import Ini, IniError, as_included, broken_line
+from g12.tools.machine.ini import IniError, IniFiles, IniLine, broken_line
 
 BEGIN_MARK, END_MARK = MARKS = "# >>> g12 install", "# <<< g12 install"
 WAS = "# was: "  # before the user's line that one of ours replaces
-LINE = re.compile(r"[^\n]*\n|[^\n]+")
 CONTINUED = re.compile(r"\\\r?\n?\Z")
 Point = tuple[Path, int]  # before a line of a file
 DIGITS = 4  # of a digest: a section of ours has 30 lines at most
-
-
-class IniLine(NamedTuple):
-    """A line of the expanded INI: ``row`` counts from 0 in ``file``, ``text`` has no line end.
-
-    ``host`` is the index of the INI's own line for it: itself or an #INCLUDE.
-    """
-
-    file: Path
-    row: int
-    text: str
-    host: int
-
-    @property
-    def location(self) -> str:
-        return f"{self.file.name}:{self.row + 1}"
 
 
 def line_end(lines: Sequence[str]) -> str:
@@ -61,43 +43,8 @@ def between_marks(words: str, lines: Sequence[str]) -> list[str]:
     return [f"{BEGIN_MARK} {words}", *lines, f"{END_MARK} {digests}"]
 
 
-class IniText:
+class IniText(IniFiles):
     """An INI file with the files it includes; edits stay in memory until they are written."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path.absolute()
-        self.files: dict[Path, list[str]] = {self.path: self._read(self.path)}
-        for line in self._lines_of(self.path):
-            included = included_file(line.text, self.path.parent)
-            if included and included.is_file():
-                self.files[included] = self._read(included)
-
-    def _read(self, path: Path) -> list[str]:
-        content = path.read_bytes()
-        if b"\0" in content:
-            raise IniError(f"{path}: holds NUL bytes: it is no text")
-        return LINE.findall(content.decode("utf-8", "surrogateescape"))
-
-    def _lines_of(self, file: Path, host: int | None = None) -> Iterator[IniLine]:
-        for row, text in enumerate(self.files[file]):
-            yield IniLine(file, row, text.rstrip("\r\n"), row if host is None else host)
-
-    def lines(self) -> list[IniLine]:
-        """Return every line as LinuxCNC reads it, an #INCLUDE before the lines that it includes."""
-        lines: list[IniLine] = []
-        for line in self._lines_of(self.path):
-            lines.append(line)
-            included = included_file(line.text, self.path.parent)
-            if included in self.files:
-                lines += self._lines_of(included, line.row)
-        return lines
-
-    def ini(self) -> Ini:
-        """Return the expanded INI, edits included, as `read_ini` returns it."""
-        folder = self.path.parent
-        kept = [line for line in self.lines() if included_file(line.text, folder) not in self.files]
-        texts = (line.text if line.file == self.path else as_included(line.text) for line in kept)
-        return Ini(self.path, tuple(texts))
 
     def changes(self) -> dict[Path, bytes]:
         """Return the changed files with their content, that with the codes last."""

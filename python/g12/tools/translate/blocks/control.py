@@ -21,6 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from g12.tools.errors import UsageError
 from g12.tools.translate.blocks.expressions import OWN
 
 CONTROL_FOLDER = Path(__file__).parents[1] / "controls"
@@ -134,7 +135,7 @@ OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that n
 COMMENT = re.compile(r"comment( [A-Z])*")
 
 
-class ControlError(ValueError):
+class ControlError(UsageError):
     """A control file that cannot be used; the message names the file, the line and the rule."""
 
 

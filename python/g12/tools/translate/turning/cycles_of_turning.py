@@ -167,7 +167,7 @@ def roughing(draft: Draft, meaning: str) -> None:
             f"{code} needs a depth of cut above 0: {depth_word} in its first block, or D"
         )
     segments, _ = read_contour(draft, indices, start)
-    given = RoughCuts(depth, retract, allowance, along_x, segments[0].block.motion)
+    given = RoughCuts(depth, retract, allowance, along_x, segments[0].code)
     _write_uncompensated(draft, rough(start, segments, given), start)
     draft.follows = follows
 

@@ -8,9 +8,8 @@ from g12.tools.translate.blocks.modal import MOVES, ModalState
 from g12.tools.translate.blocks.positions import known_position
 from g12.tools.translate.rules import codes, decimals
 from g12.tools.translate.rules.tools import COMPENSATION_ON, offsets_radius
-from g12.tools.translate.turning.moves import ContourBlock, ContourMove, contour_of
+from g12.tools.translate.turning.moves import ARC_CODES, CycleMove, centre_of
 
-SHAPING = frozenset("XZUWIKR")
 BESIDE_CYCLE = frozenset("FSM")  # what a finishing cut does with its moves
 KEPT_MODES = frozenset(("G40", "G41", "G42", "G94", "G95", "G96", "G97"))  # by a finishing cut
 IN_CONTOURS = MOVES | {"G90", "G91"}
@@ -111,67 +110,64 @@ def named_blocks(draft: Draft, first: int, last: int) -> tuple[range, int]:
 
 def read_contour(
     draft: Draft, indices: range, start: complex
-) -> tuple[list[ContourMove], ModalState]:
-    found, state = _contour_blocks(draft, indices)
+) -> tuple[list[CycleMove], ModalState]:
+    """Return the moves of some blocks as those of a contour, and the modes after them."""
+    blocks = dict(draft.program)
+    motion, state, at, moves = draft.state.motion, draft.state, start, []
+    for index in indices:
+        block = blocks[index]
+        try:
+            reader = _reader_of(draft, block, state)
+            move = _contour_move(reader, motion, at)
+        except NotTranslated as refusal:
+            raise NotTranslated(f"line {block.line} in the contour: {refusal}") from None
+        if move.end != at or move.centre is not None or move.others:
+            moves.append(move)
+        state, motion, at = reader.state, move.code, move.end
     if state.distance != draft.state.distance:
         raise NotTranslated(
             f"the contour ends in {state.distance}: end it in {draft.state.distance}, in which it "
             "begins"
         )
-    segments = contour_of(found, start)
-    if not segments:
+    if not moves:
         raise NotTranslated("the contour of the cycle has no moves")
-    return segments, state
+    return moves, state
 
 
-def _contour_blocks(draft: Draft, indices: range) -> tuple[list[ContourBlock], ModalState]:
-    """Return some blocks as those of a contour, and the modes after them."""
-    blocks = dict(draft.program)
-    motion, state, found = draft.state.motion, draft.state, []
-    for index in indices:
-        block = blocks[index]
-        if block.problem or block.kind != "words":
-            why = block.problem or "a contour has moves only, as numbers"
-            raise NotTranslated(f"line {block.line}: {why}")
-        if block.skipped:
-            raise NotTranslated(f"line {block.line}: / in a contour: its cuts depend on the switch")
-        own, state, motion = _contour_block(draft, block, state, motion)
-        found.append(own)
-    return found, state
-
-
-def _contour_block(
-    draft: Draft, block: ForeignBlock, state: ModalState, motion: str
-) -> tuple[ContourBlock, ModalState, str]:
+def _reader_of(draft: Draft, block: ForeignBlock, state: ModalState) -> Draft:
+    if block.problem or block.kind != "words":
+        raise NotTranslated(block.problem or "a contour has moves only, as numbers")
+    if block.skipped:
+        raise NotTranslated("/ in a contour: its cuts depend on the switch")
     reader = Draft(block, state, draft.control)
-    try:
-        for rule in WORD_RULES_OF_CYCLES:
-            rule(reader)
-        reader.meanings.pop("exact stop", None)
-        own = _block_of_words(reader, motion)
-        return own, reader.state, own.motion
-    except NotTranslated as refusal:
-        raise NotTranslated(f"line {block.line} in the contour: {refusal}") from None
+    for rule in WORD_RULES_OF_CYCLES:
+        rule(reader)
+    reader.meanings.pop("exact stop", None)
+    return reader
 
 
-def _block_of_words(reader: Draft, motion: str) -> ContourBlock:
+def _contour_move(reader: Draft, motion: str, start: complex) -> CycleMove:
     if reader.meanings:
         code = next(iter(reader.meanings.values())).code
         raise NotTranslated(f"{code} cannot be in a contour")
-    values, others = {}, []
+    code = next((code for code in reader.codes() if code in MOVES), motion)
+    if code not in MOVES:
+        raise NotTranslated("G0 or G1 is missing")
+    own = take_end(reader, start)
+    end = complex(own.get("Z", start.real), own.get("X", start.imag))
+    numbers = {letter: take_number(reader, letter) for letter in "RIK"}
+    shape = {letter: number for letter, number in numbers.items() if number is not None}
+    moves = end != start or (code in ARC_CODES and shape.keys() & {"I", "K"})
+    if moves and shape and code not in ARC_CODES:
+        corner = next(iter(shape))
+        raise NotTranslated(f"{corner} beside {code}: write the corner's line or arc as a block")
+    centre = centre_of(code, shape, start, end) if moves and code in ARC_CODES else None
+    others: list[str] = []
     for word in reader.words:
-        if word.letter in SHAPING:
-            if word.kind != "number" or word.letter in values:
-                raise NotTranslated(f"{word.text}: a contour is translated from numbers, each once")
-            values[word.letter] = word.number
-        elif word.letter in BESIDE_CYCLE or word.code in KEPT_MODES:
+        if word.letter in BESIDE_CYCLE or word.code in KEPT_MODES:
             others.append(word.text)
             if word.code in COMPENSATION_ON:
                 others += [radius.text for radius in offsets_radius(reader)]
         elif word.letter != "N" and word.code not in IN_CONTOURS:
             raise NotTranslated(f"{word.text} cannot be in a contour")
-    own = next((code for code in reader.codes() if code in MOVES), motion)
-    if own not in MOVES:
-        raise NotTranslated("G0 or G1 is missing")
-    relative = reader.sure("distance", "X and Z are positions or increments") == "G91"
-    return ContourBlock(own, values, reader.block.line, relative, tuple(others))
+    return CycleMove(code, end, centre, 0.0, tuple(others), start, reader.block.line)

@@ -34,96 +34,11 @@ def limited(count: float, cuts: str) -> int:
     return int(count)
 
 
-class ContourBlock(NamedTuple):
-    """A block of a contour: its motion code, the numbers of its words, what is beside them.
-
-    ``relative`` says that X and Z are increments; ``others`` are codes and words that are written
-    with its move, ``line`` is that of the file.
-    """
-
-    motion: str
-    values: Mapping[str, float]
-    line: int
-    relative: bool = False
-    others: tuple[str, ...] = ()
-
-
-class ContourMove(NamedTuple):
-    """A line, or an arc about ``centre``, counter-clockwise if ``sense`` is 1, else -1."""
-
-    start: complex
-    end: complex
-    block: ContourBlock
-    centre: complex | None = None
-    sense: int = 0
-
-
-def contour_of(blocks: Sequence[ContourBlock], start: complex) -> list[ContourMove]:
-    at, moves = start, []
-    for block in blocks:
-        z = _coordinate(block, at.real, "Z", "W", 1.0)
-        end = complex(z, _coordinate(block, at.imag, "X", "U", 0.5))
-        if end != at or (block.motion in ARC_CODES and block.values.keys() & {"I", "K"}):
-            moves.append(_move(block, at, end))
-        at = end
-    return moves
-
-
-def _coordinate(
-    block: ContourBlock, at: float, absolute: str, increment: str, scale: float
-) -> float:
-    if increment in block.values:
-        return at + block.values[increment] * scale
-    if absolute not in block.values:
-        return at
-    return block.values[absolute] * scale + (at if block.relative else 0.0)
-
-
-def _move(block: ContourBlock, start: complex, end: complex) -> ContourMove:
-    values = block.values
-    if block.motion not in ARC_CODES:
-        if corner := next((letter for letter in "RIK" if letter in values), ""):
-            raise NotTranslated(
-                f"line {block.line}: {corner} beside {block.motion}: write the corner's line or "
-                "arc as a block"
-            )
-        return ContourMove(start, end, block)
-    sense = 1 if block.motion == "G3" else -1
-    if "R" in values:
-        centre = _centre_by_radius(start, end, values["R"] * sense, block.line)
-    elif not {"I", "K"} & values.keys():
-        raise NotTranslated(f"line {block.line}: {block.motion} needs R, or I and K; a line is G1")
-    else:
-        centre = start + complex(values.get("K", 0.0), values.get("I", 0.0))
-        if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:
-            raise NotTranslated(f"line {block.line}: I and K are no centre of the arc to its end")
-    return ContourMove(start, end, block, centre, sense)
-
-
-def _centre_by_radius(start: complex, end: complex, radius: float, line: int) -> complex:
-    """Return the centre of an arc; ``radius`` is below 0 for G2, or for more than half a turn."""
-    chord = end - start
-    if abs(chord) < SAME or abs(chord) / 2 > abs(radius) + ROUNDED:
-        raise NotTranslated(f"line {line}: R{abs(radius):g} is too small for the arc to its end")
-    height = sqrt(max(0.0, radius**2 - abs(chord) ** 2 / 4))
-    return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
-
-
-def offset_by(moves: Sequence[ContourMove], by: complex) -> list[ContourMove]:
-    return [
-        move._replace(
-            start=move.start + by,
-            end=move.end + by,
-            centre=None if move.centre is None else move.centre + by,
-        )
-        for move in moves
-    ]
-
-
 class CycleMove(NamedTuple):
     """A move to a point: ``code`` G0 to G3 or G33, ``others`` words written with it.
 
-    ``pitch`` is what G33 goes for each revolution, along its path.
+    ``pitch`` is what G33 goes for each revolution, along its path. A move of a contour knows where
+    it starts, and the line of its block.
     """
 
     code: str
@@ -131,6 +46,42 @@ class CycleMove(NamedTuple):
     centre: complex | None = None
     pitch: float = 0.0
     others: tuple[str, ...] = ()
+    start: complex = 0.0
+    line: int = 0
+
+
+def centre_of(code: str, shape: Mapping[str, float], start: complex, end: complex) -> complex:
+    """Return the centre of an arc from its I, K and R."""
+    if "R" in shape:
+        return _centre_by_radius(start, end, shape["R"] * (1 if code == "G3" else -1))
+    if not shape:
+        raise NotTranslated(f"{code} needs R, or I and K; a line is G1")
+    centre = start + complex(shape.get("K", 0.0), shape.get("I", 0.0))
+    if abs(abs(start - centre) - abs(end - centre)) > ROUNDED or centre == start:
+        raise NotTranslated("I and K are no centre of the arc to its end")
+    return centre
+
+
+def _centre_by_radius(start: complex, end: complex, radius: float) -> complex:
+    """Return the centre of an arc; ``radius`` is below 0 for G2, or for more than half a turn."""
+    chord = end - start
+    if abs(chord) < SAME or abs(chord) / 2 > abs(radius) + ROUNDED:
+        raise NotTranslated(f"R{abs(radius):g} is too small for the arc to its end")
+    height = sqrt(max(0.0, radius**2 - abs(chord) ** 2 / 4))
+    return (start + end) / 2 + 1j * chord / abs(chord) * (height if radius > 0 else -height)
+
+
+def offset_by(moves: Sequence[CycleMove], by: complex) -> list[CycleMove]:
+    """Return a contour beside another one, without the words of its blocks."""
+    return [
+        move._replace(
+            start=move.start + by,
+            end=move.end + by,
+            centre=None if move.centre is None else move.centre + by,
+            others=(),
+        )
+        for move in moves
+    ]
 
 
 def rapid_to(point: complex) -> CycleMove:
@@ -139,14 +90,6 @@ def rapid_to(point: complex) -> CycleMove:
 
 def feed_to(point: complex) -> CycleMove:
     return CycleMove("G1", point)
-
-
-def moves_along(contour: Sequence[ContourMove], own_words: bool = False) -> list[CycleMove]:
-    """Return the moves along a contour, with the words beside them for a finishing cut."""
-    return [
-        CycleMove(m.block.motion, m.end, m.centre, 0.0, m.block.others if own_words else ())
-        for m in contour
-    ]
 
 
 def lines_of_moves(moves: Sequence[CycleMove], start: complex) -> Iterator[str]:
@@ -179,12 +122,12 @@ def return_by(start: complex, ends: Sequence[complex], side: int) -> list[CycleM
     return [rapid_to(point) for point in ways if abs(point - end) > SAME]
 
 
-def finishing_cut(start: complex, contour: Sequence[ContourMove]) -> list[CycleMove]:
+def finishing_cut(start: complex, contour: Sequence[CycleMove]) -> list[CycleMove]:
     ends = [move.end for move in contour]
-    return [*moves_along(contour, True), *return_by(start, ends, _tool_side(contour))]
+    return [*contour, *return_by(start, ends, _tool_side(contour))]
 
 
-def _tool_side(contour: Sequence[ContourMove]) -> int:
+def _tool_side(contour: Sequence[CycleMove]) -> int:
     """Return on which side of the part the tool is: 1 outside, -1 in a bore."""
     start, ends = contour[0].start.imag, [segment.end.imag for segment in contour]
     return 1 if start - min(ends) >= max(ends) - start else -1

@@ -18,11 +18,9 @@ from typing import NamedTuple
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.turning.moves import (
     SAME,
-    ContourMove,
     CycleMove,
     feed_to,
     limited,
-    moves_along,
     offset_by,
     rapid_to,
 )
@@ -53,30 +51,18 @@ class CutView(NamedTuple):
         turned = complex(point.imag, point.real) if self.along_x else point
         return complex(self.along * turned.real, self.depth * turned.imag)
 
-    def segment(self, segment: ContourMove) -> ContourMove:
-        start, end = self.local(segment.start), self.local(segment.end)
-        if segment.centre is None:
-            return segment._replace(start=start, end=end)
-        mirrored = self.along * self.depth * (-1 if self.along_x else 1)
-        return segment._replace(
-            start=start,
-            end=end,
-            centre=self.local(segment.centre),
-            sense=segment.sense * mirrored,
-        )
-
     def real(self, move: CycleMove) -> CycleMove:
         point = complex(self.along * move.end.real, self.depth * move.end.imag)
         return move._replace(end=complex(point.imag, point.real) if self.along_x else point)
 
 
-def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> list[CycleMove]:
+def rough(start: complex, contour: Sequence[CycleMove], given: RoughCuts) -> list[CycleMove]:
     """Return the moves of a roughing cycle; the first segment leads from the start to the part."""
     contour = _without_retreat(contour)
     view = _view_of(start, contour, given)
     allowed = offset_by(contour, given.allowance)
     allowed[0] = allowed[0]._replace(start=start)
-    portions = [portion for s in allowed[1:] for portion in _portions(view.segment(s))]
+    portions = [portion for move in allowed[1:] for portion in _portions(move, view)]
     for portion in portions:
         if portion.ends[1].real > portion.ends[0].real + SAME:
             axis = "X" if view.along_x else "Z"
@@ -92,15 +78,17 @@ def rough(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> l
     end = view.local(allowed[-1].end)
     back = [rapid_to(complex(along, top)) for along in (end.real, at.real)]
     moves = [view.real(move) for move in cuts], [view.real(move) for move in back]
-    return [*moves[0], rapid_to(start), *moves_along(allowed), *moves[1], rapid_to(start)]
+    return [*moves[0], rapid_to(start), *allowed, *moves[1], rapid_to(start)]
 
 
-def _without_retreat(contour: Sequence[ContourMove]) -> Sequence[ContourMove]:
-    cuts = [number for number, segment in enumerate(contour) if segment.block.motion != "G0"]
-    return contour[: cuts[-1] + 1] if cuts else contour
+def _without_retreat(contour: Sequence[CycleMove]) -> Sequence[CycleMove]:
+    """Return the moves of a contour up to its last cut; blocks of other words alone are none."""
+    moves = [move for move in contour if move.end != move.start or move.centre is not None]
+    cuts = [number for number, move in enumerate(moves) if move.code != "G0"]
+    return moves[: cuts[-1] + 1] if cuts else moves
 
 
-def _view_of(start: complex, contour: Sequence[ContourMove], given: RoughCuts) -> CutView:
+def _view_of(start: complex, contour: Sequence[CycleMove], given: RoughCuts) -> CutView:
     plain = CutView(1, 1, given.along_x)
     first, last = (plain.local(contour[n].end - start) for n in (0, -1))
     axes = "XZ" if given.along_x else "ZX"
@@ -124,36 +112,35 @@ class Monotone(NamedTuple):
     line: int
 
 
-def _portions(segment: ContourMove) -> list[Monotone]:
-    points = _turning_points(segment)
+def _portions(move: CycleMove, view: CutView) -> list[Monotone]:
+    points = [view.local(point) for point in _turning_points(move)]
+    centre = None if move.centre is None else view.local(move.centre)
     return [
-        Monotone((a, b), _along_at(a, b, segment), segment.block.line)
-        for a, b in zip(points, points[1:])
+        Monotone((a, b), _along_at(a, b, centre), move.line) for a, b in zip(points, points[1:])
     ]
 
 
-def _turning_points(segment: ContourMove) -> list[complex]:
-    """Return a segment's ends, and where an arc reverses in a coordinate."""
-    if segment.centre is None:
-        return [segment.start, segment.end]
-    centre, sense = segment.centre, segment.sense
-    begin = phase(segment.start - centre)
-    sweep = (phase(segment.end - centre) - begin) * sense % (2 * pi)
+def _turning_points(move: CycleMove) -> list[complex]:
+    """Return a move's ends, and where an arc reverses in a coordinate."""
+    if move.centre is None:
+        return [move.start, move.end]
+    centre, sense = move.centre, 1 if move.code == "G3" else -1
+    begin = phase(move.start - centre)
+    sweep = (phase(move.end - centre) - begin) * sense % (2 * pi)
     sweep = sweep if sweep > SAME else 2 * pi
     quarters = [(quarter * pi / 2 - begin) * sense % (2 * pi) for quarter in range(4)]
-    radius = abs(segment.start - centre)
+    radius = abs(move.start - centre)
     between = sorted(angle for angle in quarters if SAME < angle < sweep - SAME)
     points = (centre + rect(radius, begin + sense * angle) for angle in between)
-    return [segment.start, *points, segment.end]
+    return [move.start, *points, move.end]
 
 
-def _along_at(a: complex, b: complex, segment: ContourMove) -> Callable[[float], float]:
-    """Return along as a function of depth between two points of a segment."""
-    if segment.centre is None:
+def _along_at(a: complex, b: complex, centre: complex | None) -> Callable[[float], float]:
+    """Return along as a function of depth between two points of a line or an arc."""
+    if centre is None:
         return lambda depth: a.real + (b.real - a.real) * (depth - a.imag) / (b.imag - a.imag)
-    middle, square = segment.centre, abs(segment.start - segment.centre) ** 2
-    side = 1 if (a + b).real / 2 > middle.real else -1
-    return lambda depth: middle.real + side * sqrt(max(0.0, square - (depth - middle.imag) ** 2))
+    square, side = abs(a - centre) ** 2, 1 if (a + b).real / 2 > centre.real else -1
+    return lambda depth: centre.real + side * sqrt(max(0.0, square - (depth - centre.imag) ** 2))
 
 
 def _gaps_at(portions: Sequence[Monotone], level: float, start: float) -> list[tuple[float, float]]:
