@@ -179,9 +179,13 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
          "C0, the cylinder's radius, must be above 0 and at most 1000000"),
         ("A", {"words": {"A": -2.0}},
          "A-2, the cylinder's radius, must be above 0 and at most 1000000"),
+        ("A", {"words": {}}, "needs A, the cylinder's radius; A0 ends a section"),
         ("B", {"x": -0.01},
          "needs X0: the tool must stand on the axis of rotation, not at X-0.01"),
         ("B", {"letters": "XYZ"}, "needs a machine with an Y, B and a Z axis"),
+        ("A", {"shifts": {"X": 9.0, "Y": 0.0, "Z": -3.0}},
+         "Z0 must be the axis of rotation: G52 or G92 shifts Z by -3; cancel it with G92.1"
+         " (a Z offset of G54 may stay)"),
         ("B", {"shifts": {"X": 2.0, "Y": 9.0, "Z": 0.0}},
          "X0 must be the axis of rotation: G52 or G92 shifts X by 2; cancel it with G92.1"
          " (an X offset of G54 may stay)"),

@@ -180,6 +180,13 @@ def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found)
 @pytest.mark.parametrize(
     ("found", "rule"),
     [
+        ({"alone": False}, "must be alone in its block"),
+        ({"compensated": True}, "needs G40: compensation is switched on inside"),
+        ({"inverse_time": True}, "needs G94 or G95, not G93"),
+        (
+            {"offset_pending": True},
+            "needs a move after G40: the tool is still beside the programmed point",
+        ),
         ({"plane": "G19"}, "needs G18 or G17, not G19"),
         ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
         ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
