@@ -11,6 +11,7 @@ from g12.section.block_rules import (
     check_block,
     check_codes,
     check_letters,
+    m_code_alone,
 )
 from g12.section.effects import (
     SectionModes,
@@ -107,6 +108,12 @@ def test_the_spindle_word_goes_along_with_a_code():
     assert action_text(block(g={1: 10}, X=1.0), split_line("G1 X1 $0", POLAR_WORDS)) == ""
     for code in (70, 71, 72, 73):  # saved modes are the section's own
         assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"
+
+
+def test_a_remapped_m_code_has_its_own_words_beside_it_and_nothing_else():
+    assert m_code_alone(block(m={10: 410}, P=3.0), 410)
+    assert not m_code_alone(block(m={10: 410}, X=3.0), 410)
+    assert not m_code_alone(block(m={10: 410, 8: 8}), 410)
 
 
 # Every G code of LinuxCNC by its modal group: which have a place in a section, and why not.
