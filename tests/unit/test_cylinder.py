@@ -163,6 +163,17 @@ def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B00
     return CYLINDERS[letter](start, SectionMachine(letters, settings, ON_MILL))
 
 
+@pytest.mark.parametrize(
+    ("letter", "sense", "per_radian"),
+    [("A", "standard", -20), ("A", "reversed", 20), ("B", "standard", 20), ("B", "reversed", -20)],
+)
+def test_to_the_right_and_upwards_as_the_tool_sees_the_part(letter, sense, per_radian):
+    """Positive A leads to Y-, positive B to X+: LinuxCNC turns by the right-hand rule."""
+    made = on_mill(letter, Settings(rotary_sense=sense))
+    assert made.per_radian == per_radian
+    assert made.rules.turn_scale == pytest.approx(math.radians(per_radian))
+
+
 @pytest.mark.parametrize(("letter", "slide", "along"), [("A", 900.0, 1.0), ("B", 1000.0, 1j)])
 def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, slide, along):
     steps = CylinderSteps(empty(), on_mill(letter))

@@ -155,6 +155,34 @@ def test_a_bad_call_is_refused_by_name(name, wrong, rule):
 # ---------------------------------------------------------------- slots and pockets
 
 
+def half_turns_of(numbers):
+    """Count the half turns as the sub makes them: down, flat, rings, back, the finish."""
+    turns = numbers["first_turns"] + (numbers["levels"] - 1) * numbers["next_turns"]
+    further = numbers["further"]
+    turns += numbers["levels"] * (2 + 3 * further + (further > 0))
+    return turns + numbers["finish"] * (3 if further else 4)
+
+
+@pytest.mark.parametrize(
+    ("shape", "entries", "x", "back", "on"),
+    [
+        ("polar_slot", dict(angle=30, depth_per_pass=2), (2.7, 12.5 + 7), 0, None),
+        ("polar_slot", dict(angle=0, width=6, length=30), (0, 12), 180, None),  # to and fro
+        ("polar_slot", dict(angle=0, width=20, length=21), (0.5, 7.5), 0, None),
+        ("polar_pocket", dict(x=10, c=0), (5, 15), 90, 90),  # C swings
+        ("polar_pocket", dict(x=0, c=20), (15, 25), 90, 90),
+        ("polar_pocket", dict(x=5, c=0), (0, 10), 180, None),  # round the centre
+    ],
+)
+def test_how_far_the_axes_go(shape, entries, x, back, on):
+    """From where a shape begins C goes back and on; with each half turn on by half a turn."""
+    made = planned(shape, **entries)
+    turned = 180 * (half_turns_of(made.locals) + 1)
+    assert (made.extent.x, made.extent.z) == (pytest.approx(x), (-4.0, 5.0))
+    start = made.locals["start_angle"]
+    assert made.extent.c == pytest.approx((start - back, start + (turned if on is None else on)))
+
+
 def rough_radii(numbers):
     first, step = numbers["first_ring"], numbers["ring_step"]
     return [first + index * step for index in range(numbers["further"] + 1)]
