@@ -223,6 +223,13 @@ def test_lengths_are_in_program_units(machine_mm, inch, tolerance):
     assert made.in_program(LIMITS["X"]) == pytest.approx(1000.0 * machine_unit)
 
 
+def test_what_settings_make_of_words():
+    settings = Settings(polar_z="allow", polar_g0="feed", polar_g0_feed=500.0)
+    rules = section(settings, machine_mm=INCH).rules
+    assert (rules.height_with_others, rules.rapid_feed) == (True, pytest.approx(12700.0))
+    assert (section().rules.height_with_others, section().rules.rapid_feed) == (False, None)
+
+
 def test_kinematics_are_refused_on_a_machine_without_them():
     with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
         section(Settings(polar_kinematics=True))
