@@ -4,7 +4,6 @@
 import os
 import shutil
 import subprocess
-import tempfile
 import time
 from pathlib import Path
 
@@ -17,7 +16,6 @@ from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package
 from support.small_configs import content_of
 
-NOBODY = 65534
 PATIENCE = 15.0  # s that a container gives LinuxCNC to end by itself, and again after SIGTERM
 
 
@@ -184,25 +182,3 @@ def test_a_machine_that_cannot_be_switched_on_says_why():
         Machine(
             SIM / "mill_mm.ini", overrides={"HAL": {"HALCMD": "unlinkp iocontrol.0.emc-enable-in"}}
         )
-
-
-# Other people.
-
-
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become someone else")
-def test_an_ordinary_user_can_run_it_from_anywhere():
-    if subprocess.run(["unshare", "--user", "true"], user=NOBODY, capture_output=True).returncode:
-        pytest.skip("no ordinary user may make namespaces here (in a chroot nobody can)")
-    folder = Path(tempfile.mkdtemp(prefix="g12-elsewhere-"))
-    try:
-        copy_of_the_package(folder)
-        folder.chmod(0o755)
-        (folder / "program.ngc").write_text("G21 T1 M6\nG1 X2 F3000\n(MSG, there)\nM2\n")
-        command = [PYTHON, "python/g12", "run", "program.ngc", "--ini", "configs/sim/mill_mm.ini"]
-        options = {"cwd": folder, "user": NOBODY, "capture_output": True, "text": True}
-        done = subprocess.run(command, **options)
-        assert done.returncode == 0, done.stderr
-        assert "message: there" in done.stdout
-        assert "X2 " in done.stdout
-    finally:
-        shutil.rmtree(folder)

@@ -225,14 +225,10 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
 ]  # fmt: skip
 
 
-def test_a_lathe_with_all_of_it_is_in_order(lathe):
-    assert found_of(lathe) == []
-
-
 @pytest.mark.parametrize(("good", "bad", "kind", "says"), MISTAKES)
 def test_a_mistake_on_a_lathe(lathe, good, bad, kind, says):
     text = lathe.read_text()
-    assert good in text
+    assert good in text and found_of(lathe) == []
     lathe.write_text(text.replace(good, bad, 1))
     findings = [finding for finding in found_of(lathe) if finding.kind == kind]
     assert any(says in finding.text + finding.cure for finding in findings)

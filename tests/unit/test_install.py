@@ -18,7 +18,7 @@ from g12.tools.commands.main import main
 from g12.tools.install import package_copy
 from g12.tools.install.config.ini_edit import BEGIN_MARK, END_MARK, IniText
 from g12.tools.machine import files
-from g12.tools.machine.ini import IniError, read_ini
+from g12.tools.machine.ini import IniError
 from support.small_configs import (
     MILL,
     content_of,
@@ -119,13 +119,20 @@ def test_a_second_feature_joins_the_first_and_again_is_nothing_new(tmp_path):
     assert put_in(ini, "mitsubishi") == []
 
 
+KEYS = ("A", "B", "DEBUG")
 VALUES = st.sampled_from(["", " ", "a", "a:b", "a = b", "\xe9", "\udce9", "x \\\n y", "[y]"])
 LINES = st.one_of(
     st.sampled_from(["", " ", "\t", "# note", "; note", "#REMAP = G12", "#INCLUDE more.inc"]),
-    st.builds("{} = {}".format, st.sampled_from(["A", "  B", "DEBUG"]), VALUES),
+    st.builds("{}{} = {}".format, st.sampled_from(["", "  "]), st.sampled_from(KEYS), VALUES),
     st.builds("SUBROUTINE_PATH = {}".format, st.sampled_from(["a", "a:b", "../x:~/y ", "a:\\\nb"])),
     st.sampled_from(["[RS274NGC]", "[PYTHON]", "[TRAJ]", " [EMC]", "[RS274NGC] ", "TOPLEVEL = x"]),
 )
+
+
+def values_of(ini):
+    """Return the user's own values, by section and key."""
+    found, sections = IniText(ini).ini(), ("EMC", "PYTHON", "RS274NGC", "TRAJ")
+    return {(section, key): found.all(section, key) for section in sections for key in KEYS}
 
 
 @given(
@@ -144,8 +151,14 @@ def test_whatever_the_ini_uninstall_is_the_reverse_of_install(
     text = end.join([*first, "[RS274NGC]", *last]) + (end if ended else "")
     ini = write_config(folder, text, more_inc=more.encode("utf-8", "surrogateescape").decode(
         "utf-8", "replace"))  # fmt: skip
+    before = values_of(ini)
     with restored(ini):
-        put_in(ini, "haas")
+        try:
+            put_in(ini, "haas")
+        except IniError:
+            assert text.count("#INCLUDE") > 1
+            return
+        assert values_of(ini) == before
         if "\r\n" in text and "\n" not in text.replace("\r\n", ""):
             assert b"\n" not in ini.read_bytes().replace(b"\r\n", b"")
         assert ini.read_bytes().endswith(b"\n") == text.endswith("\n")
@@ -171,20 +184,20 @@ def test_markers_that_are_not_both_there_are_refused(tmp_path, ini, capsys, mark
 # Included files, and several machines in a folder.
 
 
-def test_lines_go_into_the_include_if_its_section_ends_there(tmp_path):
-    base = (
-        "[EMC]\n#INCLUDE deeper.inc\nVERSION = 1.1\n[RS274NGC]\nPARAMETER_FILE = mill.var\n[TRAJ]\n"
-    )
-    ini = write_config(tmp_path, "#INCLUDE base.inc\nCOORDINATES = X Y Z\n", base_inc=base)
-    before = ini.read_bytes()
-    with restored(ini):
+def test_a_file_that_is_included_twice_is_never_changed_and_taken_out_once(tmp_path):
+    include = "#INCLUDE rs.inc\n"
+    text, own = with_lines(MILL, "RS274NGC", include), f"{PATH}a\n"
+    ini = write_config(tmp_path, with_lines(text, "EMC", include), rs_inc=own)
+    before = content_of(tmp_path)
+    with pytest.raises(IniError, match=r"rs\.inc: would have to change, and is included twice: "):
         put_in(ini, "haas")
-        assert ini.read_bytes() == before
-        found = IniText(ini).ini()
-        assert found.lines == read_ini(ini).lines
-        assert found.get("PYTHON", "TOPLEVEL") == "g12/python/toplevel.py"
-        assert found.get("TRAJ", "COORDINATES") == "X Y Z"
-        assert found.get("EMC", "VERSION") == "1.1"
+    assert content_of(tmp_path) == before
+    ini.write_text(text)
+    put_in(ini, "haas")
+    assert "# was: " in (tmp_path / "rs.inc").read_text()
+    ini.write_text(with_lines(ini.read_text(), "EMC", include))  # by the user, since then
+    take_out(ini)
+    assert {**before, "mill.ini.before-g12": text.encode()} == content_of(tmp_path)
 
 
 def test_machines_share_the_copy_and_an_included_path_until_the_last_goes(tmp_path):
