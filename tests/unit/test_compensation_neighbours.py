@@ -85,7 +85,7 @@ def pocket(shapes, radius=6.0):
 
 def way_back(part):
     """Return lines that are cut the other way round, from the same side."""
-    shapes = [shape.reversed() for shape in reversed(part.shapes)]
+    shapes = [shape.portion(1.0, 0.0) for shape in reversed(part.shapes)]
     return part._replace(shapes=shapes, body=shapes, side=LEFT + RIGHT - part.side)
 
 

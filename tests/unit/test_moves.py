@@ -88,7 +88,9 @@ def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, sto
     on = level.start
     beyond = line(on.real, on.imag, 2 * on.real - 30, 2 * on.imag, 2.0, 2.0)
     assert (
-        stops([*(move.reversed() for move in up[::-1]), beyond], rounding * steep, 1000.0, C)[1]
+        stops(
+            [*(move.portion(1.0, 0.0) for move in up[::-1]), beyond], rounding * steep, 1000.0, C
+        )[1]
         is stop
     )
 
