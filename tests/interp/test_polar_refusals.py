@@ -202,5 +202,5 @@ def test_the_line_after_an_abort_ends_no_request_in_a_preview(monkeypatch):
     monkeypatch.setattr(kinematics_switch.hal, "set_p", lambda *pin: written.append(pin))
     monkeypatch.setattr(kinematics_switch.hal, "get_value", lambda pin: 0)
     for task, pins in ((0, []), (1, [(kinematics_switch.END_PIN, "1")])):
-        kinematics_switch.end_request(SimpleNamespace(task=task))
+        kinematics_switch.leave(SimpleNamespace(task=task))
         assert written == pins
