@@ -19,7 +19,7 @@ lathe = kept_tracer("lathe_mm")
 # ---------------------------------------------------------------- codes and words inside
 
 
-INSIDE = [  # unit/test_section_block_rules.py has every code
+INSIDE = [  # unit/test_section.py has every code
     (
         "G0 X12",
         "G0 is refused: a rapid leaves the contour. Is the section's end missing above? "
