@@ -14,6 +14,7 @@ from g12.geometry.curve import (
     Arc,
     BoxTree,
     Line,
+    angle_of,
     apart,
     common_points,
     crossings,
@@ -95,6 +96,10 @@ def test_the_sweep_between_two_points_of_an_arc(arc, share):
     swept = sweep_between(arc.start, arc.point(share), arc.centre, turn)
     assert swept == near(share * arc.sweep)
     assert sweep_between(arc.start, arc.start, arc.centre, turn) == turn * 2 * math.pi
+
+
+def test_a_vector_that_underflows_has_an_angle():
+    assert angle_of(complex(2.0, 5e-324)) == 0.0
 
 
 # ---------------------------------------------------------------- where two curves meet
