@@ -19,7 +19,7 @@ lathe = kept_tracer("lathe_mm")
 # ---------------------------------------------------------------- codes and words inside
 
 
-INSIDE = [  # unit/test_section_block_rules.py has every code
+INSIDE = [  # unit/test_section.py has every code
     (
         "G0 X12",
         "G0 is refused: a rapid leaves the contour. Is the section's end missing above? "
@@ -202,5 +202,5 @@ def test_the_line_after_an_abort_ends_no_request_in_a_preview(monkeypatch):
     monkeypatch.setattr(kinematics_switch.hal, "set_p", lambda *pin: written.append(pin))
     monkeypatch.setattr(kinematics_switch.hal, "get_value", lambda pin: 0)
     for task, pins in ((0, []), (1, [(kinematics_switch.END_PIN, "1")])):
-        kinematics_switch.end_request(SimpleNamespace(task=task))
+        kinematics_switch.leave(SimpleNamespace(task=task))
         assert written == pins
