@@ -90,6 +90,7 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103\nG69",
      ["(G187 P1 E.01)", "(G103 P1)", "(G103)", "(G69)"]),
+    (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "G154 P2 G0 X1.\nG112\nG10 L20 P3 X1.\nG10 L2 P0 X1. G90", [
         "G59.2 G0 X1. (G154 P2)", "G59.3 (G112)", "G10 L2 P9 X1.", "G90 G52 X1.",
     ]),
