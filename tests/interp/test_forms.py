@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The forms: what ngcgui makes of them is cut as filled in, and verify has no finding in it."""
 
+import re
+
 import pytest
 from matplotlib.image import imread
 
@@ -224,3 +226,53 @@ def test_the_live_tool_beside_a_main_spindle_that_is_c(tmp_path):
             found = spindle_lathe.trace_text(["G0 X60 Z20", *program.splitlines()])
             assert (found.error is None) == (spindle == 1)
             assert ("M3" in [event.text for event in found.events]) == (spindle == 0)
+
+
+SHOWN = {
+    ini: re.findall(r"^NGCGUI_SUBFILE = (\S+)\.ngc$", ini.read_text(), re.MULTILINE)
+    for ini in sorted(SIM.glob("*.ini"))
+}
+
+
+def test_every_machine_with_a_screen_shows_forms_of_its_own_unit():
+    for ini, forms in SHOWN.items():
+        assert bool(forms) != ini.stem.endswith("_headless"), ini
+        unit = "inch" if "inch" in ini.stem else "mm"
+        assert all(form.endswith(f"_{unit}") for form in forms), ini
+
+
+@pytest.mark.parametrize("ini", [ini for ini in SHOWN if SHOWN[ini]], ids=lambda ini: ini.stem)
+def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path):
+    with Tracer(ini, tools={1: 0.25 if "inch" in ini.stem else 6.0}) as running:
+        for form in SHOWN[ini]:
+            program = filled_in(form, tmp_path / "auto.ngc")
+            found = running.trace_text(["T1 M6", *program.read_text().splitlines()])
+            assert found.error is None, (form, found.error)
+            assert all("C has turned" in message.text for message in found.messages)
+            assert cut_geometry.cutting(found.moves)
+
+
+# ---------------------------------------------------------------- T0
+
+LOADED = "T needs a number; 0 is the loaded tool, and none is loaded"
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_tool_0_is_the_loaded_one(cut, form):
+    name = form.removeprefix("form_").removesuffix("_mm")
+    assert cut(name, "mm", tool=0).error.text == f"form: {LOADED}"
+    loaded = cut(name, "mm", before="G21 G8 T2 M6", tool=0)
+    assert {move.tool for move in loaded.moves} == {2}
+
+
+@pytest.mark.parametrize(
+    ("form", "rule"),
+    [
+        ("bore", "D2 has no diameter: it sets the path"),
+        ("circle_mill", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
+        ("slot", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
+    ],
+)
+def test_a_loaded_tool_without_a_diameter_is_refused(cut, form, rule):
+    traced = cut(form, "mm", before="G10 L1 P2 R0\nG21 G8 T2 M6", tool=0)
+    assert traced.error.text.endswith(rule)

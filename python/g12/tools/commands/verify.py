@@ -19,8 +19,7 @@ from g12.tools.machine.stored_positions import stored_values
 from g12.tools.preview.ended import ended
 from g12.tools.progress import working
 from g12.tools.units import unit_of
-from g12.tools.verify.accept import acceptable
-from g12.tools.verify.judge import Judgement, judge_trace, traced
+from g12.tools.verify.judge import Judgement, acceptable, judge_trace, traced
 from g12.tools.verify.model.finding import FINDING as IS_FINDING
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.report import as_json, as_text

@@ -15,7 +15,7 @@ from g12.tools.preview.moves import Move
 from g12.tools.units import Unit, clock, plain, unit_of
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.deviation import deviation_of
-from g12.tools.verify.model.program import TracedProgram
+from g12.tools.verify.model.program import RUNS, SPINDLE, TracedProgram
 
 SAME_POINT = 1e-6  # mm
 NO_MARKS = Marks()
@@ -68,7 +68,7 @@ class Scene:
         """The moves at feed at a part that its spindle turns, where tools have one of their own."""
         if not self.path.part.turning or not self.program.several_spindles:
             return []
-        return [index for index in self.fed if self.program.state(index).spindle in ("M3", "M4")]
+        return [index for index in self.fed if self.program.last(SPINDLE, index) in RUNS]
 
     @cached_property
     def sweeping(self) -> list[int]:

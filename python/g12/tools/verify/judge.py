@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Judge one program: the rules, the four questions to its material, its deviations."""
 
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 
 from g12.tools.machine.filter import OpenedProgram
@@ -16,15 +16,21 @@ from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
 from g12.tools.progress import Report, silent
 from g12.tools.units import unit_of
-from g12.tools.verify.accept import Accepted, accepted, expectations
-from g12.tools.verify.air import judge_air
 from g12.tools.verify.in_part import judge_in_part, judge_rapids
+from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.deviation import Deviation, deviation_of, judge_deviations
-from g12.tools.verify.model.finding import FINDING, Finding, once_a_line
+from g12.tools.verify.model.finding import (
+    KINDS,
+    WARNING,
+    Finding,
+    kind,
+    once_a_line,
+)
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.remains import judge_remains
-from g12.tools.verify.rules import contour, feed, spindle, tool, whole  # noqa: F401  # the table
+from g12.tools.verify.plain import judge_plain
+from g12.tools.verify.remains import judge_cuts
+from g12.tools.verify.rules import contour, spindle, tool, whole  # noqa: F401  # the table
 from g12.tools.verify.rules.table import judge_rules
 
 CAUSES = {  # a finding of one code is the cause of those of others at the same cut
@@ -40,6 +46,11 @@ CAUSES = {  # a finding of one code is the cause of those of others at the same 
     "no-tool": {"no-diameter"},
     "offset-beside": {"off"},
 }
+EXPECT = re.compile(r"\(\s*g12:\s*expect\s+([^()]*)\)", re.IGNORECASE)
+UNMET = kind("expect", WARNING, "{code} is accepted here, and nothing of it is found{hint}")
+EVERYWHERE = 0  # as a line
+Accepted = tuple[str, int]
+NEVER = ": only a warning can be accepted"
 
 
 @dataclass(frozen=True)
@@ -60,10 +71,6 @@ class Judgement:
     def user_line(self, line: int, file: str = "") -> int:
         """Return a line in the user's file; one in a sub's own ``file`` stays."""
         return self.opened.source_line(line) if self.opened and not file else line
-
-    @cached_property
-    def findings(self) -> list[tuple[int, str]]:
-        return [(each.line, each.text()) for each in self.of(FINDING)]
 
 
 def judge(
@@ -105,21 +112,18 @@ def judge_trace(
     tell("looking for material")
     solids = Solids(program, given)
     deviations = [deviation_of(cut, program) for cut in program.cuts]
-    every = [*judged(program, solids, tell), *judge_deviations(deviations, program, tolerance)]
-    expected = [*expectations(program.file), *(Accepted(code, 0) for code in accept)]
-    found, taken = accepted(once_a_cause(every, program), program.cuts, expected)
-    kept, taken = once_a_line(found), once_a_line(taken)
-    return Judgement(program, solids, kept, taken, deviations, tolerance, opened)
-
-
-def judged(program: TracedProgram, solids: Solids, tell: Report) -> Iterator[Finding]:
-    yield from judge_rules(program, solids)
+    found = [*judge_rules(program, solids)]
     tell("looking for rapids through material")
-    yield from judge_rapids(program, solids)
+    found += judge_rapids(program, solids)
     tell("looking for what remains")
-    yield from judge_remains(program, solids)
-    yield from judge_air(program, solids)
-    yield from judge_in_part(program, solids)
+    found += judge_cuts(program, solids)
+    found += judge_plain(program, solids)
+    found += judge_in_part(program, solids)
+    found += judge_deviations(deviations, program, tolerance)
+    expected = [*expectations(program.file), *((code, EVERYWHERE) for code in accept)]
+    kept, taken = accepted(once_a_cause(found, program), program.cuts, expected)
+    both = once_a_line(kept), once_a_line(taken)
+    return Judgement(program, solids, *both, deviations, tolerance, opened)
 
 
 def once_a_cause(found: Sequence[Finding], program: TracedProgram) -> Iterator[Finding]:
@@ -137,3 +141,44 @@ def _cut_of(found: Finding, program: TracedProgram) -> int:
             return cut.index
     after = (cut.index for cut in program.cuts if cut.line > found.line)
     return next(after, -1) if found.code == "rapid" else -1 - found.line
+
+
+# ------------------------------------------------------------ what is accepted
+
+
+def acceptable() -> set[str]:
+    return {each.code for each in KINDS.values() if each.severity == WARNING and each is not UNMET}
+
+
+def expectations(program: Path) -> list[Accepted]:
+    """Return the codes that the comments of a program accept, with their lines."""
+    lines = program.read_text(encoding="utf-8", errors="replace").splitlines()
+    return [
+        (code.lower(), number)
+        for number, line in enumerate(lines, 1)
+        for comment in EXPECT.finditer(line)
+        for code in re.split(r"[\s,]+", comment[1].strip())
+        if code
+    ]
+
+
+def accepted(
+    found: Iterable[Finding], cuts: Sequence[Cut], expected: Sequence[Accepted]
+) -> tuple[list[Finding], list[Finding]]:
+    """Return what remains, with a warning for each unmet acceptance, and what is accepted."""
+    pairs = [(each, [one for one in expected if _meets(each, one, cuts)]) for each in found]
+    met = {one for _, ones in pairs for one in ones}
+    rest = [each for each, ones in pairs if not ones]
+    for code, line in [one for one in expected if one not in met]:
+        hint = "" if code in acceptable() else NEVER
+        rest.append(Finding(UNMET, line, {"code": code, "hint": hint}))
+    return rest, [each for each, ones in pairs if ones]
+
+
+def _meets(found: Finding, accepts: Accepted, cuts: Sequence[Cut]) -> bool:
+    code, line = accepts
+    if (found.code, found.severity) != (code, WARNING):
+        return False
+    own = [cut for cut in cuts if cut.line == line and not found.file]
+    inside = any(cut.line <= found.line <= cut.last_line for cut in own)
+    return inside or line in (EVERYWHERE, found.line)

@@ -43,12 +43,13 @@ def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
         "cutter": 2 * (cut.cutter or max(map(cut.offset, cut.elements), default=0.0)) or None,
         "deviation": judgement.deviations[cut.index].size,
         "allowed": allowed_off(cut, program, judgement.tolerance),
-        **_pace(cut, program),
+        **_pace(cut, judgement),
         **own[kind_of(cut)](cut, program),
     }
 
 
-def _pace(cut: Cut, program: TracedProgram) -> dict[str, Any]:
+def _pace(cut: Cut, judgement: Judgement) -> dict[str, Any]:
+    program = judgement.program
     if cut.at >= cut.end:
         return {}
     part, speed = program.part_at(cut.surface, cut.at), program.trace.modes.speed
@@ -59,7 +60,7 @@ def _pace(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "seconds": None if taps else pace.seconds,
         "seconds_programmed": None if taps else pace.expected,
         "lowest_feed": pace.lowest,
-        "lowest_feed_line": program.where(pace.move)[0],
+        "lowest_feed_line": judgement.user_line(*program.where(pace.move)),
         "lowest_feed_at": program.words(pace.move, pace.point, cut.surface),
     }
 
@@ -74,11 +75,11 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     return {
         "dialect": program.dialects.get(cut.code),
         "centre": [value * cut.mm for value in cut.plan.centre[:2]],
-        "radius": cut.circle.inner if cut.circle.is_boss else cut.circle.wall,
-        "boss": cut.circle.inner if cut.circle.is_boss else None,
+        "radius": cut.inner if cut.is_boss else cut.wall,
+        "boss": cut.inner if cut.is_boss else None,
         "reached": max(rings.values(), default=0.0) + cut.cutter,
         "rings": list(dict.fromkeys(round(radius, ROUNDED) for radius in rings.values())),
-        "core": cut.circle.inner or None,
+        "core": cut.inner or None,
         "square_to": "XYZ"[third],
         "depths": list(dict.fromkeys(level * cut.mm for level in levels)),
         "lowest": min(levels, default=0.0) * cut.mm,

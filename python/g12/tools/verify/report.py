@@ -5,11 +5,11 @@
 """
 
 import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from g12.tools.preview.moves import message_lines
-from g12.tools.units import MM, Unit, counted_as, plain
+from g12.tools.units import MM, Unit
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.measures import kind_of, measures
 from g12.tools.verify.model.cut import Cut
@@ -34,10 +34,11 @@ TITLES = {FINDING: "findings", WARNING: "warnings", NOT_JUDGED: "not judged"}
 LINES = {  # what the line of a cut has
     "pockets": "⌀ {radius:twice} to {square_to}{lowest:mm}",
     "sections": "{sides}, to {third}{lowest:mm}",
-    "holes": "{holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
+    "holes": "{count:holes} {depth:mm} deep, {side} ⌀ {circle:mm}",
     "shapes": "to Z{lowest:mm}",
 }
 CUTTER, CORE = "cutter ⌀ {cutter:mm}, ", ", a core of ⌀ {core:twice} stays"
+OFF, TIME = "{deviation:fine} off ({allowed:small} allowed)", "{seconds:1} s"
 # Of rows with one name the first one counts whose measures are all known.
 ROWS: tuple[Row, ...] = (
     ("centre", "X{centre[0]:mm} Y{centre[1]:mm}"),
@@ -140,11 +141,7 @@ def _plain(found: Finding, judgement: Judgement) -> dict[str, Any]:
 def _plain_measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
     first, last = (judgement.user_line(line, cut.file) for line in (cut.line, cut.last_line))
     lines = {"lines": [first, last]} if cut.is_section else {"line": first}
-    values = measures(cut, judgement)
-    if "lowest_feed_line" in values:
-        line = judgement.user_line(values["lowest_feed_line"], cut.file)
-        values |= {"lowest_feed_line": line}
-    return {**lines, "file": cut.file or None, **values}
+    return {**lines, "file": cut.file or None, **measures(cut, judgement)}
 
 
 def assumption(judgement: Judgement, unit: Unit) -> str:
@@ -205,24 +202,13 @@ def in_columns(rows: Iterable[Sequence[str]]) -> Iterator[str]:
 def _cut_lines(judgement: Judgement, unit: Unit) -> Iterator[tuple[str, ...]]:
     """Yield the columns of each cut: where, which code, what, how far off, how long."""
     for cut in judgement.program.cuts:
-        values, name = _shown(measures(cut, judgement)), kind_of(cut)
+        values, name = measures(cut, judgement), kind_of(cut)
         cutter = CUTTER if values["cutter"] and name in ("sections", "shapes") else ""
-        core = CORE if cut.is_ring and cut.circle.inner > cut.cutter else ""
+        core = CORE if cut.is_ring and cut.inner > cut.cutter else ""
         what = in_words(cutter + LINES[name] + core, values, unit)
-        off = in_words("{deviation:fine} off", values, unit)
-        off += f" ({unit.fine(values['allowed'])} allowed)"
-        time = "" if values.get("seconds") is None else f"{plain(values['seconds'], 1)} s"
+        time = in_words(TIME, values, unit) if is_known(TIME, values) else ""
+        off = in_words(OFF, values, unit)
         yield _lines_text(cut, judgement), _code_text(values), what, off, time
-
-
-def _shown(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return measures with those that only sentences need."""
-    seconds, programmed = (values.get(name) for name in ("seconds", "seconds_programmed"))
-    return {
-        **values,
-        "holes": counted_as(values["count"], "hole") if "count" in values else None,
-        "real_seconds": None if seconds == programmed else seconds,  # without acceleration
-    }
 
 
 def _lines_text(cut: Cut, judgement: Judgement) -> str:
@@ -231,7 +217,7 @@ def _lines_text(cut: Cut, judgement: Judgement) -> str:
     return f"line{'s' * bool(last)} {judgement.user_line(cut.line, cut.file)}{last}{of_file}"
 
 
-def _code_text(values: Mapping[str, Any]) -> str:
+def _code_text(values: dict[str, Any]) -> str:
     dialect = values.get("dialect")
     return f"{values['code']} ({dialect})" if dialect else values["code"]
 
@@ -239,7 +225,9 @@ def _code_text(values: Mapping[str, Any]) -> str:
 def _paragraphs(judgement: Judgement, unit: Unit) -> Iterator[str]:
     """Yield every measure of each cut."""
     for cut in judgement.program.cuts:
-        values = _shown(measures(cut, judgement))
+        values = measures(cut, judgement)
+        if values.get("seconds") != values.get("seconds_programmed"):
+            values["real_seconds"] = values["seconds"]
         named = {name: text for name, text in reversed(ROWS) if is_known(text, values)}
         names = [name for name in dict.fromkeys(name for name, _ in ROWS) if name in named]
         rows = (f"{GAP}{name:{NAMES}}  {in_words(named[name], values, unit)}" for name in names)

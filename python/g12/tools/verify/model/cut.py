@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from shapely.affinity import rotate, translate
@@ -21,20 +21,18 @@ from shapely.ops import unary_union
 
 from g12.cut_report import (
     CutElement,
-    CutReport,
     EventCut,
     FrameCut,
     HolesCut,
     PocketCut,
     PolygonCut,
-    ProgramFrame,
     RoundPocketCut,
     SectionCut,
     SlotCut,
     ThreadCut,
     UsedCutter,
 )
-from g12.tools.path.part import ROLES, Roles, arc_segments, disc
+from g12.tools.path.part import ROLES, arc_segments, disc
 from g12.tools.preview.moves import ReportedCut, Trace
 from g12.tools.verify.model.finding import Finding, Kind
 
@@ -45,8 +43,7 @@ LEAST_CORE = 0.05  # mm: the radius of a core that remains
 NOTHING = Polygon()
 NO_CUTTER = UsedCutter(0.0, "")
 TAPS = (1, 2)  # kinds of holes
-SHAPES = (PolygonCut, SlotCut, RoundPocketCut, FrameCut)
-CIRCLES = (PocketCut, EventCut, ThreadCut)
+Point3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
@@ -97,124 +94,86 @@ class Outline:
         return LineString(_xy(self.points)).buffer(away, single_sided=True, join_style=2)
 
 
-class Circle(NamedTuple):
-    """The radii of a circle's wall and of what it leaves in its middle, mm, which may be a boss."""
-
-    wall: float
-    inner: float
-    is_boss: bool
-
-
-@dataclass(frozen=True, eq=False)
 class Cut:
-    """One reported cut: its moves are those from ``at`` to ``end``."""
+    """One reported cut: its moves are those from ``at`` to ``end``.
 
-    index: int
-    loaded: float  # the radius of the loaded cutter, mm
-    at: int
-    end: int
-    code: str
-    line: int  # in its file, "" is the program
-    last_line: int  # of a section the line that ends it
-    file: str
-    c_commanded: str  # as `ReportedCut` tells it
-    plan: Any  # the planner's record, a `PlannedCut`; which fields it has is asked by its kind
-    frame: ProgramFrame
-    report: CutReport
+    ``line`` is in its ``file``, "" is the program; ``last_line`` of a section is the line that ends
+    it. ``plan`` is the planner's record, whose kind says which fields it has. ``cutter`` is the
+    radius that its path is computed with, 0 if that is not the planner's. ``surface`` is that of
+    the cylinder on which it is, 0 on the face. ``wall`` is that of what a circle clears, ``inner``
+    that of what it leaves in its middle, which may be a boss.
+    """
+
+    def __init__(self, index: int, reported: ReportedCut, loaded: float) -> None:
+        report, frame = reported.report, reported.report.frame
+        self.index, self.report, self.frame = index, report, frame
+        self.at, self.end, self.moves = *reported[:2], range(*reported[:2])
+        self.code, self.line, self.file = report[:3]
+        self.c_commanded = reported.c_commanded
+        self.plan: Any = report.cut
+        self.is_section = isinstance(self.plan, SectionCut)
+        self.is_circle = isinstance(self.plan, PocketCut | EventCut | ThreadCut)
+        self.is_shape = isinstance(self.plan, PolygonCut | SlotCut | RoundPocketCut | FrameCut)
+        self.is_tap = isinstance(self.plan, HolesCut) and self.plan.kind in TAPS
+        self.is_ring = isinstance(self.plan, PocketCut) and not self.plan.step  # one circle
+        self.last_line = max(self.line, reported.last_line if self.is_section else 0)
+        self.upright = getattr(self.plan, "plane", "G17") != "G17"
+        self.mm = mm = frame.mm
+        self.zero: Point3 = (frame.zero[0] * mm, frame.zero[1] * mm, frame.zero[2] * mm)
+        self.zero_c = frame.zero[3]
+        self.surface: float = getattr(self.plan, "surface", 0.0) * mm
+        self.passes: Any = getattr(self.plan, "passes", self.plan)
+        self.used: UsedCutter = getattr(self.passes, "cutter", NO_CUTTER)
+        self.cutter = self.used.radius * mm
+        self.wall, self.inner, self.is_boss = self._circle(0.0 if self.cutter else loaded)
+        self.elements: Sequence[CutElement] = getattr(self.plan, "elements", ())
+        self.roles = ROLES[getattr(self.plan, "turn", "C")]
+        # What turns the plane of its words so that the axis of rotation is upwards.
+        self._upright = 1j if self.roles == ROLES["A"] else 1.0
+        # 1 where the length around the cylinder grows with the angle, else -1.
+        self.sense = getattr(self.plan, "sense", 1.0) * (-1 if self._upright == 1j else 1)
+        self._turned = cmath.rect(1.0, math.radians(report.at[3] + self.zero_c))
 
     def found(self, of: Kind, place: Sequence[float] | None = None, /, **values: Any) -> Finding:
         """Return a finding in its line."""
         return Finding(of, self.line, values, place, self.file)
-
-    @property
-    def moves(self) -> range:
-        return range(self.at, self.end)
-
-    @property
-    def is_section(self) -> bool:
-        return isinstance(self.plan, SectionCut)
-
-    @property
-    def is_circle(self) -> bool:
-        return isinstance(self.plan, CIRCLES)
-
-    @property
-    def is_shape(self) -> bool:
-        return isinstance(self.plan, SHAPES)
-
-    @property
-    def is_tap(self) -> bool:
-        return isinstance(self.plan, HolesCut) and self.plan.kind in TAPS
-
-    @property
-    def mm(self) -> float:
-        return self.frame.mm
-
-    @cached_property
-    def zero(self) -> tuple[float, float, float]:
-        """The program's zero on the machine."""
-        x, y, z = (value * self.mm for value in self.frame.zero[:3])
-        return x, y, z
-
-    @property
-    def zero_c(self) -> float:
-        return self.frame.zero[3]
-
-    @cached_property
-    def surface(self) -> float:
-        """The radius of the cylinder on which it is, 0 on the face."""
-        return getattr(self.plan, "surface", 0.0) * self.mm
-
-    @property
-    def used(self) -> UsedCutter:
-        return getattr(getattr(self.plan, "passes", self.plan), "cutter", NO_CUTTER)
-
-    @cached_property
-    def cutter(self) -> float:
-        """The cutter radius that its path is computed with, 0 if it is not the planner's."""
-        return self.used.radius * self.mm
-
-    @property
-    def compensated(self) -> bool:
-        return any(each.side for each in self.elements)
-
-    @property
-    def upright(self) -> bool:
-        return getattr(self.plan, "plane", "G17") != "G17"
 
     @cached_property
     def centre(self) -> tuple[float, float]:
         at = self.frame.point(*self.plan.centre[:2])
         return at.real, at.imag
 
-    @cached_property
-    def circle(self) -> Circle:
-        """What a circle clears and leaves; without a cutter its words are those of the centre."""
-        plan, mm, beside = self.plan, self.mm, 0.0 if self.cutter else self.loaded
-        if isinstance(plan, ThreadCut):
-            return Circle(plan.large * mm, plan.small * mm * plan.outside, plan.outside)
-        if isinstance(plan, EventCut):
-            return Circle(plan.wall * mm + beside, plan.boss * mm, plan.side > 0)
-        if isinstance(plan, PocketCut):
-            return Circle(plan.wall * mm + beside, max(plan.inner * mm - beside, 0.0), False)
-        return Circle(0.0, 0.0, False)
+    def _circle(self, beside: float) -> tuple[float, float, bool]:
+        """Return a circle's wall, its inner radius, whether it is a boss; 0 of what is no circle.
 
-    @property
-    def is_ring(self) -> bool:
-        """Whether it is one circle."""
-        return isinstance(self.plan, PocketCut) and not self.plan.step
+        Without a cutter its words are those of the centre, and the loaded one is ``beside`` it.
+        """
+        plan, mm = self.plan, self.mm
+        if isinstance(plan, ThreadCut):
+            return plan.large * mm, plan.small * mm * plan.outside, plan.outside
+        if isinstance(plan, EventCut):
+            return plan.wall * mm + beside, plan.boss * mm, plan.side > 0
+        if isinstance(plan, PocketCut):
+            return plan.wall * mm + beside, max(plan.inner * mm - beside, 0.0), False
+        return 0.0, 0.0, False
 
     @cached_property
     def levels(self) -> list[float]:
         """The levels of its floors: machine Z, or the radius on a cylinder."""
         plan = self.plan
         if isinstance(plan, SectionCut):
-            ends = [min(each.z0, each.z1) for each in self.drawn]
+            ends = [min(each.z0, each.z1) for each in self.elements]
             return [self._level(min(ends))] if ends else []
         if isinstance(plan, HolesCut):
             x, z, _ = plan.places[0]
             return [self._level((x if plan.surface else z) - plan.depth)]
-        return [self._level(level) for level in getattr(plan, "passes", plan).levels]
+        return [self._level(level) for level in self.passes.levels]
+
+    @cached_property
+    def steps_down(self) -> list[float]:
+        """The levels at which a section moves in its plane, the highest first."""
+        ends = {self._level(round(min(each.z0, each.z1), 6)) for each in self.drawn}
+        return sorted(ends, reverse=True) or self.levels
 
     @cached_property
     def floor(self) -> float:
@@ -231,22 +190,27 @@ class Cut:
         if self.is_shape:
             return self._shape[0]
         if self.is_circle and not self.upright and not isinstance(self.plan, ThreadCut):
-            return disc(self.centre, self.circle.wall, CHORD).difference(self._middle)
-        return unary_union([o.polygon for o in self.outlines if o.is_closed and o.tool_inside])
+            return disc(self.centre, self.wall, CHORD).difference(self._middle)
+        return unary_union([outline.polygon for outline in self.pockets])
+
+    @property
+    def pockets(self) -> list[Outline]:
+        """The closed contours of a section that are cut from the inside."""
+        return [each for each in self.outlines if each.is_closed and each.tool_inside]
 
     @property
     def _middle(self) -> BaseGeometry:
-        return disc(self.centre, self.circle.inner, CHORD) if self.circle.inner > 0 else NOTHING
+        return disc(self.centre, self.inner, CHORD) if self.inner > 0 else NOTHING
 
     @property
     def core(self) -> BaseGeometry:
         """What a circle leaves in its middle that is no boss."""
-        return NOTHING if self.circle.is_boss or self.circle.inner < LEAST_CORE else self._middle
+        return NOTHING if self.is_boss or self.inner < LEAST_CORE else self._middle
 
     @cached_property
     def stays(self) -> list[tuple[BaseGeometry, float]]:
         """What stays of the part beside it, and the level down to which it is cut."""
-        if self.circle.is_boss:
+        if self.is_boss:
             return [(self._middle, self.floor)]
         if self.is_shape:
             return [(self._shape[1], self.floor)]
@@ -256,7 +220,7 @@ class Cut:
     @cached_property
     def island(self) -> BaseGeometry:
         """The part that it goes round on the outside, as far as that is closed."""
-        if self.circle.is_boss or (self.is_shape and self._shape[0].is_empty):
+        if self.is_boss or (self.is_shape and self._shape[0].is_empty):
             return self.stays[0][0]
         return unary_union([o.polygon for o in self.outlines if o.is_closed and not o.tool_inside])
 
@@ -284,10 +248,8 @@ class Cut:
         return whole.difference(left), whole.buffer(1.0).difference(whole)
 
     def _polygon(self, plan: PolygonCut) -> BaseGeometry:
-        stays, radius = (
-            disc((0, 0), plan.stock_diameter * self.mm / 2),
-            plan.corner_radius * self.mm,
-        )
+        radius = plan.corner_radius * self.mm
+        stays = disc((0, 0), plan.stock_diameter * self.mm / 2)
         for side in range(plan.sides):
             flat = box(plan.across_flats * self.mm / 2, -1e3, 1e3, 1e3)
             middle = plan.angle + self.zero_c + 360 * side / plan.sides
@@ -298,22 +260,13 @@ class Cut:
     @cached_property
     def places(self) -> list[complex]:
         """The middles of its holes."""
-        if not isinstance(self.plan, HolesCut):
-            return []
+        own = self.plan.places if isinstance(self.plan, HolesCut) else ()
+        turned = [(x * self.mm, z * self.mm, math.radians(c + self.zero_c)) for x, z, c in own]
         if self.surface:
-            return [
-                complex(self.surface * math.radians(c + self.zero_c), z * self.mm + self.zero[2])
-                for _, z, c in self.plan.places
-            ]
-        return [
-            cmath.rect(x * self.mm, math.radians(c + self.zero_c)) for x, _, c in self.plan.places
-        ]
+            return [complex(self.surface * turn, z + self.zero[2]) for _, z, turn in turned]
+        return [cmath.rect(x, turn) for x, _, turn in turned]
 
     # ------------------------------------------------------------ a section's contour
-
-    @property
-    def elements(self) -> Sequence[CutElement]:
-        return self.plan.elements if isinstance(self.plan, SectionCut) else ()
 
     @cached_property
     def drawn(self) -> list[CutElement]:
@@ -358,22 +311,6 @@ class Cut:
         """Return how far the tool's centre is beside an element's contour, mm."""
         return element.radius * self.mm * bool(element.side)
 
-    @cached_property
-    def roles(self) -> Roles:
-        """The axes of the cylinder on which it is."""
-        return ROLES[getattr(self.plan, "turn", "C")]
-
-    @cached_property
-    def _upright(self) -> complex:
-        """What turns the plane of its words so that the axis of rotation is upwards."""
-        return 1j if self.roles == ROLES["A"] else 1.0
-
-    @property
-    def sense(self) -> float:
-        """1 where the length around the cylinder grows with the angle, else -1."""
-        sense = getattr(self.plan, "sense", 1.0)
-        return -sense if self.roles == ROLES["A"] else sense
-
     def point(self, at: complex) -> complex:
         """Return a point of the program's plane on the part."""
         if self.surface:
@@ -386,15 +323,13 @@ class Cut:
         return at / self._turned
 
     @cached_property
-    def _turned(self) -> complex:
-        return cmath.rect(1.0, math.radians(self.report.at[3] + self.zero_c))
-
-    @cached_property
     def deep_reach(self) -> float:
         """How far its path below Z0 is from the axis."""
-        deep = (e for e in self.elements if e.start is not None and min(e.z0, e.z1) < 0)
-        ends = (abs(at) for e in deep for at in (e.start, e.end or e.start))
-        return max(ends, default=0.0) * self.mm
+        at, ends = complex(self.report.at[0]), [0.0]
+        for each in self.elements:
+            start, at = at, each.end or at
+            ends += [abs(start), abs(at)] if min(each.z0, each.z1) < 0 else []
+        return max(ends) * self.mm
 
 
 def curve_points(element: CutElement, chord_error: float = CHORD) -> Iterator[complex]:
@@ -409,17 +344,8 @@ def curve_points(element: CutElement, chord_error: float = CHORD) -> Iterator[co
 
 def cuts_of(trace: Trace) -> list[Cut]:
     """Return the reported cuts in the order of their moves."""
-    return [_cut(index, each, trace) for index, each in enumerate(trace.cuts)]
-
-
-def _cut(index: int, each: ReportedCut, trace: Trace) -> Cut:
-    own, plan = each.report, each.report.cut
-    loaded = trace.radius(each.at) if each.at < len(trace.moves) else 0.0
-    last_line = max(own.line, each.last_line) if isinstance(plan, SectionCut) else own.line
-    return Cut(
-        *(index, loaded, each.at, each.end, own.code, own.line, last_line),
-        *(own.file, each.c_commanded, plan, own.frame, own),
-    )
+    loaded = [trace.radius(each.at) if each.at < len(trace.moves) else 0.0 for each in trace.cuts]
+    return [Cut(n, each, radius) for n, (each, radius) in enumerate(zip(trace.cuts, loaded))]
 
 
 def _xy(points: np.ndarray) -> np.ndarray:

@@ -23,7 +23,6 @@ TOGETHER = 32  # moves that are compared with the contour at once
 AROUND = 0.2  # mm: a move that is off its contour by less is measured from what is near it
 SAME = 1e-3
 CHORD = 1e-4  # of arcs
-BLENDED = re.compile(r"G64 P([0-9.]+)")
 LAST_DECIMAL = 1e-3  # mm: words are rounded, and so are the chords that are measured
 OFF = kind("off", FINDING, "it is {off:fine} off its contour at {at:xyz} ({allowed:fine} allowed)")
 RUN_OFF = kind(
@@ -70,9 +69,8 @@ def allowed_off(cut: Cut, program: TracedProgram, tolerance: float | None) -> fl
 
 def _blending(cut: Cut, program: TracedProgram) -> float:
     """Return P of the G64 in force where a cut begins, mm."""
-    before = (event.text for event in program.trace.events if event.at <= cut.at)
-    paths = [BLENDED.match(text) for text in before if text.startswith("G6")]
-    return float(paths[-1][1]) if paths and paths[-1] else 0.0
+    tolerance = re.match(r"G64 P([0-9.]+)", program.last("G6", cut.at))
+    return float(tolerance[1]) if tolerance else 0.0
 
 
 def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
@@ -168,9 +166,9 @@ def _of_wall(cut: Cut, program: TracedProgram) -> Deviation:
     rings = circles_of(cut, program)
     if not rings or not cut.cutter or getattr(cut.plan, "taper", None):
         return Deviation()
-    index = (min if cut.circle.is_boss else max)(rings, key=rings.__getitem__)
-    edge = rings[index] + (-cut.cutter if cut.circle.is_boss else cut.cutter)
-    off = abs(edge - (cut.circle.inner if cut.circle.is_boss else cut.circle.wall))
+    index = (min if cut.is_boss else max)(rings, key=rings.__getitem__)
+    edge = rings[index] + (-cut.cutter if cut.is_boss else cut.cutter)
+    off = abs(edge - (cut.inner if cut.is_boss else cut.wall))
     return Deviation(off, program.moves[index].start[:3], index)
 
 

@@ -106,15 +106,17 @@ def is_known(sentence: str, values: Mapping[str, Any]) -> bool:
 class _Writer(string.Formatter):
     """Formats the values of a sentence: what follows the colon says what a value is.
 
-    ``mm`` a length, ``length`` with its unit, ``fine`` a small one, ``mm2`` an area, ``feed``,
-    ``xyz`` a place as letters and lengths, ``to`` a second one or none, ``list`` lengths, ``twice``
-    a radius as a diameter, ``turns`` angles, ``words`` entries by name. A number is of decimals.
+    ``mm`` a length, ``length`` with its unit, ``small`` and ``fine`` the same of a small one,
+    ``mm2`` an area, ``feed``, ``xyz`` a place as letters and lengths, ``to`` a second one or none,
+    ``list`` lengths, ``twice`` a radius as a diameter, ``holes`` their number, ``turns`` angles,
+    ``words`` entries by name. A number is of decimals.
     """
 
     def __init__(self, unit: Unit) -> None:
         self._forms: dict[str, Callable[[Any], str]] = {
             "mm": unit.text,
             "length": lambda value: f"{unit.text(value)} {unit.name}",
+            "small": unit.fine,
             "fine": lambda value: f"{unit.fine(value)} {unit.name}",
             "mm2": unit.area,
             "feed": lambda value: f"{plain(value / unit.mm, 1)} {unit.name}/min",
@@ -123,6 +125,7 @@ class _Writer(string.Formatter):
             ),
             "to": lambda words: f" to {self._forms['xyz'](words)}" if words else "",
             "list": lambda value: ", ".join(dict.fromkeys(map(unit.text, value))),
+            "holes": lambda count: counted_as(count, "hole"),
             "twice": lambda value: unit.text(2 * value),
             "turns": lambda angles: ", ".join(plain(angle, 3) for angle in angles),
             "words": lambda words: ", ".join(f"{n} {plain(at, 4)}" for n, at in words.items()),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A traced program: its state at each move, and where the tool's tip is on the part."""
 
+import cmath
 import math
 import re
 from bisect import bisect_right
@@ -8,25 +9,24 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Self
 
 import numpy as np
 
-from g12.lengths import MM_PER_INCH
 from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import Followed, follow
 from g12.tools.path.nearest import shares_along
-from g12.tools.path.part import INCHES, C, Part, X, Z, part_of, part_of_program
+from g12.tools.path.part import C, Part, X, Y, Z, last_zero, part_of, part_of_program
 from g12.tools.path.samples import Samples
 from g12.tools.path.surface import Surface
-from g12.tools.path.track import Limits, Track, limits_of
+from g12.tools.path.track import Track, limits_of
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.units import plain
 from g12.tools.verify.model.cut import Cut, cuts_of
 from g12.tools.verify.model.finding import Finding, Kind
-from g12.tools.verify.model.spindles import Spindles, spindles_of
 
 WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
@@ -34,23 +34,22 @@ CHORD = 2e-3  # of the paths that are judged
 KEPT_TIPS = 16384  # moves
 ALONG_X, ALONG_Z = np.eye(9)[[X, Z]]
 A, B = 3, 4
+# Kinds of events: a length is G43, G43.1, G43.2, G49, or a tool from M6 on without one.
+SPINDLE, SPEED, LENGTH = r"M[345]$", r"S[\d.]+$", r"G43|G49|tool "
+RUNS = ("M3", "M4")
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
+MOTION = re.compile(r"G0*([0-3]|5(?:\.\d)?|33(?:\.1)?|38\.\d|7[346]|8\d)(?![.\d])")
+TAPS = {"33.1", "74", "84"}
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
 
 
-class State(NamedTuple):
-    """What is in force at a move: the first spindle, and the code that set the tool length."""
-
-    spindle: str = ""  # M3, M4, M5, "" before any
-    speed: float = 0.0
-    user_code: bool = False  # an M1xx came, which may turn a spindle
-    length_code: str = ""  # G43, G43.1, G43.2, G49; tool: none since M6
-
-
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class TracedProgram:
-    """``samples`` are those of a run, ``parameters`` the var file's, ``surface``: see ``part``."""
+    """A program as it moves on a machine, with ``samples`` as a run does.
+
+    ``parameters`` are the var file's, ``surface`` is the radius of the cylinder that pictures show.
+    """
 
     file: Path
     ini: Ini
@@ -59,28 +58,28 @@ class TracedProgram:
     parameters: dict[int, float] = field(default_factory=dict)
     surface: float = 0.0
 
-    @property
-    def moves(self) -> list[Move]:
-        return self.trace.moves
-
-    @cached_property
-    def cuts(self) -> list[Cut]:
-        return cuts_of(self.trace)
-
-    @cached_property
-    def dialects(self) -> dict[str, str]:
-        """The names of the cycles that the machine's codes call."""
-        names = ((each.code, DIALECT.search(str(each))) for each in remap_lines(self.ini.all))
-        return {code: name[1] for code, name in names if name}
-
-    @cached_property
-    def turning(self) -> bool:
-        return part_of(self.ini).turning
-
-    @cached_property
-    def is_round(self) -> bool:
-        """Whether a mill cuts round a part that its rotary axis turns."""
-        return not self.turning and any(cut.surface for cut in self.cuts)
+    def __post_init__(self) -> None:
+        ini, trace = self.ini, self.trace
+        self.moves, self.cuts, self.limits = trace.moves, cuts_of(trace), limits_of(ini)
+        self._events: dict[str, list[tuple[int, str]]] = {}
+        self._starts = [cut.at for cut in self.cuts]
+        self._tool_beside = ini.tool_beside
+        self.turning = part_of(ini).turning
+        # A mill cuts round a part that its rotary axis turns.
+        self.is_round = not self.turning and any(cut.surface for cut in self.cuts)
+        self.several_spindles = ini.number("TRAJ", "SPINDLES", 1) > 1
+        # The names of the cycles that the machine's codes call.
+        names = ((each.code, DIALECT.search(str(each))) for each in remap_lines(ini.all))
+        self.dialects = {code: name[1] for code, name in names if name}
+        # The program's zero on the machine where it first cuts, without a cut where it ends.
+        ends = (last_zero(trace, X), last_zero(trace, Y), last_zero(trace, Z))
+        self.zero = self.cuts[0].zero if self.cuts else ends
+        self.z0 = self.zero[Z]
+        # Whether a work offset is set: without one the program's zero is the machine's.
+        zeros = [cut.zero for cut in self.cuts] or [self.zero]
+        self.is_placed = any(abs(value) > SIZE for zero in zeros for value in zero)
+        offsets = (move.tool_offset[axis] for move in self.moves for axis in (X, Z))
+        self.uses_lengths = any(abs(offset) > SIZE for offset in offsets)
 
     @cached_property
     def texts(self) -> list[str]:
@@ -89,17 +88,14 @@ class TracedProgram:
         return [COMMENT.sub("", line).upper() for line in text.splitlines()]
 
     @cached_property
-    def limits(self) -> Limits:
-        return limits_of(self.ini)
-
-    @cached_property
-    def several_spindles(self) -> bool:
-        return self.ini.number("TRAJ", "SPINDLES", 1) > 1
-
-    @cached_property
-    def spindles(self) -> list[Spindles] | None:
-        """The spindles after each line, None where the lines do not tell."""
-        return spindles_of(self.texts, self.ini)
+    def tapping(self) -> set[int]:
+        """The lines in which a code of a tap is in force."""
+        found, tapping = set(), False
+        for number, text in enumerate(self.texts, 1):
+            codes = MOTION.findall(text)
+            tapping = codes[-1] in TAPS if codes else tapping
+            found |= {number} if tapping else set()
+        return found
 
     # ------------------------------------------------------------ the part
 
@@ -126,10 +122,6 @@ class TracedProgram:
         """The motion of the run, laid on the path."""
         return follow(self.path, self.samples, self.ini.mm) if self.samples else None
 
-    @cached_property
-    def _tool_beside(self) -> float:
-        return self.ini.tool_beside
-
     def part_at(self, radius: float, index: int) -> Part:
         """Return the part as the tool of a move sees it: the face, or a cylinder of a radius.
 
@@ -150,56 +142,33 @@ class TracedProgram:
             return Surface(True, 0.0, centre, radius=radius)
         return Surface(True, 0.0, centre, own.roles, radius, own.sense)
 
-    @cached_property
-    def zero(self) -> tuple[float, float, float]:
-        """The program's zero on the machine where it first cuts, without a cut where it ends."""
-        if self.cuts:
-            return self.cuts[0].zero
-        unit = MM_PER_INCH if self.trace.state.get("length_units") == INCHES else 1.0
-        names = ("current_x", "current_y", "current_z")
-        known = zip(self.trace.position, (self.trace.state.get(name) for name in names))
-        x, y, z = (0.0 if at is None else end - at * unit for end, at in known)
-        return x, y, z
-
-    @property
-    def z0(self) -> float:
-        return self.zero[2]
-
     def words(
         self, index: int, point: Sequence[float], radius: float
     ) -> list[tuple[str, float | str]]:
-        """Return a point of a move on a part in the program's words: X Y Z, on a lathe X C Z."""
+        """Return a point of a move on a part in the program's words: X Y Z, on a lathe X C Z.
+
+        Round a mill's part these are the slide along it, its rotary axis and the height.
+        """
         cut, zero = self.cut_near(index), self.zero_at(index)
-        if radius and self.is_round:
-            return self._words_round(index, point, radius)
-        if not self.turning:
-            x, y, z = (at - own for at, own in zip(point, zero))
-            turn = math.radians(-(cut.frame.rotation if cut else 0.0))
-            cos, sin = math.cos(turn), math.sin(turn)
-            return [("X", x * cos - y * sin), ("Y", x * sin + y * cos), ("Z", z)]
-        factor = 2.0 if self.diameters(index) else 1.0
+        if not self.turning and not radius:
+            turned = cmath.rect(1.0, math.radians(cut.frame.rotation if cut else 0.0))
+            at = complex(point[0] - zero[X], point[1] - zero[Y]) / turned
+            return [("X", at.real), ("Y", at.imag), ("Z", point[2] - zero[Z])]
+        doubled = 2.0 if self.turning and self.diameters(index) else 1.0
         if cut and cut.is_section and not cut.surface and index in cut.moves:
             at = cut.plane_words(complex(*point[:2]))
-            return [("X", factor * at.real), ("C", at.imag), ("Z", point[2] - zero[Z])]
+            return [("X", doubled * at.real), ("C", at.imag), ("Z", point[2] - zero[Z])]
+        axes = (X, C, Z)
+        if not self.turning:
+            cut = next(each for each in self.cuts if each.surface == radius)
+            zero, axes = cut.zero, (cut.roles.along, cut.roles.turn, cut.roles.height)
         position = self._position(index, np.array(point, float), radius)
-        c = position[C] - (cut.zero_c if cut else 0.0)
+        first, turn, last = axes
+        angle = plain(position[turn] - (cut.zero_c if cut else 0.0), 3)
         return [
-            ("X", factor * (position[X] - zero[X])),
-            ("C", plain(c, 3)),
-            ("Z", position[Z] - zero[Z]),
-        ]
-
-    def _words_round(
-        self, index: int, point: Sequence[float], radius: float
-    ) -> list[tuple[str, float | str]]:
-        """Return a point round a mill's part in the words of its section."""
-        cut = next(each for each in self.cuts if each.surface == radius)
-        position = self._position(index, np.array(point, float), radius)
-        turn, along, height, _ = cut.roles
-        return [
-            (AXIS_LETTERS[along], position[along] - cut.zero[along]),
-            (AXIS_LETTERS[turn], plain(position[turn] - cut.zero_c, 3)),
-            (AXIS_LETTERS[height], position[height] - cut.zero[height]),
+            (AXIS_LETTERS[first], doubled * (position[first] - zero[first])),
+            (AXIS_LETTERS[turn], angle),
+            (AXIS_LETTERS[last], position[last] - zero[last]),
         ]
 
     def _position(self, index: int, point: np.ndarray, radius: float) -> np.ndarray:
@@ -217,14 +186,9 @@ class TracedProgram:
     def diameters(self, index: int) -> bool:
         """Return whether X words are diameters, as in the section or the mode next to a move."""
         cut = self.cut_near(index)
-        known = getattr(cut.plan, "diameters", None) if cut else None
-        return "G7" in self.trace.modes.gcodes if known is None else known
+        return getattr(cut and cut.plan, "diameters", "G7" in self.trace.modes.gcodes)
 
     # ------------------------------------------------------------ its moves
-
-    @cached_property
-    def uses_lengths(self) -> bool:
-        return any(abs(move.tool_offset[axis]) > SIZE for move in self.moves for axis in (X, Z))
 
     def missing_length(self, index: int, axis: int = Z) -> float:
         """Return by how much the loaded tool is longer than the length in force."""
@@ -234,7 +198,7 @@ class TracedProgram:
 
     def chosen_length(self, index: int) -> bool:
         """Return whether the length in force is one that the program gives itself, and is safe."""
-        code = self.state(index).length_code
+        code = self.last(LENGTH, index).partition(" ")[0]
         safe = code == "G43.1" and self.missing_length(index) < 0.0
         return code == "G43.2" or safe or (code == "G49" and self.turning)
 
@@ -287,10 +251,6 @@ class TracedProgram:
         cut = self.cut_near(index)
         return cut.zero if cut else self.zero
 
-    @cached_property
-    def _starts(self) -> list[int]:
-        return [cut.at for cut in self.cuts]
-
     def where(self, index: int) -> tuple[int, str]:
         """Return the line of a move, and the file of the sub in which it is, "" of the program."""
         move, cut = self.moves[index], self.cut_at(index)
@@ -313,10 +273,6 @@ class TracedProgram:
         return bool(called or self.trace.files)
 
     @cached_property
-    def has_subs(self) -> bool:
-        return self.calls_files or any(map(SUB_BEGIN.search, self.texts))
-
-    @cached_property
     def sides(self) -> list[set[float] | None]:
         """On what the tool of each move may be: the radii of its cuts next to the move.
 
@@ -330,31 +286,22 @@ class TracedProgram:
             if cut.at < len(self.moves):
                 of_tool.setdefault(self.moves[cut.at].tool, []).append(cut)
         feeding = {move.tool for move in self.moves if move.kind != "rapid"}
-        return [
-            self._side(index, of_tool.get(move.tool, [])) if move.tool in feeding else {0.0}
-            for index, move in enumerate(self.moves)
-        ]
-
-    @cached_property
-    def _turned(self) -> list[bool]:
-        """Whether the part turns at each move, before the next cut also by rapid from there."""
-        found, turned = [], False
+        found: list[set[float] | None] = []
+        turned = False  # the part: before the next cut also by rapid from there
         for index, move in enumerate(self.moves):
-            state = self.state(index)
-            turns = self.several_spindles and state.spindle in ("M3", "M4") and state.speed > 0
-            goes_on = turned and move.kind == "rapid"
-            turned = not self.cut_at(index) and (turns or goes_on)
-            found.append(turned)
+            inside, own = self.cut_at(index), of_tool.get(move.tool, [])
+            turns = self.several_spindles and self.turns(index)
+            turned = not inside and (turns or (turned and move.kind == "rapid"))
+            after = bisect_right(own, index, key=lambda cut: cut.at)
+            near = {cut.surface for cut in own[max(after - 1, 0) : after + 1]}
+            if move.tool not in feeding:
+                near = {0.0}
+            elif inside:
+                near = {inside.surface}
+            elif turned or (self.is_round and self._is_beside_axis(move)):
+                near = set()
+            found.append(near or None)
         return found
-
-    def _side(self, index: int, cuts: Sequence[Cut]) -> set[float] | None:
-        inside = self.cut_at(index)
-        if inside:
-            return {inside.surface}
-        beside = self.is_round and self._is_beside_axis(self.moves[index])
-        after = bisect_right(cuts, index, key=lambda cut: cut.at)
-        near = {cut.surface for cut in cuts[max(after - 1, 0) : after + 1]}
-        return near if near and not self._turned[index] and not beside else None
 
     def _is_beside_axis(self, move: Move) -> bool:
         """Return whether the tool of a mill's move is not above the axis of rotation all along."""
@@ -401,12 +348,6 @@ class TracedProgram:
         return [False, *self.known_after[:-1]]
 
     @cached_property
-    def is_placed(self) -> bool:
-        """Whether a work offset is set: without one the program's zero is the machine's."""
-        zeros = [cut.zero for cut in self.cuts] or [self.zero]
-        return any(abs(value) > SIZE for zero in zeros for value in zero)
-
-    @cached_property
     def turned_at(self) -> int | None:
         """The first move of A or B on a mill: what was solid is not known after it."""
         if self.turning or not {"A", "B"} & set(self.ini.axes):
@@ -429,27 +370,20 @@ class TracedProgram:
 
     # ------------------------------------------------------------ its state
 
-    @cached_property
-    def _states(self) -> tuple[list[int], list[State]]:
-        at, states, state = [], [], State()
-        for event in self.trace.events:
-            text = event.text
-            if text in ("M3", "M4", "M5"):
-                state = state._replace(spindle=text)
-            elif re.fullmatch(r"S[\d.]+", text):
-                state = state._replace(speed=float(text[1:]))
-            elif re.match(r"M1\d\d P", text):
-                state = state._replace(user_code=True)
-            elif text.startswith(("G43", "G49", "tool ")):
-                state = state._replace(length_code=text.split()[0])
-            at.append(event.at)
-            states.append(state)
-        return at, states
+    def last(self, kind: str, index: int) -> str:
+        """Return the last event of a kind before a move, "" if there is none."""
+        events = self._events.setdefault(kind, [])
+        if not events:
+            events += [(-1, ""), *(e[::2] for e in self.trace.events if re.match(kind, e.text))]
+        return events[bisect_right(events, index, key=itemgetter(0)) - 1][1]
 
-    def state(self, index: int) -> State:
-        at, states = self._states
-        last = bisect_right(at, index) - 1
-        return states[last] if last >= 0 else State()
+    def speed(self, index: int) -> float:
+        """Return the speed of the first spindle, as commanded."""
+        return float(self.last(SPEED, index)[1:] or 0.0)
+
+    def turns(self, index: int) -> bool:
+        """Return whether the first spindle turns."""
+        return self.last(SPINDLE, index) in RUNS and self.speed(index) > 0.0
 
 
 def straight_down(points: np.ndarray) -> bool:

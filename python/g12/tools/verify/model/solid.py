@@ -34,10 +34,15 @@ FULL_TURN = 2 * math.pi - 1e-6
 
 
 class Solids:
-    """The materials of a program by the side that a tool works on."""
+    """The materials of a program by the side that a tool works on.
+
+    ``given_bar`` is the radius of the bar that is given, 0 without one.
+    """
 
     def __init__(self, program: TracedProgram, stock: Stock | None) -> None:
-        self.program, self.stock = program, stock
+        self.program, self.stock, self.z0 = program, stock, program.z0
+        self.given_bar = stock.diameter / 2 if stock else 0.0
+        self.bottom = self.z0 - stock.size[2] if stock and stock.size else -math.inf
         self._materials: dict[float, Material] = {}
         for side in {FACE, *(cut.surface for cut in program.cuts)}:
             shape = self._stock(side, stock)
@@ -46,29 +51,15 @@ class Solids:
 
     # ------------------------------------------------------------ the stock
 
-    @property
-    def z0(self) -> float:
-        """The machine Z of the program's Z0 at its first cut."""
-        return self.program.z0
-
     def top(self, side: float) -> float:
-        if side and self.stock and self.stock.diameter:
-            return self.stock.diameter / 2
-        return side or self.z0
-
-    @property
-    def bottom(self) -> float:
-        size = self.stock.size if self.stock else None
-        return self.z0 - size[2] if size else -math.inf
+        return (self.given_bar or side) if side else self.z0
 
     @cached_property
     def bar(self) -> float:
         """The radius of the bar: the given one, else the smallest that holds what is programmed."""
-        if self.stock and self.stock.diameter:
-            return self.stock.diameter / 2
-        program = self.program
-        own = (cut for cut in program.cuts if cut.at < cut.end)
-        return max((needed_bar(cut, program.cutter(cut.at)) for cut in own), default=0.0)
+        own = [cut for cut in self.program.cuts if cut.at < cut.end]
+        needed = (needed_bar(cut, self.program.cutter(cut.at)) for cut in own)
+        return self.given_bar or max(needed, default=0.0)
 
     def _stock(self, side: float, stock: Stock | None) -> BaseGeometry:
         program = self.program
@@ -79,7 +70,7 @@ class Solids:
             return NOTHING
         if program.turning:
             return disc((0.0, 0.0), self.bar) if self.bar else NOTHING
-        pockets = [(c.centre, c.circle.wall) for c in program.cuts if c.is_circle and not c.upright]
+        pockets = [(c.centre, c.wall) for c in program.cuts if c.is_circle and not c.upright]
         if stock and stock.is_whole:
             turned = program.cuts[0].frame.rotation if program.cuts else 0.0
             return stock.shape(np.array(program.zero), turned, pockets)

@@ -12,7 +12,7 @@ from g12.cut_report import PocketCut
 from g12.tools.path.part import C
 from g12.tools.verify.model.cut import Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
-from g12.tools.verify.model.program import SIZE
+from g12.tools.verify.model.program import SIZE, SUB_BEGIN
 from g12.tools.verify.rules.table import Site, Values, rule
 
 ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
@@ -52,7 +52,8 @@ def _is_round(angle: float) -> bool:
 )
 def place_unknown(site: Site) -> Values:
     cut, program = site.own, site.program
-    if cut.file or program.has_subs or not (cut.is_circle or cut.is_section):
+    has_subs = program.calls_files or any(map(SUB_BEGIN.search, program.texts))
+    if cut.file or has_subs or not (cut.is_circle or cut.is_section):
         return None
     lines = program.texts[: cut.line - cut.report.incremental]
     unsaid = [axis for axis in ("XZ" if program.turning else "XYZ") if not _is_said(axis, lines)]
@@ -80,7 +81,7 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     """Return whether the lead-in begins on the part's side of a contour."""
     if outline.is_closed:
         start = Point(outline.lead.real, outline.lead.imag)
-        if outline.polygon.exterior.distance(start) < AT_EDGE:
+        if outline.polygon.boundary.distance(start) < AT_EDGE:
             return False
         return bool(outline.polygon.contains(start)) != outline.tool_inside
     along = outline.points[1] - outline.points[0]
@@ -95,20 +96,16 @@ def _is_crossed(outline: Outline, site: Site) -> bool:
     "it goes to {reach:length} from the axis, the bar is {bar:mm}: C in degrees?",
 )
 def far_beside(site: Site) -> Values:
-    cut, stock = site.own, site.solids.stock
-    if not cut.is_section or cut.surface or not (stock and stock.diameter):
-        return None
-    bar, reach = stock.diameter / 2, cut.deep_reach
-    return {"reach": reach, "bar": bar} if reach > FAR * bar + site.loaded else None
+    cut, bar = site.own, site.solids.given_bar
+    far = cut.is_section and not cut.surface and cut.deep_reach > FAR * bar + site.loaded
+    return {"reach": cut.deep_reach, "bar": bar} if bar and far else None
 
 
 @rule("surface", FINDING, "its radius {radius:mm} is not the bar's, {bar:mm}: is C a radius here?")
 def other_surface(site: Site) -> Values:
-    stock, radius = site.solids.stock, site.own.surface
-    if not site.own.is_section or not radius or not (stock and stock.diameter):
-        return None
-    bar = stock.diameter / 2
-    return {"radius": radius, "bar": bar} if radius > WIDE * bar else None
+    bar, radius = site.solids.given_bar, site.own.surface
+    other = site.own.is_section and bar and radius > WIDE * bar
+    return {"radius": radius, "bar": bar} if other else None
 
 
 @rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled")

@@ -4,19 +4,23 @@
 import os
 import re
 from collections.abc import Callable
+from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 from g12.machine_ini import remap_lines
+from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
-from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.model.spindles import MAIN, switching_codes
+from g12.tools.verify.model.program import SPINDLE, TracedProgram
 from g12.tools.verify.rules.table import Site, Values, rule
 
-RUNS = ("M3", "M4")
 C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
 NO_MOVE = re.compile(r"G0*(10|92|52|7\.1)(?![.\d])")
-USER_CODE = re.compile(r"(M1\d\d) P")
+USER_CODE = r"(M1\d\d) P"
+M_CODE, ANY_USER_CODE = re.compile(r"M(\d+)"), re.compile(r"M1\d\d")
+NAMED, BLOCK_WORD, JUMPS = re.compile(r"\$(-?\d+)"), re.compile(r"\s*O"), {"M98", "M99"}
+MAIN, LIVE, EVERY = 0, 1, -1
 
 
 @rule("spindle", FINDING, "{which} does not turn: {code} and S are missing", plain=True)
@@ -36,13 +40,14 @@ def _first_move(wrong: Callable[[int], Values], site: Site) -> Values:
 
 def _standing(index: int, site: Site) -> Values:
     """Tell which spindle should turn at a move and does not, None if none is known."""
-    program, state = site.program, site.program.state(index)
+    program = site.program
     if not program.several_spindles:
-        turns = state.user_code or (state.spindle in RUNS and state.speed)
+        turns = program.last(USER_CODE, index) or program.turns(index)
         return None if turns else {"which": "the spindle", "code": "M3"}
-    if not program.spindles:
+    states = spindles_of(program)
+    if not states:
         return None
-    is_c, turning = program.spindles[program.moves[index].block]
+    is_c, turning = states[program.moves[index].block]
     of_live = is_c or site.cut
     if turning is None or (turning if of_live else MAIN in turning):
         return None
@@ -55,15 +60,15 @@ def _standing(index: int, site: Site) -> Values:
 def spindle_reversed(site: Site) -> Values:
     if site.program.several_spindles or (site.cut and site.cut.is_tap):
         return None
-    state = site.program.state
-    return _first_move(lambda index: {} if state(index).spindle == "M4" else None, site)
+    last = site.program.last
+    return _first_move(lambda index: {} if last(SPINDLE, index) == "M4" else None, site)
 
 
 @rule("spindle-unseen", NOT_JUDGED, "whether the tool turns: no preview shows it", once=True)
 def spindle_unseen(site: Site) -> Values:
     if not site.program.several_spindles:
         return None
-    states, line = site.program.spindles, site.program.moves[site.at].block
+    states, line = spindles_of(site.program), site.program.moves[site.at].block
     return None if states and states[line].turning is not None else {}
 
 
@@ -74,7 +79,7 @@ def spindle_unseen(site: Site) -> Values:
     program=True,
 )
 def main_spindle_turns(program: TracedProgram) -> Values:
-    for line, state in enumerate(program.spindles or ()):
+    for line, state in enumerate(spindles_of(program) or ()):
         if state.is_c and MAIN in (state.turning or ()):
             off = min(switching_codes(program.ini)[1], default="the code that ends C")
             return {"off": off, "at_line": line}
@@ -89,7 +94,7 @@ def unknown_code(program: TracedProgram) -> Values:
     places = [ini.directory / os.path.expanduser(folder) for folder in folders if folder]
     remapped = {remap.code for remap in remap_lines(ini.all)}
     for event in program.trace.events:
-        code = USER_CODE.match(event.text)
+        code = re.match(USER_CODE, event.text)
         own = code and code[1] not in remapped and [place / code[1] for place in places]
         if own and not any(os.access(file, os.X_OK) for file in own):
             return {"code": code[1], "at_line": event.line}
@@ -118,8 +123,64 @@ def clamp_closed(program: TracedProgram) -> Values:
 def spindle_is_c(program: TracedProgram) -> Values:
     """Look in the program's lines: a preview does not show the codes that switch the spindle."""
     needs_c = {cut.line for cut in program.cuts if not cut.file}
-    for line, (state, text) in enumerate(zip(program.spindles or (), ["", *program.texts])):
+    for line, (state, text) in enumerate(zip(spindles_of(program) or (), ["", *program.texts])):
         turns_c = C_WORD.search(text) and not NO_MOVE.search(text)
         if not state.is_c and (turns_c or line in needs_c):
             return {"code": min(switching_codes(program.ini)[0]), "at_line": line}
     return None
+
+
+# ------------------------------------------------------------ of a lathe whose spindle becomes C
+
+
+class Spindles(NamedTuple):
+    """After a line: whether the main spindle is C; which spindles turn, None if not known."""
+
+    is_c: bool = False
+    turning: frozenset[int] | None = frozenset()
+
+
+def switching_codes(ini: Ini) -> tuple[set[str], set[str]]:
+    """Return the codes that make the spindle C, and those that end it."""
+    remaps = remap_lines(ini.all)
+    on, off = (
+        {each.code for each in remaps if f"prolog=spindle_c_{state}" in str(each)}
+        for state in ("on", "off")
+    )
+    return on, off
+
+
+@lru_cache(maxsize=1)
+def spindles_of(program: TracedProgram) -> list[Spindles] | None:
+    """Return the spindles after each line (that of line 0 first), as the program's lines turn them.
+
+    A preview shows the first spindle alone, and not the codes that make it C.
+
+    None where the lines do not tell: with jumps, and where no spindle becomes C. Another code of
+    the machine's own may turn a tool.
+    """
+    on, off = switching_codes(program.ini)
+    foreign = {each.code for each in remap_lines(program.ini.all)} - on - off
+    found, state = [Spindles()], Spindles()
+    for text in program.texts if on else ():
+        codes = {f"M{int(number)}" for number in M_CODE.findall(text)}
+        if codes & JUMPS or (BLOCK_WORD.match(text) and "CALL" not in text):
+            return None
+        state = _after(state, codes, text, on, off)
+        if codes & foreign or any(map(ANY_USER_CODE.fullmatch, codes)):
+            state = state._replace(turning=None)
+        found.append(state)
+    return found if on else None
+
+
+def _after(state: Spindles, codes: set[str], text: str, on: set[str], off: set[str]) -> Spindles:
+    named = NAMED.search(text)
+    own = {MAIN, LIVE} if named and int(named[1]) == EVERY else {int(named[1]) if named else MAIN}
+    turning = set(state.turning or ())
+    if "M5" in codes:
+        turning -= own if named else turning
+    if codes & {"M3", "M4"}:
+        turning |= own
+    turning -= turning if "M6" in codes else {MAIN} if codes & on else set()
+    is_c = bool(codes & on) or (state.is_c and not codes & off)
+    return Spindles(is_c, None if state.turning is None else frozenset(turning))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The tool, D and the tool length where the program cuts.
+"""The tool, D, the tool length and the feed where the program cuts.
 
 LinuxCNC believes G43's H as the cycles believe D. A program that never commands G43 may have
 touched off Z with its tool; any other works with the lengths of the table.
@@ -11,6 +11,8 @@ from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, WEAR
 from g12.tools.verify.rules.table import Site, Values, rule
 
+MOST_PER_TURN = 3.0  # mm, of a feed
+
 
 @rule("no-tool", FINDING, "no tool is loaded: T and M6 are missing", once=True, plain=True)
 def no_tool(site: Site) -> Values:
@@ -20,7 +22,7 @@ def no_tool(site: Site) -> Values:
 @rule("no-diameter", FINDING, "T{tool} has no diameter in the tool table")
 def no_diameter(site: Site) -> Values:
     cut = site.own
-    needs = not cut.is_section or cut.compensated
+    needs = not cut.is_section or any(each.side for each in cut.elements)
     return {"tool": site.tool} if site.tool > 0 and not site.loaded and needs else None
 
 
@@ -66,9 +68,8 @@ def no_d(site: Site) -> Values:
 )
 def length_deeper(site: Site) -> Values:
     off = _off_length(site)
-    if off <= SIZE or _is_chosen(site):
-        return None
-    return {"offset": site.program.moves[site.at].tool_offset[Z], "tool": site.tool, "off": off}
+    chosen = site.program.chosen_length(site.at)
+    return {"tool": site.tool, "off": off} if off > SIZE and not chosen else None
 
 
 @rule(
@@ -78,8 +79,8 @@ def length_deeper(site: Site) -> Values:
     plain=True,
 )
 def length_higher(site: Site) -> Values:
-    off = _off_length(site)
-    if site.tool <= 0 or abs(off) <= SIZE or (off > 0 and not _is_chosen(site)):
+    off, chosen = _off_length(site), site.program.chosen_length(site.at)
+    if site.tool <= 0 or abs(off) <= SIZE or (off > 0 and not chosen):
         return None
     return {"tool": site.tool, "off": abs(off), "how": "higher" if off < 0 else "deeper"}
 
@@ -87,10 +88,6 @@ def length_higher(site: Site) -> Values:
 def _off_length(site: Site, axis: int = Z) -> float:
     """Return by how much the tool is longer than the length in force, 0 without any length."""
     return site.program.missing_length(site.at, axis) if site.program.uses_lengths else 0.0
-
-
-def _is_chosen(site: Site) -> bool:
-    return site.program.chosen_length(site.at)
 
 
 @rule(
@@ -102,9 +99,8 @@ def _is_chosen(site: Site) -> bool:
 )
 def length_not_used(site: Site) -> Values:
     off = site.program.missing_length(site.at)
-    if site.program.uses_lengths or abs(off) <= SIZE:
-        return None
-    return {"tool": site.tool, "off": off}
+    missing = not site.program.uses_lengths and abs(off) > SIZE
+    return {"tool": site.tool, "off": off} if missing else None
 
 
 @rule(
@@ -115,7 +111,7 @@ def length_not_used(site: Site) -> Values:
 )
 def length_mixed(site: Site) -> Values:
     program, moves = site.program, site.program.moves
-    if program.turning or program.uses_lengths or site.tool <= 0:
+    if program.uses_lengths or site.tool <= 0:
         return None
     first = next(i for i, move in enumerate(moves) if move.kind != "rapid" and move.tool > 0)
     off = program.missing_length(site.at) - program.missing_length(first)
@@ -127,6 +123,26 @@ def length_mixed(site: Site) -> Values:
 
 @rule("offset-beside", FINDING, "it cuts {off:fine} beside: the offset in X is not T{tool}'s")
 def offset_beside(site: Site) -> Values:
-    off = _off_length(site, X)
-    beside = site.program.turning and abs(off) > SIZE and not _is_chosen(site)
+    off, chosen = _off_length(site, X), site.program.chosen_length(site.at)
+    beside = site.program.turning and abs(off) > SIZE and not chosen
     return {"tool": site.tool, "off": abs(off)} if beside else None
+
+
+@rule("feed-per-turn", WARNING, "{feed:fine} a revolution: meant per minute?")
+def feed_per_turn(site: Site) -> Values:
+    most = max(_per_turn(site), default=0.0)
+    return {"feed": most} if most > MOST_PER_TURN else None
+
+
+def _per_turn(site: Site) -> list[float]:
+    """Return the feeds per revolution of a cut in mm, as moved or as planned."""
+    cut, per_turn = site.own, site.own.report.per_revolution
+    feeds = [m.feed for m in site.program.moves[cut.at : cut.end] if m.feed_mode == "G95"]
+    if cut.is_tap or (cut.places and per_turn):
+        feeds.append(cut.plan.feed * cut.mm)
+    elif cut.is_section and per_turn:
+        speed = site.program.speed(cut.at)
+        feeds += [each.feed * cut.mm / speed for each in cut.elements if speed]
+    elif hasattr(cut.plan, "passes") and per_turn:
+        feeds.append(cut.plan.passes.feed * cut.mm)
+    return feeds

@@ -10,61 +10,62 @@ import numpy as np
 from g12.machine_ini import face_joints
 from g12.tools.machine.stored_positions import shift_at_start
 from g12.tools.path.part import turning_points
+from g12.tools.preview.moves import Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import SIZE, TracedProgram
 from g12.tools.verify.rules.table import Values, rule
 
 ROTATIONS = range(5230, 5391, 20)  # parameters of a var file
 SHIFTS = ("axis_offset_x", "axis_offset_y", "axis_offset_z", "CC_axis_offset")
+UNPLACED = ", with the work offset that fits best: none is set (--var)"
 SHIFT_CODE, ROTATES = re.compile(r"G(92|52)(?![.\d])"), re.compile(r"G10.*R")
 
 
 @rule(
-    "travel", FINDING, "{axis} would go to {position:mm}, its limit is {limit:length}", program=True
+    "travel",
+    FINDING,
+    "{axis} would go to {position:mm}, its limit is {limit:length}{hint}",
+    program=True,
 )
 def beyond_travel(program: TracedProgram) -> Values:
     """Without a work offset only what is wider than the travel itself is known."""
     limits, mm = program.ini.axis_limits, program.ini.mm
     if face_joints(program.ini.get):  # whose X and Y are the tool's, and refused by the package
         return None
-    positions, moves = _positions(program)
-    for axis, at in zip("XYZ", positions.T):
-        if axis not in limits:
-            continue
-        low, high = limits[axis].low * mm, limits[axis].high * mm
+    for axis, at, moves in _reached(program):
+        low, high, hint = limits[axis].low * mm, limits[axis].high * mm, ""
         if not program.is_placed:
-            shift = at.min(initial=low) - low
-            low, high = low + shift, high + shift
+            low, high, hint = at.min(), at.min() + high - low, UNPLACED
         beyond = np.flatnonzero((at < low - SIZE) | (at > high + SIZE))
         if len(beyond):
             position, line = at[beyond[0]], program.where(int(moves[beyond[0]]))[0]
-            limit = low if position < low else high
-            return {"axis": axis, "position": position, "limit": limit, "at_line": line}
+            values = {"axis": axis, "position": position, "hint": hint, "at_line": line}
+            return {**values, "limit": low if position < low else high}
     return None
 
 
-def _positions(program: TracedProgram) -> tuple[np.ndarray, np.ndarray]:
-    """Return where X, Y and Z (n, 3) come to rest or turn back, with the indices of the moves.
+def _reached(program: TracedProgram) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """Yield the axes with limits, where each comes to rest or turns back, and the moves' indices.
 
     They are those of the moves that a work offset places.
     """
-    positions, moves = [], []
-    for index, move in enumerate(program.moves):
-        if program.is_placed or not move.by_machine:
-            ends = turning_points(move) if move.kind == "arc" else (move.start, move.end)
-            own = [np.add(at[:3], move.tool_offset[:3]) for at in ends[int(index > 0) :]]
-            positions += own
-            moves += [index] * len(own)
-    return np.reshape(positions, (-1, 3)), np.array(moves, int)
+    moves = [i for i, m in enumerate(program.moves) if program.is_placed or not m.by_machine]
+    own = [_ends(program.moves[index], index) for index in moves]
+    indices = np.repeat(moves, [len(ends) for ends in own])
+    for axis, at in zip("XYZ", np.concatenate(own).T if own else ()):
+        if axis in program.ini.axis_limits:
+            yield axis, at, indices
+
+
+def _ends(move: Move, index: int) -> np.ndarray:
+    """Return where a move's axes come to rest or turn back (n, 3), of the first also its start."""
+    return turning_points(move)[int(index > 0) :, :3] + move.tool_offset[:3]
 
 
 def travel_needed(program: TracedProgram) -> Iterator[tuple[str, float, float]]:
     """Yield the axes of a program that no work offset places, with its least and its greatest."""
-    if program.is_placed:
-        return
-    for axis, at in zip("XYZ", _positions(program)[0].T):
-        if axis in program.ini.axis_limits and len(at):
-            yield axis, float(at.min()), float(at.max())
+    for axis, at, _ in _reached(program) if not program.is_placed else ():
+        yield axis, float(at.min()), float(at.max())
 
 
 @rule(
