@@ -166,20 +166,20 @@ def test_holes_are_where_the_mill_has_them(lathe, control, options, made_by):
     moves = lathe(HOLES, control, *options)
     first = max(n for n, m in enumerate(moves) if m.kind == "feed" and m.start[5] != m.end[5])
     downs = made_by(moves[first + 2 :])
-    for x, y, depth in WANTED:
-        near = downs[np.hypot(downs[:, 0] - x, downs[:, 1] - y) < 1e-3]
-        assert near[:, 2].min() == pytest.approx(depth)
-    deep = downs[downs[:, 2] < 0]
-    assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
+    assert_drilled(downs[downs[:, 2] < 0])
+
+
+def assert_drilled(deep):
+    """Assert that points in the part are those of the holes, down to their ends."""
+    away = np.array([np.hypot(deep[:, 0] - x, deep[:, 1] - y) for x, y, _ in WANTED])
+    assert (away.min(axis=0) < 1e-3).all()
+    ends = [deep[beside < 1e-3, 2].min() for beside in away]
+    assert ends == pytest.approx([depth for *_, depth in WANTED])
 
 
 def test_holes_round_a_part_of_a_mill(mill):
     made, moves = mill(HOLES)
-    deep = made[made[:, 2] < -1.001]
-    for x, y, depth in WANTED:
-        near = deep[np.hypot(deep[:, 0] - x, deep[:, 1] - y) < 1e-3]
-        assert near[:, 2].min() == pytest.approx(depth)
-    assert all(min(np.hypot(p[0] - x, p[1] - y) for x, y, _ in WANTED) < 1e-3 for p in deep)
+    assert_drilled(made[made[:, 2] < -1.001])
     assert moves[-1].end[2] == 5 + DIAMETER / 2
 
 

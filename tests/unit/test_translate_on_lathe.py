@@ -125,16 +125,6 @@ def test_the_safe_height_is_said():
         with_options("haas-mill", "--safe", "4")
 
 
-@pytest.mark.parametrize(
-    ("option", "value"),
-    [("--safe", "0"), ("--safe", "x"), ("--safe", "nan"), ("--safe", "inf")],
-)
-def test_heights_are_above_zero(option, value, capsys):
-    with pytest.raises(SystemExit):
-        with_options("mill-on-face", option, value)
-    assert f"argument {option}: '{value}' is not a number above 0" in capsys.readouterr().err
-
-
 def shown(page, heading):
     """Return the lines of an example on a page, before and after."""
     before, after = page.split(f"{heading}:\n")[1].split("\nbecomes")[:2]

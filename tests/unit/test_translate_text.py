@@ -90,9 +90,11 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103\nG69",
      ["(G187 P1 E.01)", "(G103 P1)", "(G103)", "(G69)"]),
+    (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "G154 P2 G0 X1.\nG112\nG10 L20 P3 X1.\nG10 L2 P0 X1. G90", [
         "G59.2 G0 X1. (G154 P2)", "G59.3 (G112)", "G10 L2 P9 X1.", "G90 G52 X1.",
     ]),
+    (FANUC, "G5.1 Q1\nG8 P1\nG54.1 P1", ["(G5.1 Q1)", "(G8 P1)", "G59.1 (G54.1 P1)"]),
     (HAAS_LATHE, "G390 G0 X1.\nG391 X-.1", ["G90 G0 X1.", "G91 X-.1"]),
     # the spindle, tools
     (LATHE, "G96 S90 M3\nG50 S900\nG97 S50\nG96",

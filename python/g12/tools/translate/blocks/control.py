@@ -46,89 +46,52 @@ CODE = re.compile(r"[GM][0-9]{1,3}(?:\.[0-9])?")
 RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 
 
-class Rule(NamedTuple):
-    """What a value must be, the end of the sentence if it is not, and which keys have it.
+KEYS = tomllib.loads(Path(__file__).with_name("keys.toml").read_text(encoding="utf-8"))
+TOP, TABLES = KEYS["top"], KEYS["tables"]
+REMARKS = frozenset(("sources", "readings"))  # for who reads the file
+MAX_NUMBER = 1e9
 
-    ``keys`` is a pattern in a table whose keys a control chooses.
-    """
+
+class Rule(NamedTuple):
+    """What a value must be, and the end of the sentence if it is not."""
 
     accepts: Callable[[Any], object]
     sentence: str
-    keys: str = ""
 
 
-def _one_of(*values: str) -> Rule:
-    return Rule(lambda value: value in values, f"must be one of {', '.join(values)}")
-
-
-def _text(pattern: str, sentence: str, keys: str = "") -> Rule:
-    return Rule(lambda v: isinstance(v, str) and re.fullmatch(pattern, v), sentence, keys)
-
-
-def _texts(pattern: str, sentence: str) -> Rule:
-    one = _text(pattern, sentence)
-    return Rule(lambda value: isinstance(value, list) and all(map(one.accepts, value)), sentence)
-
-
-MAX_NUMBER = 1e9
-TEXT, TEXTS = _text("(?s).*", "must be a text"), _texts("(?s).*", "must be a list of texts")
-FLAG = Rule(lambda value: isinstance(value, bool), "must be true or false")
-NUMBER = Rule(
-    lambda v: type(v) in (int, float) and 0 < v <= MAX_NUMBER,
-    f"must be a number above 0, {MAX_NUMBER:g} at most",
-)
-TOP = {
-    "title": TEXT, "based_on": TEXT, "machine": _one_of("mill", "lathe"),
-    "axes": _text(r"(?!.*(.).*\1)[XYZABC]+", "must be letters of X Y Z A B C, each once"),
-    "extensions": _text("[a-z][a-z0-9]*( [a-z][a-z0-9]*)*", "must be as nc tap, in small letters"),
-    "start": _text(r"( *[GM][0-9]{1,3}(\.[0-9])?)*", "must be codes such as G17"),
-    "decimals": _one_of("least", "whole"), "feed_of_c": _one_of("mm"),
-    "at_zero": TEXT, "remarks": FLAG, "sources": TEXTS, "readings": TEXTS,
-}  # fmt: skip
-REMARKS = frozenset(("sources", "readings"))  # for who reads the file
-TABLES: dict[str, Any] = {
-    "increments": {
-        "angle": NUMBER,
-        **{f"{kind}_{unit}": NUMBER for kind in ("length", "feed", "feed_rev")
-           for unit in ("mm", "inch")},
-    },
-    "dwell": {
-        "seconds": TEXT, "milliseconds": TEXT, "with_point": _one_of("seconds", "refuse"),
-        "cycle": _one_of("seconds", "milliseconds", "refuse"),
-    },
-    "tools": {
-        "patterns": _texts("R*T+O*", "must be patterns such as TTOO or RRTTOO"),
-        "pocket": _one_of("last", "own"),
-    },
-    "reference": {"cancels_length": FLAG},
-    "polar": {
-        "x": _one_of("diameter", "radius", "inherit", "say"),
-        "rapid": _one_of("refuse", "keep", "feed"),
-        "rapid_feed_mm": NUMBER, "rapid_feed_inch": NUMBER,
-    },
-    "subprograms": {"repeat_digits": FLAG, "cycle_repeat": TEXT},
-    "variables": _text(
-        r"#[1-9][0-9]{0,3}|[0-9]+\.?[0-9]*|own",
-        "must be a number, and a parameter of LinuxCNC (#500), a value, or own: refused",
-        "[0-9]{1,6}(-[0-9]{1,6})?",
+RULES = {
+    "text": Rule(lambda value: isinstance(value, str), "a text"),
+    "texts": Rule(
+        lambda value: isinstance(value, list) and all(isinstance(one, str) for one in value),
+        "a list of texts",
     ),
-    "turning": {
-        "thread_chamfer": NUMBER,
-        **{f"{name}_{unit}": NUMBER for unit in ("mm", "inch")
-           for name in ("depth", "retract", "thread_least", "thread_allowance")},
-    },
-    "holes": {
-        "r": _one_of("from start", "level"), "q": _one_of("increments", "lengths"), "clamp": TEXT,
-    },
-    "words": _text("[A-Z]", "must be a word of two letters, and one of one", "[A-Z]{2}"),
-    "spindles": _text("main|live", "must be a P word, and main or live", "P[0-9]+"),
-    "mill": {
-        "onto": _one_of("face", "round"), "diameter": NUMBER,
-        "safe_mm": NUMBER, "safe_inch": NUMBER, "safe": NUMBER,
-    },
-    "g_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
-    "m_codes": Rule(lambda v: isinstance(v, (str, list, dict)), "must be a text", ".*"),
-}  # fmt: skip
+    "code": Rule(lambda value: isinstance(value, (str, list, dict)), "a text"),  # see `_rows_of`
+    "flag": Rule(lambda value: isinstance(value, bool), "true or false"),
+    "number": Rule(
+        lambda value: type(value) in (int, float) and 0 < value <= MAX_NUMBER,
+        f"a number above 0, {MAX_NUMBER:g} at most",
+    ),
+}
+
+
+def _rule_of(given: Any) -> Rule:
+    """Return a rule of ``keys.toml``."""
+    if isinstance(given, str):
+        return RULES[given]
+    if "is" in given:
+        return RULES[given["is"]]
+    if "one_of" in given:
+        return Rule(lambda value: value in given["one_of"], f"one of {', '.join(given['one_of'])}")
+    is_list = "each_like" in given
+    pattern, kind = given["each_like" if is_list else "like"], "texts" if is_list else "text"
+
+    def accepts(value: Any) -> bool:
+        texts = value if is_list else [value]
+        return bool(RULES[kind].accepts(value)) and all(re.fullmatch(pattern, t) for t in texts)
+
+    return Rule(accepts, given["must"])
+
+
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
     f"M{n}" for n in (*range(10), 19, 30, *range(48, 54), *range(60, 74))
 )
@@ -270,7 +233,7 @@ class _Checked:
             if key in TABLES:
                 self._table(key, value)
             elif key in TOP:
-                self._value(key, value, TOP[key])
+                self._value(key, value, _rule_of(TOP[key]))
             else:
                 self._refuse(key, f"{key} is no key of a control")
         for letter in "gm":
@@ -284,17 +247,17 @@ class _Checked:
         if not isinstance(table, dict):
             self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if isinstance(rules, Rule):
-                named = re.fullmatch(rules.keys, key)
-                self._value(key, value, rules if named else rules._replace(accepts=lambda v: False))
+            if "keys" in rules:
+                named = re.fullmatch(rules["keys"], key)
+                self._value(key, value, _rule_of(rules), bool(named))
             elif key in rules:
-                self._value(key, value, rules[key])
+                self._value(key, value, _rule_of(rules[key]))
             else:
                 self._refuse(key, f"{key} is no key of [{name}]: {', '.join(rules)}")
 
-    def _value(self, key: str, value: Any, rule: Rule) -> None:
-        if not rule.accepts(value):
-            self._refuse(key, f"{key} = {value!r} {rule.sentence}")
+    def _value(self, key: str, value: Any, rule: Rule, named: bool = True) -> None:
+        if not (named and rule.accepts(value)):
+            self._refuse(key, f"{key} = {value!r} must be {rule.sentence}")
 
     def _codes(self, letter: str, table: dict) -> dict[str, str]:
         """Return the meaning of every code; a code that is named twice is refused."""

@@ -83,15 +83,10 @@ def finish_call(draft: Draft) -> None:
         lines.append(draft.return_text)
     if not lines:
         return
-    if draft.is_empty():
-        number = draft.written()
-        first, *rest = lines
-        keeps = number and not first.startswith("o")
-        draft.words = [line_as_word(f"{number} {first}" if keeps else first)]
-        draft.comments += [number] if number and not keeps else []
-        draft.after = rest
-    else:
-        draft.after += lines
+    if draft.is_empty() and lines[0].startswith("o"):  # a block number becomes a comment
+        draft.comments += [word.text for word in draft.words]
+        draft.words = []
+    draft.write(lines)
 
 
 def _call_lines(draft: Draft) -> list[str]:
