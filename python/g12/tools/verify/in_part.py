@@ -171,17 +171,14 @@ def _is_followed(event: Event, program: TracedProgram) -> bool:
 def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Yield feed moves straight into the material.
 
-    Of a drill, and without a given stock, only those that are too fast for any tool; no tap. On a
-    lathe only tools that make cuts are known to be driven.
+    Of a drill, and without a given stock, only those that are too fast for any tool; no tap.
     """
     made = [cut for cut in program.cuts if cut.at < cut.end]
     tools = {program.moves[cut.at].tool for cut in made}
     cutters = {program.moves[cut.at].tool for cut in made if not cut.places and solids.stock}
     for index, move in enumerate(program.moves):
         sides, own = program.sides[index] or set(), program.cut_at(index)
-        if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1:
-            continue
-        if program.turning and move.tool not in tools:
+        if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1 or move.tool not in tools:
             continue
         (side,) = sides
         speed = program.speed(index)

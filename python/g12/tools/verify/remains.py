@@ -14,11 +14,11 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cut_report import PolygonCut
-from g12.tools.path.part import disc, swept
+from g12.tools.path.part import disc
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.model.solid import FACE, JUST_ABOVE, Solids, reachable
+from g12.tools.verify.model.solid import JUST_ABOVE, Solids, reachable
 
 SLACK = 0.02  # mm: boundaries are compared with so much less
 LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should not
@@ -44,7 +44,6 @@ OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 MINUS = ": a lost minus sign?"
-NO_DEPTH = ("yasnac", "mitsubishi")  # whose blocks have no Z
 
 
 def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -58,7 +57,6 @@ def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
             yield from in_air(cut, solids)
-    yield from off_block(program, solids)
     yield from meeting([cut for cut in program.cuts if cut.is_circle and not cut.upright])
 
 
@@ -216,8 +214,7 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
     if not material.sweeps_of(cut.moves):
         tips = (program.tip(index, cut.surface) for index in program.fed(cut))
         above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
-        by_word = program.dialects.get(cut.code) not in NO_DEPTH
-        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL and by_word else "")
+        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)
@@ -229,24 +226,6 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield from _deep(cut, solids)
     if solids.bottom - cut.floor > THROUGH:
         yield cut.found(BELOW, place, below=solids.bottom - cut.floor)
-
-
-def off_block(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield moves at feed of no cut that go below a given block, or are wholly beside it.
-
-    A drill's point goes through, by less than the cutter's radius.
-    """
-    for rapid, run in program.runs() if math.isfinite(solids.bottom) else ():
-        radius, tips = program.cutter(run[0]), program.tips(run)
-        if rapid or program.cut_at(run[0]) or radius <= 0 or not program.is_known(run[0]):
-            continue
-        place = tips[tips[:, 2].argmin()]
-        below = solids.bottom - place[2]
-        if below > THROUGH + radius:
-            yield program.found(BELOW, run[0], place, below=below)
-        reaches = solids.of(FACE).surrounds(swept([tips], radius), place[2])
-        if place[2] < solids.top(FACE) - LEVEL and not reaches:
-            yield program.found(BESIDE, run[0], place)
 
 
 def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
