@@ -8,7 +8,6 @@ import numpy as np
 
 from bench import Figure
 from bench.polar import (
-    MANUAL_TOOLS,
     SAMPLES,
     at_feed,
     contour_of,
@@ -18,7 +17,6 @@ from bench.polar import (
 from g12.tools.path.section_times import least_seconds
 from support.contour_geometry import Round
 from support.operated_machine import Machine
-from support.polar_programs import INCHES
 from support.sim_machines import SIM
 
 FEEDS = {1000: 1.02, 2000: 1.03, 3000: 1.03}  # and the most of the ideal time
@@ -56,12 +54,6 @@ def figures():
             yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as slow:
         yield from slow_spindle(slow)
-    with (
-        Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as segments,
-        Machine(SIM / "lathe_inch_kinematics.ini", tools=MANUAL_TOOLS) as face,
-    ):
-        for name in INCHES:
-            yield manual(face, segments, name)
 
 
 def hexagon(face, segments, feed):
@@ -76,14 +68,11 @@ def hexagon(face, segments, feed):
 def circle(face, segments, feed):
     """Compare the times of a circle beside the axis."""
     shortest = least(CIRCLE, feed)
-    ours, others = (circle_seconds(lathe, feed) / shortest for lathe in (face, segments))
+    ours, others = (
+        seconds_in(lathe.run_text(circle_at(feed)), (4,)) / shortest for lathe in (face, segments)
+    )
     what = f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time"
     return Figure(what, ours, OF_LEAST[feed], f"with segments {others:.3f}")
-
-
-def circle_seconds(lathe, feed):
-    """Return the time of the circle."""
-    return seconds_in(lathe.run_text(circle_at(feed)), (4,))
 
 
 def circle_after_plunge(face):
@@ -111,7 +100,7 @@ def slow_spindle(lathe):
     axes = SLOW_SLIDE, SLOW_SPINDLE
     title = "polar with kinematics, C 90 degrees/s:"
     for feed, most in OF_LEAST_SLOW.items():
-        ratio = circle_seconds(lathe, feed) / least(CIRCLE, feed, *axes)
+        ratio = seconds_in(lathe.run_text(circle_at(feed)), (4,)) / least(CIRCLE, feed, *axes)
         yield Figure(f"{title} circle r 10, 20 off the axis, F{feed}", ratio, most)
     around = contour_of("hexagon", lathe.ini)
     for feed, most in HEXAGON_SLOW.items():
@@ -132,14 +121,8 @@ def slot(face, segments, feed):
     ours, others = (seconds_at(lathe, "slot", feed) for lathe in (face, segments))
     ideal = SLOT_LENGTH / feed * 60
     shares = f"against the ideal {ours / ideal:.3f} and {others / ideal:.3f}"
-    what = f"slot through the pole, F{feed}"
-    return beside(what, ours, others, f"{shares}, C turns in place for 0.6 s")
-
-
-def beside(what, ours, others, how):
-    """Return the row of two times, with kinematics and with segments."""
-    title = f"polar both ways: {what}, with kinematics against segments"
-    return Figure(title, ours / others, NO_SLOWER, how)
+    what = f"polar both ways: slot through the pole, F{feed}, with kinematics against segments"
+    return Figure(what, ours / others, NO_SLOWER, f"{shares}, C turns in place for 0.6 s")
 
 
 def switch(face):
@@ -151,14 +134,6 @@ def switch(face):
     what = "polar with kinematics: the machine stands at a switch"
     how = f"median of {len(stops)}, {stops.min()} to {stops.max()} ms; more on a busy computer"
     return Figure(what, float(np.median(stops)), SWITCH_MS, how, " ms")
-
-
-def manual(face, segments, name):
-    """Compare the times of a manual's whole program."""
-    runs = [lathe.run(SAMPLES / f"{name}.ngc") for lathe in (face, segments)]
-    assert [run.error for run in runs] == [None, None]
-    ours, others = (run.seconds for run in runs)
-    return beside(name, ours, others, f"{ours:.2f} s and {others:.2f} s")
 
 
 def deviation_on_face(face):

@@ -86,14 +86,6 @@ def test_a_helix_may_be_steep_where_its_centre_runs_over_an_open_hole(metric):
     assert traced.error is None and min(move.end[2] for move in traced.moves) == -5
 
 
-@KINDS
-@settings(max_examples=20, deadline=None)
-@given(seed=SEEDS)
-def test_any_wrong_block_moves_and_changes_nothing(metric, kind, seed):
-    before, block = hole_blocks.wrong(random.Random(seed), kind)
-    mode_matrix.check_refused(metric, before, block, f"{block.split()[0]}: ")
-
-
 def written(code, scale, incremental, numbers="", **values):
     if incremental:
         values |= {"X": values["X"] - 0.5, "Y": values["Y"] - 0.25, "Z": values["Z"] - 0.1}

@@ -46,21 +46,6 @@ def seconds(move):
 # ---------------------------------------------------------------- words
 
 
-@pytest.mark.parametrize(("code", "mirrored"), [("G41", "G42"), ("G42", "G41")])
-def test_a_negative_diameter_corrects_the_size_to_the_other_side(code, mirrored):
-    def traced(code, tool):
-        body = [f"G1 {code} Z-2", "C30", "Z-10 C60", "G3 Z-20 R5", "G1 C80", "G40 Z-30"]
-        return tools.trace_text(section(*body, tool=tool))
-
-    with Tracer(SIM / "lathe_mm.ini", tools={1: 0.4, 2: -0.4}) as tools:
-        other, plain = traced(code, "T2 M6"), traced(mirrored, "T1 M6")
-    assert [move._replace(tool=1) for move in feed_moves(other)] == feed_moves(plain)
-    assert [message.text.strip() for message in other.messages] == [
-        "G7.1: the loaded tool has the negative diameter -0.4 in the tool table: "
-        "G41 offsets the path by 0.2 to the right, G42 to the left"
-    ]
-
-
 def test_z_is_a_length_and_c_an_angle_and_a_line_is_one_move(lathe):
     traced = lathe.trace_text(section("G1 X18", "Z-10", "C90", "Z-20 C-720.5"))
     assert ends(traced) == [(18, 0, 0), (18, -10, 0), (18, -10, 90), (18, -20, -720.5)]
@@ -105,7 +90,6 @@ INSIDE = [  # those of one planner are in unit/test_cylinder.py
     ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
     ("G18 G7.1 C30", "G7.1 must be alone in its block"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
-    ("G41", "G41 needs a G1 with C or Z in its own block"),
     ("G1 Z501", "the Z axis would go to 501 mm, beyond its limit 500 mm"),
 ]  # fmt: skip
 

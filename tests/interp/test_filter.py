@@ -14,7 +14,7 @@ from g12.tools.machine.filter import OpenedProgram, filter_for, lines_of_source,
 from g12.tools.machine.ini import read_ini
 from g12.tools.system import PYTHON
 from support.foreign_programs import FOREIGN
-from support.sim_machines import PROGRAMS, ROOT, SIM, copy_of_machines
+from support.sim_machines import ROOT, SIM, copy_of_machines
 from support.small_configs import put_in, write_config
 
 POCKET = """\
@@ -69,45 +69,39 @@ def reported(sim, tmp_path, capsys):
     return tell
 
 
-def test_moves_have_the_lines_of_the_users_file(reported):
+def test_moves_and_cuts_have_the_lines_of_the_users_file(reported):
     code, out, errors = reported("trace", POCKET)
     assert (code, errors) == (0, "")
     assert [int(line.split()[0]) for line in out.splitlines()[:5]] == [1, 4, 6, 7, 8]
-
-
-def test_a_pocket_is_proved_on_the_line_of_the_users_file(reported):
     code, out, errors = reported("verify", POCKET, "--json")
     assert (code, errors) == (0, "")
     assert [pocket["line"] for pocket in json.loads(out)["pockets"]] == [8]
-    code, out, _ = reported("verify", POCKET)
-    assert "line 8  G12 (haas)" in out
 
 
-@pytest.mark.parametrize("command", ["trace", "verify"])
-def test_an_error_has_the_line_of_the_users_file(reported, command):
-    code, _, errors = reported(command, POCKET.replace("I.6", "I.1"))
+# A filter of another's, which writes lines that are not the user's.
+WRITTEN = "G20 G90 G0 X0\\n(A)\\nG1 X1 F9\\nG1 X2\\nT2 M6\\nG12 I.1 Z-.2 D2 F20\\nM2\\n"
+OTHER = f"printf '{WRITTEN}'"
+FAILED = "PROGRAM: the filter {} failed: {}\n"
+ERRORS = [  # a program, its filter, what is said
+    (POCKET.replace("I.6", "I.1"), TRANSLATE, "PROGRAM:8: G12: I0.1 must be greater than"),
+    (POCKET.replace("M98 P10", "G150 P10"), TRANSLATE, "PROGRAM:7: G150: the pocket of any shape"),
+    ("import nothing\n", OTHER, "PROGRAM (filtered):6: G12: I0.1 must be greater"),
+    (POCKET, "false", FAILED.format("false", "without a word")),
+    (POCKET, "nowhere", FAILED.format("nowhere", "[FILTER]: 1: nowhere: not found")),
+    (
+        POCKET,
+        "ls --nothing",
+        FAILED.format("ls --nothing", "Try 'ls --help' for more information."),
+    ),
+]
+
+
+@pytest.mark.parametrize("name", ["trace", "verify"])
+@pytest.mark.parametrize(("program", "command", "says"), ERRORS)
+def test_an_error_is_that_of_the_users_file(reported, name, program, command, says):
+    code, _, errors = reported(name, program, command=command)
     assert code == 2
-    assert errors.startswith(f"g12 {command}: PROGRAM:8: G12: I0.1 must be greater than")
-
-
-@pytest.mark.parametrize("command", ["trace", "verify"])
-def test_what_the_filter_refuses_is_told(reported, command):
-    code, out, errors = reported(command, POCKET.replace("M98 P10", "G150 P10"))
-    assert (code, out) == (2, "")
-    assert errors.startswith(f"g12 {command}: PROGRAM:7: G150: the pocket of any shape")
-
-
-@pytest.mark.parametrize(
-    ("command", "last"),
-    [
-        ("false", "without a word"),
-        ("nosuchfilter", "[FILTER]: 1: nosuchfilter: not found"),
-        ("ls --nothing", "Try 'ls --help' for more information."),
-    ],
-)
-def test_a_filter_that_fails_is_named(reported, command, last):
-    said = f"g12 verify: PROGRAM: the filter {command} failed: {last}\n"
-    assert reported("verify", POCKET, command=command) == (2, "", said)
+    assert f"g12 {name}: {says}" in errors
 
 
 def test_a_picture_has_the_lines_of_the_users_file(reported, tmp_path):
@@ -143,17 +137,8 @@ def test_a_recording_has_the_users_file_and_its_lines(sim, tmp_path, capsys):
     ],
 )
 def test_each_machine_opens_programs_of_its_control(capsys, machine, program):
-    path = FOREIGN / f"{program}.nc"
-    ini = SIM / f"{machine}.ini"
-    assert ".nc" in "".join(read_ini(ini).all("FILTER", "PROGRAM_EXTENSION"))
+    path, ini = FOREIGN / f"{program}.nc", SIM / f"{machine}.ini"
     assert main.main(["trace", str(path), "--ini", str(ini)]) == 0, capsys.readouterr().err
-
-
-def test_a_program_without_a_filter_is_the_users_file(sim):
-    program = PROGRAMS / "haas" / "O60121.ngc"
-    with opened_program(program, read_ini(sim / "mill_inch.ini")) as opened:
-        assert (opened.path, opened.lines) == (program, ())
-        assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
 
 
 def test_screens_open_both_cases_through_the_filter(tmp_path):
@@ -183,15 +168,18 @@ def test_a_program_whose_case_has_no_filter_is_said_to_be_read_as_it_is(sim, tmp
     assert capsys.readouterr().err == f"g12 trace: {says}"
 
 
-def test_any_filter_is_applied(sim, tmp_path):
+def test_any_filter_is_applied_and_without_one_the_program_is_the_users_file(sim, tmp_path):
     program = tmp_path / "one.nc"
     program.write_text("G0 X1\n")
     own = read_ini(mill_with(sim, "sed s/X1/X2/"))
-    assert filter_for(program, own) == "sed s/X1/X2/"
     with opened_program(program, own) as opened:
         assert opened.path.read_text() == "G0 X2\n"
         assert opened.path.name == program.name
     assert not opened.path.exists()
+    program = program.rename(tmp_path / "one.ngc")
+    with opened_program(program, own) as opened:
+        assert (opened.path, opened.lines) == (program, ())
+        assert opened.in_source(f"{program}:5: line 6") == f"{program}:5: line 6"
 
 
 def test_lines_that_a_filter_adds_say_theirs():
@@ -205,22 +193,9 @@ def test_each_of_several_lines_in_a_text_is_the_users(tmp_path):
     assert opened.in_source(several.format(*[1, 3] * 3, 1)) == several.format(*[7, 9] * 3, 7)
 
 
-WRITTEN = "G20 G90 G0 X0\n(A)\nG1 X1 F9\nG1 X2\nT2 M6\nG12 I.1 Z-.2 D2 F20\nM2\n"
-OTHER = "from nowhere\nimport nothing\n"
-
-
-@pytest.mark.parametrize("name", ["trace", "verify"])
-def test_lines_that_the_user_has_not_are_said_to_be_the_filters(reported, tmp_path, name):
-    made = tmp_path / "made.ngc"
-    made.write_text(WRITTEN)
-    *_, errors = reported(name, OTHER, command=f"sh -c 'cat {made}'")
-    assert f"g12 {name}: PROGRAM (filtered):6: G12: I0.1 must be greater" in errors
-
-
-def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(reported, tmp_path):
-    made = tmp_path / "made.ngc"
-    made.write_text(WRITTEN.replace("I.1", "I.5").replace("G1 X1", "G0 Z1"))
-    _, out, errors = reported("verify", OTHER, command=f"sh -c 'cat {made}'")
+def test_findings_in_lines_that_the_user_has_not_are_said_to_be_there(reported):
+    command = OTHER.replace("I.1", "I.5").replace("G1 X1", "G0 Z1")
+    _, out, errors = reported("verify", "import nothing\n", command=command)
     assert "line 6  G12 (haas)" in out
     assert errors.endswith(
         "PROGRAM: lines are those of the program that the INI's [FILTER] makes of it\n"
@@ -234,7 +209,8 @@ def test_what_install_is_told_of_numbers_rules_the_programs(tmp_path, capsys):
     program.write_text("G0 X1500 Z5.\nM30\n")
     words = ["install", str(ini), "--with", "programs-fanuc-lathe"]
     assert main.main([*words, "--dry-run"]) == 0
-    assert capsys.readouterr().out.startswith("asked: X1500 has no decimal point. With --decimals")
+    asked = "asked: X1500 has no decimal point. With --decimals least it is 1.5 mm, with"
+    assert capsys.readouterr().out.startswith(asked)
     assert main.main([*words, "--decimals", "least", "--units", "inch"]) == 0
     assert "asked:" not in capsys.readouterr().out
     assert main.main(["trace", str(program), "--ini", str(ini), "--digits", "3"]) == 0

@@ -250,3 +250,29 @@ def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path)
             assert found.error is None, (form, found.error)
             assert all("C has turned" in message.text for message in found.messages)
             assert cut_geometry.cutting(found.moves)
+
+
+# ---------------------------------------------------------------- T0
+
+LOADED = "T needs a number; 0 is the loaded tool, and none is loaded"
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_tool_0_is_the_loaded_one(cut, form):
+    name = form.removeprefix("form_").removesuffix("_mm")
+    assert cut(name, "mm", tool=0).error.text == f"form: {LOADED}"
+    loaded = cut(name, "mm", before="G21 G8 T2 M6", tool=0)
+    assert {move.tool for move in loaded.moves} == {2}
+
+
+@pytest.mark.parametrize(
+    ("form", "rule"),
+    [
+        ("bore", "D2 has no diameter: it sets the path"),
+        ("circle_mill", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
+        ("slot", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
+    ],
+)
+def test_a_loaded_tool_without_a_diameter_is_refused(cut, form, rule):
+    traced = cut(form, "mm", before="G10 L1 P2 R0\nG21 G8 T2 M6", tool=0)
+    assert traced.error.text.endswith(rule)

@@ -11,12 +11,11 @@ from g12.machine_ini import remap_from_value
 from g12.tools.commands.main import main
 from g12.tools.forms.table import HANDLERS
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import PROBLEM, Refused
+from g12.tools.install.config.findings import Refused
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import installed_programs, load_config
-from g12.tools.install.rules import findings_of
 from g12.tools.machine.ini import read_ini
-from support.sample_configs import SAMPLES, copy_samples, tree
+from support.sample_configs import SAMPLES, copy_samples, problems_of, tree
 from support.small_configs import planned
 
 SCREENS = ("axis", "gmoccapy", "qtvcp", "touchy", "tklinuxcnc")
@@ -112,9 +111,8 @@ def test_the_full_set_loads_in_the_stock_interpreter(samples, name):
     path = samples / name
     before, names = tree(path.parent), full_set(read_ini(path))
     assert main(["install", str(path), "--with", *names]) == 0
+    assert problems_of(path) == []
     config = load_config(IniText(path))
-    found = findings_of(config)
-    assert [finding for finding in found if finding.level == PROBLEM] == []
     there = {*config.features} | {f"programs-{control}" for control in installed_programs(config)}
     assert there == {*names} - {"forms", "cycles-page"}
     assert bool(config.ini.all("DISPLAY", "NGCGUI_SUBFILE")) == ("forms" in names)

@@ -247,7 +247,6 @@ def test_every_message_of_a_page_is_made(page):
 
 SESSION = re.compile(r"^```\n(\$ .*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"`(\w+\.ngc)`[^`]*?\n\n((?: {4}.*\n)+)", re.MULTILINE)
-PROGRESS = re.compile(r"^drawing .*\n", re.MULTILINE)  # where a machine is slow
 SECONDS = re.compile(r"\d+(\.\d+)?(?= s\b)")
 
 

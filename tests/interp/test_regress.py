@@ -93,48 +93,56 @@ def pocket(shop):
 # ---------------------------------------------------------------- record, check, record
 
 
-def test_what_was_recorded_is_as_recorded(shop):
+def test_what_was_recorded_is_as_recorded_and_recording_again_changes_no_file(shop):
     shop.write("pocket.ngc", POCKET)
-    shop.write("sub/plain.ngc", PLAIN)
-    new = ["pocket.ngc: new, 25 moves", "sub/plain.ngc: new, 5 moves", "2 programs: 2 new"]
-    assert shop.record() == new
-    assert shop.check() == (0, ["2 programs: 2 as recorded"])
-    assert shop.check(jobs=2) == (0, ["2 programs: 2 as recorded"])
-
-
-def test_a_recording_names_files_and_versions_but_no_folders(pocket):
-    text = pocket.trace("pocket.ngc").read_text(encoding="utf-8")
+    shop.write("sub/plain\n.ngc", PLAIN)
+    new = ["pocket.ngc: new, 25 moves", "sub/plain", ".ngc: new, 5 moves", "2 programs: 2 new"]
+    assert "\n".join(shop.record()).split("\n") == new
+    assert shop.check() == shop.check(jobs=2) == (0, ["2 programs: 2 as recorded"])
+    text = shop.trace("pocket.ngc").read_text(encoding="utf-8")
     program = f"g12 trace 1\nprogram pocket.ngc {hash_of(POCKET.encode())}\n"
     assert text.startswith(f"{program}machine mill_inch.ini sha256:")
-    assert str(ROOT) not in text
-    assert str(pocket.folder) not in text
+    assert str(ROOT) not in text and str(shop.folder) not in text
     assert "\n6: G12 I.3 K1.5 Q.2 Z-.5 D1 F10\n  feed Z-0.5 F10\n" in text
-
-
-def test_recording_again_changes_no_file(pocket):
-    files = [path for path in pocket.recordings.rglob("*") if path.is_file()]
-    before = {path: path.read_bytes() for path in files}
-    times = {path: path.stat().st_mtime_ns for path in files if path.suffix == ".trace"}
-    pocket.record()
-    assert {path: path.read_bytes() for path in files} == before
-    assert {path: path.stat().st_mtime_ns for path in times} == times
-
-
-def test_comments_and_line_numbers_are_no_change(pocket):
-    pocket.change("pocket.ngc", "G12 I.3", "(the pocket)\nN20 G12 (clockwise) I.3")
-    assert pocket.check() == (0, ["2 programs: 2 as recorded"])
-
-
-def test_a_name_may_have_a_line_break(shop):
-    shop.write("a\nb.ngc", PLAIN)
+    files = [path for path in shop.recordings.rglob("*") if path.is_file()]
+    before = [path.read_bytes() for path in files]
+    times = [path.stat().st_mtime_ns for path in files if path.suffix == ".trace"]
     shop.record()
-    assert shop.check() == (0, ["1 program: 1 as recorded"])
+    assert [path.read_bytes() for path in files] == before
+    assert [path.stat().st_mtime_ns for path in files if path.suffix == ".trace"] == times
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words", "finding"),
+    [
+        ("G12 I.3", "(the pocket)\nN20 G12 (clockwise) I.3", [], ""),
+        ("M8\n", "", [], "pocket.ngc:5 as recorded: missing: M8 on"),
+        ("T1 M6", "T1 M6 G43", [], "pocket.ngc:5: new: G43"),
+        ("M2", "M30", [], "pocket.ngc: modal state at the end: M2 → M30"),
+        ("X5", "X5.0005", ["--tolerance", "0.0006"], ""),  # in machine units
+        ("X5", "X5.0005", ["--tolerance", "0.0004"], "pocket.ngc:8: 1 move: X5 → X5.0005 (+0.0005"),
+        ("Q.2", "Q.25", ["--picture", "changes"], "pocket.ngc:6: "),
+    ],
+)
+def test_what_changed_is_reported_and_recording_again_accepts_it(
+    pocket, monkeypatch, old, new, words, finding
+):
+    monkeypatch.chdir(pocket.folder)
+    pocket.change("pocket.ngc", old, new)
+    code, lines = pocket.check("pocket.ngc", *words)
+    assert code == bool(finding) and lines[0].startswith(finding or "1 program: 1 as recorded")
+    if "--picture" in words:
+        assert "pocket.ngc: see changes/pocket.ngc.png" in lines
+        (picture,) = (pocket.folder / "changes").iterdir()
+        assert picture.read_bytes().startswith(b"\x89PNG")
+    elif finding:
+        again = pocket.run("record")
+        assert (again[0], again[1][0]) == (0, lines[0]) and pocket.check()[0] == 0
 
 
 def test_programs_named_one_by_one(shop):
     one, other = (shop.write(f"{name}.ngc", PLAIN) for name in "ab")
-    new = ["a.ngc: new, 5 moves", "1 program: 1 new"]
-    assert shop.run("record", one, "--ini", INI) == (0, new, [])
+    assert shop.run("record", one, "--ini", INI)[1] == ["a.ngc: new, 5 moves", "1 program: 1 new"]
     assert shop.check() == (0, ["1 program: 1 as recorded"])
     assert shop.run("record", other)[0] == 0
     shop.change("b.ngc", "X10", "X11")
@@ -155,35 +163,12 @@ def test_a_finding_for_other_programs_is_json(pocket):
     assert finding["block"] == "X5.25"
 
 
-@pytest.mark.parametrize(
-    ("old", "new", "finding"),
-    [
-        ("M8\n", "", "pocket.ngc:5 as recorded: missing: M8 on"),
-        ("T1 M6", "T1 M6 G43", "pocket.ngc:5: new: G43"),
-        ("M2", "M30", "pocket.ngc: modal state at the end: M2 → M30"),
-    ],
-)
-def test_what_is_no_move_is_compared_too(pocket, old, new, finding):
-    pocket.change("pocket.ngc", old, new)
-    code, lines = pocket.check("pocket.ngc")
-    assert code == 1
-    assert lines[0].startswith(finding)
-
-
-def test_the_tolerance_is_in_machine_units(pocket):
-    pocket.change("pocket.ngc", "X5", "X5.0005")
-    assert pocket.check()[0] == 1
-    assert pocket.check("--tolerance", "0.0006")[0] == 0
-    assert pocket.check("--tolerance", "0.0004")[0] == 1
-
-
 # ---------------------------------------------------------------- refused, added, gone, failed
 
 
 def test_a_refusal_can_be_what_is_expected(shop):
     shop.write("refused.ngc", POCKET.replace("I.3", "I-.3"))
-    lines = shop.record()
-    assert lines[0].startswith("refused.ngc: new, refused at line 6: G12: I-0.3")
+    assert shop.record()[0].startswith("refused.ngc: new, refused at line 6: G12: I-0.3")
     assert shop.check() == (0, ["1 program: 1 as recorded"])
     shop.write("refused.ngc", POCKET)
     code, lines = shop.check()
@@ -272,12 +257,6 @@ def test_an_interrupted_recording_ends_at_once(endless):
     assert living(endless.pid) == []
 
 
-def test_a_recording_that_is_killed_leaves_no_process(endless):
-    endless.kill()
-    endless.wait()
-    assert until(lambda: not living(endless.pid), 60)
-
-
 def test_interpreters_that_are_killed_are_reported_in_a_line_each(endless):
     while endless.poll() is None:
         for number in set(living(endless.pid)) - {endless.pid}:
@@ -290,14 +269,6 @@ def test_interpreters_that_are_killed_are_reported_in_a_line_each(endless):
     assert out.splitlines() == [*died, "3 programs: 3 failed"]
 
 
-def test_recording_again_shows_what_changed_and_accepts_it(pocket):
-    pocket.change("pocket.ngc", "X5", "X6")
-    code, lines, _ = pocket.run("record")
-    assert code == 0
-    assert lines[0] == "pocket.ngc:8: 1 move: X5 → X6 (+1 in)"
-    assert pocket.check()[0] == 0
-
-
 # ---------------------------------------------------------------- other versions of things
 
 
@@ -306,11 +277,31 @@ def test_new_versions_of_the_programs_in_another_folder(pocket):
     pocket.write("pocket.ngc", POCKET.replace("K1.5", "K1.6"), new)
     pocket.write("more.ngc", PLAIN, new)
     code, lines = pocket.check("--programs", new)
-    assert code == 1
+    assert code == 1 and "sub/plain.ngc: missing, it was recorded" in lines
     assert lines[0] == "more.ngc: added, it is not recorded"
     assert lines[1].startswith("pocket.ngc:6: ")
-    assert "sub/plain.ngc: missing, it was recorded" in lines
-    assert pocket.check()[0] == 0
+
+
+def test_another_machine_and_linuxcnc_are_noted_and_their_effect_found(shop):
+    """The var file is the recorded one."""
+    ini = shop.write("own.ini", MILL, shop.folder)
+    var = shop.write("mill.var", "100\t7.0\n5221\t3.0\n", shop.folder)
+    shop.write("shift.ngc", "G90 G54\nG0 X#100\nM2\n")
+    shop.record("--var", var, ini=ini)
+    trace = shop.trace("shift.ngc")
+    text = trace.read_text(encoding="utf-8")
+    assert "\n  rapid X10\n" in text
+    var.write_text("100\t8.0\n", encoding="utf-8")
+    version = text.split("\n")[3]
+    trace.write_text(text.replace(version, "linuxcnc 2.8.0"), encoding="utf-8")
+    old = f"note: LinuxCNC 2.8.0 when recorded, {version.partition(' ')[2]} now"
+    worn = "note: mill.var has changed since the recording, its recorded copy is used"
+    assert shop.check() == (0, [old, worn, "1 program: 1 as recorded"])
+    started = "[RS274NGC]\nRS274NGC_STARTUP_CODE = G20\n"
+    ini.write_text(MILL.replace("[RS274NGC]\n", started), encoding="utf-8")
+    code, lines = shop.check()
+    assert code == 1 and "note: own.ini has changed since the recording" in lines
+    assert any("X10 → X180.8 (+170.8 mm)" in line for line in lines)
 
 
 def test_a_tool_that_wears_changes_no_recording_until_requested(shop):
@@ -330,51 +321,6 @@ def test_a_tool_that_wears_changes_no_recording_until_requested(shop):
     assert shop.check() == (0, ["1 program: 1 as recorded"])
 
 
-def test_parameters_are_the_recorded_ones(shop):
-    ini = shop.write("own.ini", MILL, shop.folder)
-    var = shop.write("mill.var", "100\t7.0\n5221\t3.0\n", shop.folder)
-    shop.write("shift.ngc", "G21 G90 G54\nG0 X#100\nM2\n")
-    shop.record("--var", var, ini=ini)
-    assert "\n  rapid X10\n" in shop.trace("shift.ngc").read_text(encoding="utf-8")
-    var.write_text("100\t8.0\n", encoding="utf-8")
-    note = "note: mill.var has changed since the recording, its recorded copy is used"
-    assert shop.check() == (0, [note, "1 program: 1 as recorded"])
-
-
-def test_another_version_of_linuxcnc_is_noted(pocket):
-    path = pocket.trace("pocket.ngc")
-    text = path.read_text(encoding="utf-8")
-    version = text.split("\n")[3]
-    path.write_text(text.replace(version, "linuxcnc 2.8.0"), encoding="utf-8")
-    code, lines = pocket.check()
-    assert code == 0
-    now = version.partition(" ")[2]
-    assert lines[0] == f"note: LinuxCNC 2.8.0 when recorded, {now} now"
-
-
-def test_a_changed_ini_is_noted_and_its_effect_found(shop):
-    ini = shop.write("own.ini", MILL, shop.folder)
-    shop.write("plain.ngc", PLAIN.replace("G21", ""))
-    shop.record(ini=ini)
-    started = "[RS274NGC]\nRS274NGC_STARTUP_CODE = G20\n"
-    ini.write_text(MILL.replace("[RS274NGC]\n", started), encoding="utf-8")
-    code, lines = shop.check()
-    assert code == 1
-    assert lines[0] == "note: own.ini has changed since the recording"
-    assert any("X10 → X254 (+244 mm)" in line or "X by up to +244 mm" in line for line in lines)
-
-
-def test_a_picture_of_each_change(pocket):
-    pocket.change("pocket.ngc", "Q.2", "Q.25")
-    pictures = pocket.folder / "changes"
-    code, lines = pocket.check("--picture", pictures)
-    assert code == 1
-    picture = pictures / "pocket.ngc.png"
-    assert f"pocket.ngc: see {picture}" in lines
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert [path.name for path in pictures.iterdir()] == ["pocket.ngc.png"]
-
-
 # ---------------------------------------------------------------- wrong uses
 
 
@@ -385,37 +331,43 @@ def wrong(shop, *words):
     return errors[0][len("g12 regress: ") :]
 
 
-def test_wrong_uses_of_an_empty_directory(shop):
-    program = shop.write("plain.ngc", PLAIN)
-    empty = shop.programs / "empty"
-    empty.mkdir()
-    where = f"{shop.recordings}: nothing is recorded there"
-    assert wrong(shop, "check") == f"{where} (no regress.json)"
-    assert wrong(shop, "record", "--ini", INI) == f"{where}; name the programs"
-    assert wrong(shop, "record", program) == f"{where}; name the machine, --ini"
-    assert wrong(shop, "record", "no.ngc", "--ini", INI) == "no.ngc: no such file or folder"
-    assert wrong(shop, "record", program, "--ini", "no.ini") == "no.ini: no such file"
-    assert wrong(shop, "record", empty, "--ini", INI) == (
-        f"{empty}: no programs in this folder (.ngc, .nc, .tap, .gcode, .min, .eia)"
-    )
-    assert wrong(shop, "record", program, "--ini", INI, "--tools", "no.tbl") == (
-        "no.tbl: no such file"
-    )
-    assert not shop.recordings.exists()
-    shop.recordings.write_text("a file")
-    assert wrong(shop, "record", program, "--ini", INI) == f"{shop.recordings}: not a directory"
+@pytest.mark.parametrize(
+    ("words", "problem"),
+    [
+        ("check", "REGRESS: nothing is recorded there (no regress.json)"),
+        (f"record --ini {INI}", "REGRESS: nothing is recorded there; name the programs"),
+        ("record PLAIN", "REGRESS: nothing is recorded there; name the machine, --ini"),
+        (f"record no.ngc --ini {INI}", "no.ngc: no such file or folder"),
+        ("record PLAIN --ini no.ini", "no.ini: no such file"),
+        (f"record EMPTY --ini {INI}",
+         "EMPTY: no programs in this folder (.ngc, .nc, .tap, .gcode, .min, .eia)"),
+        (f"record PLAIN --ini {INI} --tools no.tbl", "no.tbl: no such file"),
+        (f"record PLAIN --ini {INI} -d PLAIN", "PLAIN: not a directory"),
+    ],
+)  # fmt: skip
+def test_wrong_uses_of_an_empty_directory(shop, words, problem):
+    names = {"PLAIN": shop.write("plain.ngc", PLAIN), "EMPTY": shop.programs / "empty"}
+    names["EMPTY"].mkdir()
+    if words.endswith("-d PLAIN"):
+        shop.recordings, words = names["PLAIN"], words.removesuffix(" -d PLAIN")
+    said = wrong(shop, *(names.get(word, word) for word in words.split()))
+    for name, path in {**names, "REGRESS": shop.recordings}.items():
+        problem = problem.replace(name, str(path))
+    assert said == problem and not (shop.folder / "regress").exists()
 
 
 def test_wrong_uses_of_a_recorded_directory(pocket):
     elsewhere = pocket.write("other.ngc", PLAIN, pocket.folder / "elsewhere")
-    assert "use another -d" in wrong(pocket, "record", elsewhere)
-    program = pocket.programs / "pocket.ngc"
-    assert "is recorded on" in wrong(pocket, "record", program, "--ini", SIM / "mill_mm.ini")
-    assert wrong(pocket, "check", "no.ngc") == f"no.ngc: not recorded in {pocket.recordings}"
-    assert wrong(pocket, "check", "--programs", "no") == "no: no such file or folder"
-    assert wrong(pocket, "check", "--tools", "no.tbl") == "no.tbl: no such file"
-    assert wrong(pocket, "check", "--ini", "no.ini") == "no.ini: no such file"
-    about = pocket.recordings / "regress.json"
+    program, about = pocket.programs / "pocket.ngc", pocket.recordings / "regress.json"
+    for words, problem in (
+        (["record", elsewhere], "; use another -d for it"),
+        (["record", program, "--ini", SIM / "mill_mm.ini"], ": name no programs to record it"),
+        (["check", "no.ngc"], f"no.ngc: not recorded in {pocket.recordings}"),
+        (["check", "--programs", "no"], "no: no such file or folder"),
+        (["check", "--tools", "no.tbl"], "no.tbl: no such file"),
+        (["check", "--ini", "no.ini"], "no.ini: no such file"),
+    ):
+        assert wrong(pocket, *words).endswith(problem)
     text = about.read_text(encoding="utf-8")
     without = (json.dumps({**json.loads(text), key: None}) for key in ("ini", "programs"))
     other = text.replace('"format": 1', '"format": 2')
@@ -426,16 +378,14 @@ def test_wrong_uses_of_a_recorded_directory(pocket):
 
 
 def test_a_damaged_recording_is_named_and_can_be_recorded_again(pocket):
-    path = pocket.trace("pocket.ngc")
+    path, other = pocket.trace("pocket.ngc"), pocket.trace("sub/plain.ngc")
     path.write_text("<<<<<<< mine\n", encoding="utf-8")
     assert wrong(pocket, "check") == (
         f"{path}: not a trace, or one that was edited: line 1: not 'g12 trace 1'"
     )
-    other = pocket.trace("sub/plain.ngc")
     other.write_text(other.read_text(encoding="utf-8") + "junk\n", encoding="utf-8")
     assert "something after the end" in wrong(pocket, "check", "sub/plain.ngc")
-    assert pocket.run("record")[0] == 0
-    assert pocket.check()[0] == 0
+    assert pocket.run("record")[0] == pocket.check()[0] == 0
 
 
 def test_a_machine_that_does_not_load_is_one_line(shop):

@@ -152,24 +152,13 @@ def refused(lathe, text):
     return traced.error.text
 
 
-ABOVE = "Z0: a shape begins at the tool's position, which must be above the face at Z0"
-
-
 @pytest.mark.parametrize(
     ("shape", "entries", "changed", "rule"),
     [  # those of one planner are in unit/test_shapes.py
         ("polar_polygon", dict(depth=501), {},
          "the Z axis would go to -501 mm, beyond its limit -500 mm"),
         ("polar_slot", dict(depth=LEFT), {}, "depth is missing: how deep, from the face at Z0"),
-        ("polar_slot", dict(feed=LEFT), dict(feed="F0"), "feed is missing, and no F is active"),
-        ("polar_pocket", {}, dict(tool=0), "no tool is loaded: its diameter sets the path"),
-        ("polar_pocket", {}, dict(start="G0 X40 Z0 C0"), ABOVE),
         ("polar_slot", {}, dict(feed="G93"), "needs G94 or G95, not G93"),
-        ("polar_polygon", {}, dict(feed="G19"), "needs G18 or G17, not G19"),
-        ("polar_slot", {}, dict(feed="G95 F.1"),
-         "feed per revolution (G95) needs the spindle speed S"),
-        ("polar_pocket", {}, dict(feed="G96 S100 M3"),
-         "needs G97: with G96 the speed would change with X"),
     ],
 )  # fmt: skip
 def test_a_call_is_refused_by_name_where_it_cannot_be_cut(lathe, shape, entries, changed, rule):

@@ -21,14 +21,6 @@ def ini_of(name, offset=8.0):
     return read_ini(SIM / f"{name}.ini").replaced({"G12": {"POLAR_TOOL_OFFSET": offset}})
 
 
-@pytest.mark.parametrize("name", WAYS)
-def test_verify_finds_the_part_good(name):
-    proof = prove(HEXAGON, ini_of(name, -0.02))
-    (facts,) = proof.sections
-    assert proof.findings == []
-    assert facts.deviation <= 0.005
-
-
 def test_verify_finds_a_tool_that_is_elsewhere(monkeypatch):
     monkeypatch.setattr(Ini, "tool_beside", 7.9)
     assert prove(HEXAGON, ini_of("lathe_mm")).findings

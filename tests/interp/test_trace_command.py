@@ -44,33 +44,21 @@ def test_moves_are_listed(reported):
     ]
 
 
-def test_a_var_file_gives_the_work_offsets_to_start_with(reported, tmp_path):
-    stored = tmp_path / "shop.var"
-    stored.write_text("5220\t1\n5221\t10\n5241\t20\n")
-    text = "G21 G90 G54\nG0 X1\nG55\nG0 X2\nM2\n"
-    ends = [
-        [line.split()[-1] for line in reported("trace", text, "--digits", "0", *words)[1]]
-        for words in ([], ["--var", str(stored)])
-    ]
-    assert ends == [["X1", "X2"], ["X11", "X22"]]
-
-
 @pytest.mark.parametrize(
-    ("in_force", "flag", "notes"),
+    ("in_force", "flag", "notes", "x"),
     [
-        (
-            1,
-            "",
-            ["a G92 or G52 from before is in force at the start, and shifts everything by X2 Z-5"],
-        ),
-        (0, "", []),
-        (1, "DISABLE_G92_PERSISTENCE = 1", []),
+        (1, "", ["a G92 or G52 from before is in force at the start, and shifts everything by X2 "
+                 "Z-5"], "X13.000000"),
+        (0, "", [], "X11.000000"),
+        (1, "DISABLE_G92_PERSISTENCE = 1\n", [], "X11.000000"),
     ],
-)
+)  # fmt: skip
 @pytest.mark.parametrize("name", ["trace", "plot"])
-def test_an_offset_of_g92_from_before_is_said(reported, tmp_path, name, in_force, flag, notes):
+def test_a_var_file_has_the_offsets_to_start_with_and_one_of_g92_is_said(
+    reported, tmp_path, name, in_force, flag, notes, x
+):
     stored, ini = tmp_path / "shop.var", write_config(tmp_path, with_lines(MILL, "RS274NGC", flag))
-    stored.write_text(f"5210\t{in_force}\n5211\t2\n5213\t-5.0\n5220\t1\n")
+    stored.write_text(f"5210\t{in_force}\n5211\t2\n5213\t-5.0\n5220\t1\n5221\t10\n")
     picture = ["-o", str(tmp_path / "part.png")] if name == "plot" else []
     text = "G21 G90 F100\nG0 X1 Z0\nG1 Z2\nM2\n"
     code, lines, _ = reported(name, text, "--var", str(stored), *picture, ini=ini)
@@ -78,6 +66,7 @@ def test_an_offset_of_g92_from_before_is_said(reported, tmp_path, name, in_force
     assert (code, [line.partition("note")[2].lstrip(": ") for line in said]) == (
         0, [f"{note} (machine units): G92.1 ends it" for note in notes],
     )  # fmt: skip
+    assert name == "plot" or any(f"rapid {x}" in line for line in lines)
 
 
 @pytest.mark.parametrize(
@@ -119,24 +108,6 @@ def test_a_program_with_an_error_is_named(
     assert code == 2
     assert errors.startswith(f"g12 {name}: {error}")
     assert errors.count("\n") == 1
-
-
-def test_a_machine_that_does_not_load_is_one_line(reported, tmp_path):
-    ini = tmp_path / "own.ini"
-    ini.write_text("[RS274NGC]\nREMAP = G12 modalgroup=1 ngc=nowhere\n[TRAJ]\nCOORDINATES = XYZ\n")
-    code, lines, errors = reported("trace", "M2\n", ini=ini)
-    assert (code, lines) == (2, [])
-    assert "nowhere" in errors
-    assert errors.count("\n") == 1
-
-
-def test_a_number_that_is_none_is_one_line(reported, tmp_path):
-    ini = tmp_path / "own.ini"
-    ini.write_text("[TRAJ]\nCOORDINATES = XZC\n[AXIS_X]\nMAX_VELOCITY = fast\n")
-    words = ["-o", str(tmp_path / "no.png")]
-    code, _, errors = reported("plot", "G21 G90 F100\nG1 X1 C5\nM2\n", *words, ini=ini)
-    assert code == 2
-    assert errors == f"g12 plot: {ini}: [AXIS_X] MAX_VELOCITY = fast: must be a number\n"
 
 
 def test_an_error_comes_after_the_moves_before_it(tmp_path):

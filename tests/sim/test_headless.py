@@ -4,7 +4,6 @@
 import os
 import shutil
 import subprocess
-import tempfile
 import time
 from pathlib import Path
 
@@ -13,14 +12,10 @@ import pytest
 
 from g12.tools.headless.errors import MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import PYTHON, Isolated, has_namespaces
-from support.cut_geometry import points_at
 from support.operated_machine import Machine, kept_machine
 from support.sim_machines import ROOT, SIM, trace_text, with_package
 from support.small_configs import content_of
 
-EXAMPLES = Path("/usr/share/doc/linuxcnc/examples/sample-configs/sim")
-NOBODY = 65534
-MARK = ";py,from interpreter import this; this.sequence_number = 1\n"
 PATIENCE = 15.0  # s that a container gives LinuxCNC to end by itself, and again after SIGTERM
 
 
@@ -34,17 +29,6 @@ def machine(running):
 
 
 # Whole programs.
-
-
-def test_real_motion_follows_the_trace(machine):
-    program = ["G21 G90 G61 F1000", "G1 X10 Y5", "G3 X20 Y15 I0 J10", "G2 I5", "G0 Z3", "M2"]
-    samples = machine.motion_of(program)
-    moves = trace_text(program, SIM / "mill_mm.ini").moves
-    path = np.concatenate([points_at(move, np.linspace(0, 1, 400)) for move in moves])
-    real = np.column_stack([samples.axes[axis] for axis in "XYZ"])
-    for point in real[::20]:
-        assert np.min(np.hypot(*(path - point).T[:2])) < 0.06
-    assert real[-1] == pytest.approx(moves[-1].end[:3], abs=1e-9)
 
 
 def test_a_recording_with_gaps_is_an_error(machine):
@@ -79,19 +63,6 @@ def test_program_stops_are_passed_over(machine):
 
 
 # Control.
-
-
-@pytest.mark.parametrize(("mark", "stops"), [("", [1, 2, 3, 9]), (MARK, [3, 9])])
-def test_moves_that_bear_one_line_are_one_step(mark, stops, machine):
-    """Why a cycle's moves bear the lines of its subroutine, not that of the program's block."""
-    moves = "".join(f"{mark}G1 X{x} F6000\n" for x in (1, 2, 3))
-    machine.open_text(f"G21 G90\no9 sub\n{moves}o9 endsub\no9 call\nG1 X9\nM2\n")
-    seen = []
-    while stops[-1] not in seen:
-        machine.step()
-        seen += [round(machine.stat().position[0], 6)]
-    assert [x for x in dict.fromkeys(seen) if x] == stops
-    machine.abort()
 
 
 def test_a_program_without_end_times_out(machine):
@@ -211,35 +182,3 @@ def test_a_machine_that_cannot_be_switched_on_says_why():
         Machine(
             SIM / "mill_mm.ini", overrides={"HAL": {"HALCMD": "unlinkp iocontrol.0.emc-enable-in"}}
         )
-
-
-# Other people's machines, and other people.
-
-
-@pytest.mark.parametrize("name", ["axis/lathe.ini", "touchy/touchy.ini"])
-def test_linuxcncs_own_examples_run(name):
-    if not (EXAMPLES / name).exists():
-        pytest.skip("LinuxCNC's examples are not installed")
-    with Machine(EXAMPLES / name) as machine:
-        result = machine.run_text(["G21 G90 G94", "T1 M6", "G1 X2 F3000", "M2"])
-        assert result.error is None
-        assert result.position[0] * machine.mm == pytest.approx(2.0, abs=1e-6)
-
-
-@pytest.mark.skipif(os.geteuid() != 0, reason="only root can become someone else")
-def test_an_ordinary_user_can_run_it_from_anywhere():
-    if subprocess.run(["unshare", "--user", "true"], user=NOBODY, capture_output=True).returncode:
-        pytest.skip("no ordinary user may make namespaces here (in a chroot nobody can)")
-    folder = Path(tempfile.mkdtemp(prefix="g12-elsewhere-"))
-    try:
-        copy_of_the_package(folder)
-        folder.chmod(0o755)
-        (folder / "program.ngc").write_text("G21 T1 M6\nG1 X2 F3000\n(MSG, there)\nM2\n")
-        command = [PYTHON, "python/g12", "run", "program.ngc", "--ini", "configs/sim/mill_mm.ini"]
-        options = {"cwd": folder, "user": NOBODY, "capture_output": True, "text": True}
-        done = subprocess.run(command, **options)
-        assert done.returncode == 0, done.stderr
-        assert "message: there" in done.stdout
-        assert "X2 " in done.stdout
-    finally:
-        shutil.rmtree(folder)

@@ -8,13 +8,9 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from g12.tools.commands.main import main
-from g12.tools.install.config.findings import PROBLEM
-from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import load_config
-from g12.tools.install.rules import findings_of
 from support.kinematics import needs_kinematics
 from support.operated_machine import Machine
-from support.sample_configs import SAMPLES, copy_samples, tree
+from support.sample_configs import SAMPLES, copy_samples, problems_of, tree
 
 MILLS = [
     "qtdragon/qtdragon_xyz/qtdragon_metric.ini",
@@ -41,8 +37,7 @@ def run_installed(ini, feature, program):
     """Install, check, run headless, uninstall; return the run and the size of a unit in mm."""
     before = tree(ini.parent)
     assert main(["install", str(ini), "--with", feature]) == 0
-    found = findings_of(load_config(IniText(ini)))
-    assert [finding for finding in found if finding.level == PROBLEM] == []
+    assert problems_of(ini) == []
     with Machine(ini) as machine:
         run, unit = machine.run_text(program, timeout=300), machine.mm
     assert main(["uninstall", str(ini)]) == 0
@@ -89,16 +84,10 @@ def test_a_section_on_a_sample_lathe(lathe):
 @needs_kinematics
 def test_the_kinematics_of_the_face_on_a_sample_lathe(lathe, capsys):
     before = tree(lathe.parent)
-    assert main(["install", str(lathe), "--with", "polar", "polar-kinematics", "--dry-run"]) == 0
-    shown = capsys.readouterr().out
-    assert "+KINEMATICS = polar_xzc coordinates=XZC" in shown
-    assert "+# was: KINEMATICS = trivkins coordinates=XZC" in shown
-    assert tree(lathe.parent) == before
     assert main(["install", str(lathe), "--with", "polar", "polar-kinematics"]) == 0
     assert main(["install", str(lathe), "--with", "polar-kinematics"]) == 0
     assert "installed already, nothing to do" in capsys.readouterr().out
-    found = findings_of(load_config(IniText(lathe)))
-    assert [finding for finding in found if finding.level == PROBLEM] == []
+    assert problems_of(lathe) == []
     with Machine(lathe) as machine:
         run = machine.run_text(ROUND, timeout=300)
     assert run.error is None

@@ -29,7 +29,7 @@ def test_modes_and_next_motion_after_each_interruption(name):
     with Machine(ini, overrides=overrides) as machine:
         interrupted = Interrupted(machine, name)
         for number, how in enumerate(HOWS):
-            interrupted.once(random.Random(f"{name} {number}"), how)
+            interrupted.once(random.Random(f"{name} {number}"), how, number)
 
 
 SECTION = ["G12.1", "G1 C20", "X-30", "C-20", "X30", "C0", "G13.1"]

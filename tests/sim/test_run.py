@@ -30,42 +30,24 @@ def g12_run(tmp_path, capsys):
     return run_text
 
 
-@pytest.mark.parametrize(
-    ("machine", "text", "code", "out", "error"),
-    [
-        (
-            "mill_inch",
-            "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n",
-            0,
-            ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
-            "running part.ngc in real time, 0.2 s without acceleration\n",
-        ),
-        (
-            "lathe_mm",
-            "M2\n",
-            0,
-            ["ends at X0 Z0 C0 (machine position, mm and degrees)"],
-            "running part.ngc in real time, 0.0 s without acceleration\n",
-        ),
-        (
-            "mill_mm",
-            "G21 G90 F3000\nG1 C5\nM2\n",
-            2,
-            [],
-            "running part.ngc in real time\n"
-            "g12 run: PROGRAM:2: Bad character 'c' used: this INI's machine has axes X Y Z\n",
-        ),
-        (
-            "lathe_mm",
-            "G21 G90\nM154\nM2\n",
-            2,
-            [],
-            "running part.ngc in real time, 0.0 s without acceleration\n"
-            "g12 run: PROGRAM: Unknown m code used: M154, a code of haas-lathe: "
-            f"{COMMAND} translate --control NAME makes a LinuxCNC program of it\n",
-        ),
-    ],
-)
+RUNNING = "running part.ngc in real time"
+SAID = [  # a machine, a program, exit code, the first lines, errors
+    ("mill_inch", "G20 G90 F100\nG1 X.1 Y.25\n(MSG, there)\nM2\n", 0,
+     ["message: there", "ends at X0.1 Y0.25 Z0 (machine position, in)"],
+     f"{RUNNING}, 0.2 s without acceleration\n"),
+    ("lathe_mm", "M2\n", 0, ["ends at X0 Z0 C0 (machine position, mm and degrees)"],
+     f"{RUNNING}, 0.0 s without acceleration\n"),
+    ("mill_mm", "G21 G90 F3000\nG1 C5\nM2\n", 2, [],
+     f"{RUNNING}\n"
+     "g12 run: PROGRAM:2: Bad character 'c' used: this INI's machine has axes X Y Z\n"),
+    ("lathe_mm", "G21 G90\nM154\nM2\n", 2, [],
+     f"{RUNNING}, 0.0 s without acceleration\n"
+     "g12 run: PROGRAM: Unknown m code used: M154, a code of haas-lathe: "
+     f"{COMMAND} translate --control NAME makes a LinuxCNC program of it\n"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("machine", "text", "code", "out", "error"), SAID)
 def test_what_a_run_says(g12_run, machine, text, code, out, error):
     ended, lines, errors = g12_run(text, machine=machine)
     assert (ended, lines[: len(out)], errors) == (code, out, error)
@@ -139,9 +121,9 @@ def test_a_run_is_waited_for_as_long_as_its_program_needs(block, override, secon
     program = tmp_path / "part.ngc"
     program.write_text(f"G21 G90 {block}\nM2\n")
     ini = read_ini(SIM / "mill_mm.ini")
-    assert run.default_timeout(run.preview_of(program, ini.path, None, None), ini, override) == (
-        pytest.approx(seconds)
-    )
+    preview = run.preview_of(program, ini.path, None, None)
+    assert run.default_timeout(preview, ini, override) == pytest.approx(seconds)
+    assert run.default_timeout(None, ini, override) == run.USUAL_TIMEOUT  # of unknown length
 
 
 @pytest.mark.parametrize(
@@ -158,11 +140,6 @@ def test_an_error_whose_text_names_no_line_has_that_of_the_preview(met, text, li
     preview = SimpleNamespace(error=Error(met, 7))
     assert run.line_of_preview(Error(text, 0), preview) == line
     assert run.line_of_preview(Error(text, 0), None) == 0
-
-
-def test_a_run_of_unknown_length_has_the_usual_time():
-    ini = read_ini(SIM / "mill_mm.ini")
-    assert run.default_timeout(None, ini, 100.0) == run.USUAL_TIMEOUT
 
 
 def test_bytes_that_are_no_utf8_run(tmp_path, capsys):

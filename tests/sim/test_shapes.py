@@ -18,7 +18,6 @@ CALLS = {
     "slot": "o<polar_slot> call [9] [22] [.5] [-9999] [.2] [4000] [2000] [-30]",
     "pocket": "o<polar_pocket> call [4] [-2] [14] [.5] [-9999] [-9999] [4000] [2000]",
 }
-LONG = "o<polar_polygon> call [6] [27] [5] [40] [1] [.5] [-9999] [4000] [2000] [0]"
 
 
 @pytest.fixture(
@@ -65,18 +64,3 @@ def test_in_mdi(lathe):
     assert [error.text for error in lathe.errors()] == [
         "polar_slot: width 5 must not be less than the cutter's 6"
     ]
-
-
-def test_an_abort_in_a_shape_and_the_same_call_again(lathe):
-    """The call is longer than what LinuxCNC reads ahead: it is aborted inside the sub."""
-    lathe.reset()
-    lathe.open_text([*START, "G7", LONG, "M2"])
-    lathe.start()
-    lathe.wait_for(lambda status: status.position[2] < 0)
-    lathe.abort()
-    lathe.errors()
-    lathe.mdi("G0 X50")
-    assert "G7" in lathe.stat().modes.gcodes and lathe.stat().position[0] == pytest.approx(25)
-    lathe.mdi("G0 Z5")
-    proof = lathe.proof_of_run([*START, CALLS["flats"], "M2"])
-    assert proof.findings == [] and len(proof.shapes) == 1

@@ -19,8 +19,9 @@ def test_interruptions(name):
     with Machine(ini, overrides=overrides) as machine:
         interrupted = Interrupted(machine, name)
         for number in tries(f"interruptions on {name}"):
-            seed = f"{SEED} {name} {number}"
+            chance = random.Random(f"{SEED} {name} {number}")
+            turn, how = divmod(number, len(HOWS))
             try:
-                interrupted.once(random.Random(seed), HOWS[number % len(HOWS)])
+                interrupted.once(chance, HOWS[how], turn + how)
             except AssertionError as error:
                 raise AssertionError(f"interruption {number} of seed {SEED}") from error

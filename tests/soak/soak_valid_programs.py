@@ -7,12 +7,10 @@ import re
 
 from g12.tools.commands import main
 from interp.test_valid_cuts import check_cuts
-from interp.test_valid_programs import check_as_its_words_ask
 from soak import SEED, tries
 from support.sim_machines import ROOT, copy_of_machines
 from support.valid_programs import MACHINES, machine_of, valid_program
 
-SEGMENTS = 20  # pockets or sections in a program
 KINEMATICS = ROOT / "configs" / "kinematics"
 OFFSET = "beside kinematics"  # in the name of a kind: the component has to know of the tool's place
 
@@ -28,11 +26,6 @@ def kinds():
     chance = random.Random(SEED)
     while True:
         yield from chance.sample(list(MACHINES), len(MACHINES))
-
-
-def test_programs_as_they_are_read(tmp_path):
-    for number, kind in zip(tries("valid programs judged by verify"), kinds()):
-        check_as_its_words_ask(tmp_path / "valid.ngc", kind, f"{SEED} {number}", SEGMENTS)
 
 
 def test_cuts_as_their_words_ask(tmp_path):

@@ -149,35 +149,6 @@ near = functools.partial(pytest.approx, abs=1e-6)
 MAKERS = {"bore": bore, "thread": thread, "frame": frame}
 
 
-WRONG_MODES = ("G18", "G19", "G93 F9", "F0", "G95 S0 F1", "G41 D1")
-WRONG_WORDS = (
-    "I0", "I-3", "I9999999", "Z99", "Z9999999", "X-9999999", "D0", "D5", "D77", "D1.5",
-)  # fmt: skip
-WRONG_OF = {
-    "bore": ("P0", "P-.1", "P.00000001", "K-1", "K500", "Q0", "Q-1", "Q100", "L200000", "R99",
-             "I.01", "E1", "H1", "J2"),
-    "thread": ("P0", "P200", "P.0001", "K0", "K-1", "K500", "Q0", "Q-1", "L200000", "R99", "I.01",
-               "H2", "J0", "J-3", "J1.5", "E1.1", "E-7"),
-    "frame": ("J0", "J-1", "R-1", "R500", "K0", "K-2", "K.00000001", "Q0", "Q-1", "Q90", "P0",
-              "P-5", "H3", "E-.2", "E.0001", "E40", "L1"),
-}  # fmt: skip
-NEEDED = {"bore": "ZIP", "thread": "ZIP", "frame": "ZIJR"}
-
-
-def wrong(chance, kind):
-    """Return the lines before a wrong block, and the block: a valid one with one fault."""
-    block = MAKERS[kind](chance)
-    where = chance.random()
-    if where < 0.2:
-        return [*block.before, chance.choice(WRONG_MODES)], block.text
-    code, *words = block.text.split()
-    if where < 0.3:
-        missing = chance.choice(NEEDED[kind])
-        return [*block.before], " ".join([code, *(word for word in words if word[0] != missing)])
-    fault = chance.choice((*WRONG_WORDS, *WRONG_OF[kind]))
-    return [*block.before], " ".join([code, *(w for w in words if w[0] != fault[0]), fault])
-
-
 # ---------------------------------------------------------------- what must be cut
 
 

@@ -142,10 +142,14 @@ class Interrupted:
         for block in ("T3 M6", SPINDLE):
             machine.mdi(block)
 
-    def once(self, chance, how):
-        """Interrupt one program; raise AssertionError where the machine is not as before."""
+    def once(self, chance, how, number):
+        """Interrupt one program, of a kind by its ``number``.
+
+        Raise AssertionError where the machine is not as before.
+        """
         machine, modes = self.machine, any_modes(chance, self.name)
-        kind, program = chance.choice([*programs(self.name, modes, how == "refusal").items()])
+        every = [*programs(self.name, modes, how == "refusal").items()]
+        kind, program = every[number % len(every)]
         self.stand(modes)
         before = self.state()
         said = self.run(chance, how, kind, program, modes)

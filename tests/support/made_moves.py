@@ -20,7 +20,7 @@ class Hand:
 
     def __init__(self, *, tool=1, feed=600.0):
         self.moves, self.at, self.tool, self.feed = [], HOME, tool, feed
-        self.block = 1
+        self.block, self.offset = 1, HOME
 
     def rapid(self, **to):
         return self._add("rapid", self._to(to), 0.0)
@@ -74,7 +74,7 @@ class Hand:
     def _add(self, kind, end, feed, plane=17, centre=None, turns=0):
         mode = "G94" if feed else ""
         where = (self.block, self.block, self.at, end)
-        how = (feed, mode, plane, self.tool, HOME, centre, turns)
+        how = (feed, mode, plane, self.tool, self.offset, centre, turns)
         self.moves.append(Move(kind, *where, *how))
         self.at = end
         return self

@@ -7,6 +7,11 @@ import os
 import shutil
 from pathlib import Path
 
+from g12.tools.install.config.findings import PROBLEM, ConfigFinding
+from g12.tools.install.config.ini_edit import IniText
+from g12.tools.install.config.loaded import load_config
+from g12.tools.install.rules import findings_of
+
 IN_PLACE = os.environ.get("EMC2_HOME")  # the folder of a LinuxCNC that runs in place
 if IN_PLACE:
     SAMPLES, NC_FILES = Path(IN_PLACE, "configs"), Path(IN_PLACE, "nc_files")
@@ -24,6 +29,12 @@ def copy_samples(base: Path, part: str = ".") -> Path:
             (folder / "nc_files").unlink(missing_ok=True)
             (folder / "nc_files").symlink_to(NC_FILES)
     return samples / part
+
+
+def problems_of(ini: Path) -> list[ConfigFinding]:
+    """Return the problems of a config as `check` finds them."""
+    found = findings_of(load_config(IniText(ini)))
+    return [finding for finding in found if finding.level == PROBLEM]
 
 
 def tree(folder: Path) -> dict[Path, tuple[str | bytes, int]]:

@@ -11,8 +11,10 @@ import pytest
 
 from g12.tools.install import installation, package_copy
 from g12.tools.install.config import features
+from g12.tools.install.config.findings import ConfigFinding, Refused
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.install.config.loaded import Config, Python, remaps_in
+from g12.tools.install.lathe import kinematics
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
 from g12.tools.install.plan import make_plan
 
@@ -84,14 +86,6 @@ HAAS = """\
 REMAP = G12 modalgroup=1 prolog=g12_haas ngc=g12_haas epilog=cycle_done
 REMAP = G13 modalgroup=1 prolog=g13_haas ngc=g12_haas epilog=cycle_done
 """
-FILES_OF_PAGES = (  # what the lines of a screen name
-    "configs/include/forms.ui",
-    "configs/include/cycles.ui",
-    "configs/include/face_view.ui",
-    "configs/include/axis_face.py",
-    "configs/include/probe_basic/cycles/cycles.py",
-    "python/g12/tools/cycles_page/gtk_view.py",
-)
 TOOLS = "T1 P1 D6.0 ;end mill\nT2 P2 D10\n"
 
 
@@ -143,6 +137,15 @@ def put_in(ini: Path, *names: str, **options) -> list[str]:
     return list(installation.write_all(plan.text.changes(), copy, files))
 
 
+def refused(ini: Path, *names: str, **options) -> tuple[ConfigFinding, ...]:
+    """Return the findings of a refusal, which writes nothing."""
+    before = content_of(ini.parent)
+    with pytest.raises(Refused) as caught:
+        put_in(ini, *names, **options)
+    assert content_of(ini.parent) == before
+    return caught.value.args
+
+
 def take_out(ini: Path) -> list[str]:
     """Uninstall; return the lines to show."""
     return list(installation.uninstall(IniText(ini), dry_run=False))
@@ -160,6 +163,19 @@ def restored(ini: Path) -> Iterator[None]:
 def files_of_package(*names: str) -> dict[str, bytes]:
     """Return files of the real package, for a small one."""
     return {name: (features.ROOT / name).read_bytes() for name in names}
+
+
+def module_of_kinematics(autouse: bool = False):
+    """Return a fixture: the file of the kinematics' module in this LinuxCNC."""
+
+    @pytest.fixture(autouse=autouse)
+    def module(tmp_path_factory, monkeypatch):
+        file = tmp_path_factory.mktemp("modules") / "polar_xzc.so"
+        file.write_bytes(b"%s" + kinematics.NEWEST_PIN)
+        monkeypatch.setattr(kinematics, "module_file", lambda: file if file.exists() else None)
+        return file
+
+    return module
 
 
 def package_of(files: dict[str, bytes]):

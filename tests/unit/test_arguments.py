@@ -32,20 +32,25 @@ def ends(capsys, *words):
     return code, capsys.readouterr().err
 
 
-@pytest.mark.parametrize("name", COMMANDS)
-def test_wrong_words_are_reported_in_one_line(name, capsys):
-    code, said = ends(capsys, name, "--nonsense", "3")
+TRANSLATE = "--control and a program are needed, or --list alone"
+WRONG_WORDS = [
+    *((f"{name} --nonsense 3", "") for name in COMMANDS),
+    ("translate --list --control haas-mill", TRANSLATE),
+    ("translate part.nc", TRANSLATE),
+    ("install", "the INI is missing, --with is missing"),
+    ("install mill.ini --with", "expected at least one argument"),
+    ("install mill.ini --with heidenhain", "no feature 'heidenhain'"),
+]
+
+
+@pytest.mark.parametrize(("words", "says"), WRONG_WORDS)
+def test_wrong_words_are_reported_in_one_line(words, says, capsys):
+    name, *rest = words.split()
+    code, said = ends(capsys, name, *rest)
     assert code == 2
-    assert said.startswith(f"g12 {name}: ")
+    assert said.startswith(f"g12 {name}: ") and says in said
     assert said.endswith(f"(usage: python3 python/g12 {name} --help)\n")
     assert said.count("\n") == 1
-
-
-@pytest.mark.parametrize("words", [["--list", "--control", "haas-mill"], ["part.nc"]])
-def test_translate_needs_a_control_and_a_program_or_lists_the_controls(words, capsys):
-    code, said = ends(capsys, "translate", *words)
-    assert code == 2
-    assert "--control and a program are needed, or --list alone" in said
 
 
 @pytest.mark.parametrize("name", COMMANDS)

@@ -8,7 +8,7 @@ from g12.tools.commands.main import main
 from g12.tools.install import package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import NOTE, PROBLEM
-from g12.tools.install.lathe import hal, kinematics
+from g12.tools.install.lathe import hal
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.rules import findings_of
 from g12.tools.preview.loading import python_error
@@ -19,11 +19,13 @@ from support.small_configs import (
     TURNING,
     TURNING_HAL,
     config_of,
+    module_of_kinematics,
     put_in,
     with_lines,
     write_config,
 )
 
+module = module_of_kinematics()
 HANDLERS = {name: "g12.remap" for f in features.CODES for name in features.functions_of(f)}
 HANDLERS |= {"g12_on_abort": "g12.remap"}
 PYTHON = "[PYTHON]\nTOPLEVEL = toplevel.py\n"
@@ -169,15 +171,6 @@ def test_python_errors_name_the_module_and_its_line():
 
 
 @pytest.fixture
-def module(tmp_path, monkeypatch):
-    """Return the file of the kinematics' module in this LinuxCNC."""
-    module = tmp_path / "polar_xzc.so"
-    module.write_bytes(b"%s.end-request")
-    monkeypatch.setattr(kinematics, "module_file", lambda: module if module.exists() else None)
-    return module
-
-
-@pytest.fixture
 def lathe(tmp_path, module):
     """Return the INI of a lathe with the kinematics and the spindle as C."""
     text = TURNING.replace("JOINTS = 3", "JOINTS = 3\n[EMCMOT]\nEMCMOT = motmod")
@@ -232,14 +225,10 @@ MISTAKES = [  # what is changed of the INI, what is found, a part of what is sai
 ]  # fmt: skip
 
 
-def test_a_lathe_with_all_of_it_is_in_order(lathe):
-    assert found_of(lathe) == []
-
-
 @pytest.mark.parametrize(("good", "bad", "kind", "says"), MISTAKES)
 def test_a_mistake_on_a_lathe(lathe, good, bad, kind, says):
     text = lathe.read_text()
-    assert good in text
+    assert good in text and found_of(lathe) == []
     lathe.write_text(text.replace(good, bad, 1))
     findings = [finding for finding in found_of(lathe) if finding.kind == kind]
     assert any(says in finding.text + finding.cure for finding in findings)
@@ -311,25 +300,26 @@ def hal_findings(tmp_path, monkeypatch):
     return find
 
 
+NAMING = [  # a line, a pin
+    *((line, "x-pid.comand") for line in
+      ("setp {}", "unlinkp {}", "linkpp own.x {}", "linksp s {}", "linkps {} s")),
+    *(("net a own.x => {}", pin) for pin in MISSING),
+]  # fmt: skip
+
+
 @pytest.mark.parametrize("name", ["motion.hal", "LIB:motion.hal"])
-@pytest.mark.parametrize("pin", MISSING)
-def test_a_pin_that_no_module_makes_is_named(hal_findings, pin, name):
-    (finding,) = hal_findings(f"net a own.x => \\\n  {pin} # it\n", name)
-    line = f"motion.hal:8: net a own.x => {pin}"
-    assert finding.text == f"{line}: there is no pin {pin}: LinuxCNC does not start"
+@pytest.mark.parametrize(("line", "pin"), NAMING)
+def test_a_pin_that_no_module_makes_is_named(hal_findings, line, pin, name):
+    command, _, rest = line.format(pin).partition(" ")
+    (finding,) = hal_findings(f"{command} \\\n  {rest} # it\n", name)
+    said = f"motion.hal:8: {command} {rest}: there is no pin {pin}: LinuxCNC does not start"
+    assert finding.text == said
 
 
 @pytest.mark.parametrize("line", ["net a own.x", "linkps own.x a", "linksp a own.x"])
 def test_a_pin_on_two_signals_is_named(hal_findings, line):
     (finding,) = hal_findings(f"{line}\nnet b own.x\n")
     assert finding.text.startswith("motion.hal:9: net b own.x: own.x is on a already")
-
-
-@pytest.mark.parametrize("line", ["setp {}", "unlinkp {}", "linkpp own.x {}", "linksp s {}",
-                                  "linkps {} s"])  # fmt: skip
-def test_each_command_that_names_a_pin_is_read(hal_findings, line):
-    (finding,) = hal_findings(f"{line.format('x-pid.comand')}\n")
-    assert "there is no pin x-pid.comand" in finding.text
 
 
 @pytest.mark.parametrize(

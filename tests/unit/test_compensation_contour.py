@@ -15,12 +15,8 @@ from g12.section.effects import Action
 from support import planned_moves
 
 
-def started(**options):
-    return Contour(10.0, 0.0, 5.0, **options)
-
-
 def test_a_coordinate_left_out_stays():
-    contour = started()
+    contour = Contour(10.0, 0.0, 5.0)
     contour.straight(second=3.0, at=1, feed=100.0)
     contour.straight(first=-4.0, at=2, feed=50.0)
     contour.straight(height=1.0, at=3, feed=25.0)
@@ -53,32 +49,22 @@ def test_an_arc_anywhere_by_its_centre_and_by_its_radius(start, arm, angle, turn
 
 
 def block(contour, text, line):
-    """Give a contour a block, as "arc turn=1 x=3 radius=4"; its feed is 100 if it says none."""
-    name, *words = text.split()
-    pairs = (word.split("=") for word in words)
-    values = {ROLES.get(key, key): json.loads(value) for key, value in pairs}
-    if name in ("straight", "arc"):
-        values.setdefault("feed", 100.0)
-    if name == "mark":
-        contour.mark(Action(line, "M8", None))
-    else:
-        getattr(contour, name)(**values, at=line)
-
-
-def refused(*blocks, start=(10.0, 0.0, 5.0), **options):
-    """Return the sentence with which the last of the blocks from line 1 on is refused."""
-    contour = Contour(*start, **options)
-    for line, text in enumerate(blocks[:-1], 1):
-        block(contour, text, line)
-    with pytest.raises(Refusal) as refusal:
-        block(contour, blocks[-1], len(blocks))
-    assert len(refusal.value.message) < LONGEST_MESSAGE
-    return refusal.value.message
+    """Give a contour a block: "compensate side=41 radius=2; straight c=5"; else its F is 100."""
+    for command in text.split("; "):
+        name, *words = command.split()
+        pairs = (word.split("=") for word in words)
+        values = {ROLES.get(key, key): json.loads(value) for key, value in pairs}
+        if name in ("straight", "arc"):
+            values.setdefault("feed", 100.0)
+        if name == "mark":
+            contour.mark(Action(line, "M8", None))
+        else:
+            getattr(contour, name)(**values, at=line)
 
 
 ROLES = {"x": "first", "c": "second", "z": "height"}
 ON = "compensate side=41 radius=2"
-RAMP = "straight c=5"
+RAMP = f"{ON}; straight c=5"
 OWN_BLOCK = "G41 needs a G1 with X or C in its own block"
 
 
@@ -104,9 +90,9 @@ OWN_BLOCK = "G41 needs a G1 with X or C in its own block"
         ),
         ([ON, "mark"], OWN_BLOCK),
         ([ON, "close"], OWN_BLOCK),
-        ([ON, RAMP], OWN_BLOCK),
+        ([ON, "straight c=5"], OWN_BLOCK),
         ([ON, "compensate side=40 radius=0"], OWN_BLOCK),
-        ([ON, "arc turn=1 x=3 radius=9"], "G41 with G3: compensation is switched by a G1 only"),
+        ([f"{ON}; arc turn=1 x=3 radius=9"], "G41 with G3: compensation is switched by a G1 only"),
         *(
             ([f"straight {word}=-2e6"], f"{word.upper()}-2000000 is no length: at most 1000000")
             for word in "xcz"
@@ -119,57 +105,29 @@ OWN_BLOCK = "G41 needs a G1 with X or C in its own block"
             for word in "xczij"
         ),
         (["arc turn=1 x=1 radius=2e6"], "R2000000 is no length: at most 1000000"),
+        (
+            [f"{ON}; straight c=1.9 z=-1"],
+            "the G1 with G41 is 1.9 long: it must be at least the tool radius 2",
+        ),
+        ([f"{ON}; straight c=0 z=-1"], OWN_BLOCK),
+        ([RAMP, "compensate side=42 radius=2"], "G42: cancel G41 of line 1 with G40 first"),
+        (
+            [RAMP, "compensate side=40 radius=0; straight c=6"],
+            "the G1 with G40 is 1 long: it must be at least the tool radius 2",
+        ),
+        ([RAMP, "close"], "G41 of line 1 is still on: G40 is missing"),
+        ([RAMP, "wait"], "M66 waits for the machine, which needs G40: G41 of line 1 is on"),
     ],
 )
 def test_refused_blocks(blocks, message):
-    line = 2 if "with G3" in message else 1
-    assert refused(*blocks) == f"G12.1 line {line}: {message}"
-
-
-@pytest.mark.parametrize(
-    ("length", "side", "message"),
-    [
-        (1.9, 41, "the G1 with G41 is 1.9 long: it must be at least the tool radius 2"),
-        (0.0, 42, "G42 needs a G1 with X or C in its own block"),
-    ],
-)
-def test_a_ramp_is_at_least_as_long_as_the_tool_radius(length, side, message):
-    contour = started()
-    contour.compensate(side, 2.0, at=7)
-    with pytest.raises(Refusal) as refusal:
-        contour.straight(second=length, height=-1.0, at=7, feed=100.0)
-    assert refusal.value.message == f"G12.1 line 7: {message}"
-
-
-def under_compensation(code="G12.1"):
-    contour = started(code=code)
-    contour.compensate(41, 2.0, at=1)
-    contour.straight(second=5.0, at=1, feed=100.0)
-    return contour
-
-
-def test_what_compensation_in_force_refuses():
-    contour = under_compensation()
-    with pytest.raises(Refusal, match=r"^G12\.1 line 2: G42: cancel G41 of line 1 with G40 first$"):
-        contour.compensate(42, 2.0, at=2)
-    contour = under_compensation()
-    contour.compensate(40, 0.0, at=3)
-    with pytest.raises(Refusal, match=r"^G12\.1 line 3: the G1 with G40 is 1 long: .* radius 2$"):
-        contour.straight(second=6.0, at=3, feed=100.0)
-    contour = under_compensation("G12.3")
-    with pytest.raises(
-        Refusal, match=r"^G12\.3 line 9: G41 of line 1 is still on: G40 is missing$"
-    ):
-        contour.close(at=9)
-
-
-def test_no_block_may_wait_for_the_machine_under_compensation():
-    contour = Contour(10.0, 0.0, 0.0)
-    contour.wait(at=1)
-    contour.compensate(42, 2.0, at=2)
-    contour.straight(10.0, 5.0, at=2, feed=100.0)
-    with pytest.raises(Refusal, match=r"^G12\.1 line 3: M66 waits .* G42 of line 2 is on$"):
-        contour.wait(at=3)
+    """The last one is, or the one whose G41 has no G1."""
+    contour = Contour(10.0, 0.0, 5.0)
+    with pytest.raises(Refusal) as refused:
+        for line, text in enumerate(blocks, 1):
+            block(contour, text, line)
+    line = 1 if message == OWN_BLOCK else len(blocks)
+    assert refused.value.message == f"G12.1 line {line}: {message}"
+    assert len(refused.value.message) < LONGEST_MESSAGE
 
 
 # What LinuxCNC forgives any arc: a thousandth of its radius, or what rounded words need.
@@ -199,25 +157,14 @@ def test_the_end_of_an_arc_may_be_off_its_circle(radius, options, off, word, sha
         assert closes
 
 
-# A tool that stands beside the programmed place until a G1 takes it there.
-
-
-@pytest.mark.parametrize("beside", [3.0, -3.0])
-def test_an_arc_cannot_be_the_first(beside):
-    contour = Contour(20.0, 0.0, 0.0, beside=beside)
-    contour.straight(height=-1.0, at=6, feed=100.0)
-    with pytest.raises(Refusal) as refused:
-        contour.arc(1, 0.0, 20.0, radius=20.0, at=7, feed=100.0)
-    assert refused.value.message == (
-        "G12.1 line 7: G3 needs a G1 with X or C before it: the tool is 3 beside X's line "
-        "(POLAR_TOOL_OFFSET)"
-    )
-
-
-def test_behind_a_g1_an_arc_begins_where_that_was_programmed_to_end():
+def test_a_tool_beside_the_programmed_place_needs_a_g1_before_an_arc():
     contour = Contour(20.0, 0.0, 0.0, beside=3.0)
+    contour.straight(height=-1.0, at=5, feed=100.0)
+    beside = r"G3 needs a G1 .*: the tool is 3 beside X's line \(POLAR_TOOL_OFFSET\)$"
+    with pytest.raises(Refusal, match=beside):
+        contour.arc(1, 0.0, 20.0, radius=20.0, at=5, feed=100.0)
     contour.straight(30.0, at=6, feed=100.0)
     contour.arc(1, 0.0, 30.0, i=-30.0, at=7, feed=100.0)
-    line, arc = contour.elements
+    _, line, arc = contour.elements
     assert (line.start, line.end, arc.start) == (20.0 + 3j, 30.0 + 0j, 30.0 + 0j)
     assert arc.curve.sweep == pytest.approx(math.pi / 2)

@@ -10,9 +10,10 @@ import random
 
 import pytest
 
+from g12.compensation.compensated import closing_of
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from support.contour_geometry import Straight, arc, lines
+from support.contour_geometry import Round, Straight, arc, lines
 from support.growth import growth
 from support.random_contours import (
     TOLERANCE,
@@ -106,14 +107,6 @@ def test_a_refusal_names_the_code_of_the_program_also_with_a_negative_diameter(s
     assert refusal(contour) == f"G12.1 line 1: G{side} needs a block of the contour after its G1"
 
 
-def test_a_slot_narrower_than_the_tool_is_refused_with_its_walls():
-    slot = [*lines((30, 20), (5, 20), (5, -10)), arc((2.5, -10), 2.5, 0, -180),
-            *lines((0, -10), (0, 20), (-30, 20))]  # fmt: skip
-    assert cut(slot, RIGHT, 2.4) == ("", [])
-    narrow = lines((30, 20), (5, 20), (5, -10), (1, -20), (-9, -20), (0, -10), (0, 20), (-30, 20))
-    assert "cannot follow both lines 3 and 8" in cut(narrow, RIGHT, 2.6)[0]
-
-
 def extended(front, after):
     """Return the square from the middle of no side: both ends may stick out by some length."""
     first, *_, last = sides = closed(SQUARE)
@@ -169,27 +162,20 @@ def test_a_contour_closes_over_four_tolerances_or_twice_what_arcs_are_forgiven(
 
 
 @pytest.mark.parametrize("side", [LEFT, RIGHT])
-def test_leads_that_cross_are_told(side):
-    """The tool inside cuts beyond one side with the lead of the other."""
+def test_leads_that_cross_are_told_once(side):
+    """The tool inside cuts beyond one side with the lead of the other; a loop does so again."""
     told = "G12.1 line 6: lines 3 and 6 cross: taken for the leads of a contour that closes there"
-    assert cut(extended(5.0, 5.0), side, 3.0) == ("", [told])
-
-
-def test_what_a_loop_cuts_again_is_told_once():
-    drawn = Drawn(extended(5.0, 5.0), LEFT, 3.0, [])
-    contour, again = contour_of(drawn), contour_of(drawn)
-    contour.straight(
-        again.elements[0].start.real, again.elements[0].start.imag, at=9001, feed=300.0
-    )
+    contour, again = (contour_of(Drawn(extended(5.0, 5.0), side, 3.0, [])) for _ in range(2))
+    first = again.elements[0].start
+    contour.straight(first.real, first.imag, at=9001, feed=300.0)
     contour.elements += again.elements
-    assert refusal(contour) == ""
-    assert len(contour.notes) == 1
+    assert (refusal(contour), contour.notes) == ("", [told])
 
 
 def both_ways(shapes):
     """Yield lines, and the other way round from the same side."""
     yield shapes, LEFT
-    yield [shape.reversed() for shape in reversed(shapes)], RIGHT
+    yield [shape.portion(1.0, 0.0) for shape in reversed(shapes)], RIGHT
 
 
 def test_the_end_of_an_open_contour_may_be_cut_from_its_far_side_alone():
@@ -212,6 +198,82 @@ def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
             assert cut(loop, side, 1.0)[0], (angle, side)
     sliver = lines((13.28, 9.154), (13.809, 10.3136), (14.0905, 9.9972), (8.608, 15.3087))
     assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]  # hardly, after a corner
+
+
+# Where a contour closes beside its leads.
+
+NEAR = 0.02
+
+
+def closing(shapes, radius=3.0):
+    """Return where shapes that are cut one after the other close."""
+    return closing_of(shapes, radius, NEAR)
+
+
+def rolled(on, off, overlap):
+    """Return the square with an arc to lead on and one to lead off, and lines beyond them."""
+    start, end = 10 + 0j, 10 - 1j * overlap
+    arc_on = Round(start + 5 + 5j, start + 5, 0.5 * math.pi)
+    arc_off = Round(end, end + 5, 0.5 * math.pi)
+    corners = [start, *SQUARE[1:], SQUARE[0], end]
+    far, near = arc_on.start, arc_off.end
+    front = [Straight(far + 4 * k + 4, far + 4 * k) for k in reversed(range(on - 1))]
+    after = [Straight(near + 4 * k, near + 4 * k + 4) for k in range(off - 1)]
+    return [*front, arc_on, *lines(*corners), arc_off, *after]
+
+
+@pytest.mark.parametrize("overlap", [0.0, 2.0])
+@pytest.mark.parametrize(
+    ("on", "off", "closes"), [(1, 3, True), (3, 2, True), (1, 4, False), (4, 1, False)]
+)
+def test_leads_have_up_to_three_moves(on, off, closes, overlap):
+    assert closing(rolled(on, off, overlap)).closed is closes
+
+
+@pytest.mark.parametrize("after", [False, True])
+@pytest.mark.parametrize(
+    ("lead", "radius", "closes"),
+    [(39.0, 6.0, True), (41.0, 6.0, False), (41.0, 4.9, True), (41.0, 5.1, False)],
+)
+def test_a_contour_is_half_as_long_as_its_leads_or_four_tool_radii(lead, radius, closes, after):
+    """The square is 20 round; anything shorter is the spur of an open contour."""
+    corners = [5 + 0j, 0j, 5j, 5 + 5j]
+    first, second, third, last = closed(corners)
+    if after:
+        last = Straight(last.start, last.end - 1j * lead)
+    else:
+        first = Straight(first.start + lead, first.end)
+    assert closing([first, second, third, last], radius).closed is closes
+
+
+@pytest.mark.parametrize(
+    ("on", "off", "corners", "closes"),
+    [
+        *((0, 0, 3, True), (1, 1, 3, True), (1, 1, 4, True), (2, 2, 3, False), (2, 2, 4, False)),
+        *((0, 1, 4, True), (1, 0, 4, True), (1, 2, 4, False), (2, 1, 4, False)),
+    ],
+)
+def test_leads_may_cross_with_one_move_beyond_them(on, off, corners, closes):
+    ring = [20 * cmath.exp(-2j * math.pi * k / corners) for k in range(corners)]
+    first, *others, last = closed(ring)
+    overrun = 0.2
+    sides = [first.portion(-overrun, 1.0), *others, last.portion(0.0, 1.0 + overrun)]
+    for _ in range(on):
+        sides = [Straight(1.1 * sides[0].start, sides[0].start), *sides]
+    for _ in range(off):
+        sides = [*sides, Straight(sides[-1].end, 1.1 * sides[-1].end)]
+    assert closing(sides).crossing is closes
+
+
+@pytest.mark.parametrize(("slope", "through"), [(0.06, True), (0.04, False), (-1.0, False)])
+@pytest.mark.parametrize(("turned", "size"), [(0.0, 1.0), (0.7, 1.0), (2.5, 0.025)])
+def test_a_side_goes_through_where_two_others_join(slope, through, turned, size):
+    """A lead comes to the corner from beyond the last side: from this side it does not cross it."""
+    first, *others, last = closed(SQUARE)
+    on = Straight(first.start + 20 + 20j * slope, first.start)
+    over = Straight(last.start, last.end + 5)
+    around = cmath.rect(size, turned)
+    assert closing([s.turned(around) for s in (on, first, *others, over)]).crossing is through
 
 
 # Passes after each other, and heights.

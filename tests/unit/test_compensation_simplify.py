@@ -9,12 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from shapely.geometry import LineString, Point
 
-from g12.compensation import centre_path as simplify
 from g12.compensation.centre_path import centre_path
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.geometry.curve import Line
-from support import planned_moves
 from support.planned_cuts import cuts, path
 from support.random_contours import TOLERANCE, as_shapely, polygon
 from support.section_starts import polar
@@ -30,9 +27,6 @@ def programmed(*points, side=40, radius=0.0, start=(30.0, -30.0)):
     contour.compensate(40, 0.0, at=90)
     contour.straight(*points[-1], at=90, feed=600.0)
     return contour
-
-
-# Under compensation.
 
 
 def refused(contour):
@@ -85,16 +79,6 @@ def test_all_that_a_contour_was_moved_by_is_bounded_and_told():
     assert centre_path(programmed((30, 0), (30, 9), (40, 9)), 0.005)[1] == 0.0
 
 
-def test_many_points_in_a_row_are_looked_at_once():
-    looked = []
-    line = [planned_moves.line(k, 0.0, k + 1.0, 0.0, offset=5.0) for k in range(1000)]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(Line, "distance", lambda *_: looked.append(1) or 0.0)
-        kept, moved = simplify.without_rounding_points(line, 0.001)
-    assert len(kept) < 50 and moved == 0.0
-    assert len(looked) < 100 * len(line)
-
-
 size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 
@@ -111,9 +95,6 @@ def test_short_moves_in_a_corner_are_cut_right_or_refused(extra):
     if not refused(contour):
         near = range(3, 3 + len(points) - 1)
         assert depth(contour, points, 5.0, near) < 0.012
-
-
-# What stands between when a short move has gone.
 
 
 # Fillets of the tool's radius.

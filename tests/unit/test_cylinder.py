@@ -134,28 +134,6 @@ def section(letters="XZC", axes=AXES, **found):
     return Cylinder(with_found(START, **found), SectionMachine(letters, Settings(), axes))
 
 
-def test_the_settings_of_a_section_are_in_program_units():
-    made = section(inch=True)
-    lengths = [made.tolerance, made.least, made.rules.radius_tolerance]
-    assert lengths == pytest.approx([length / 25.4 for length in (0.005, 0.001, 0.0127)])
-    assert made.per_radian == RADIUS
-
-
-@pytest.mark.parametrize(
-    ("found", "rule"),
-    [
-        ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),  # as for all sections
-        ({"words": {}}, "needs C, the cylinder's radius; C0 ends a section"),
-        ({"words": {"C": 0.0}}, "C0, the cylinder's radius, must be above 0 and at most 1000000"),
-        ({"words": {"C": -2.0}}, "C-2, the cylinder's radius, must be above 0 and at most 1000000"),
-    ],
-)
-def test_where_no_section_begins(found, rule):
-    with pytest.raises(Refusal) as refused:
-        section(**found)
-    assert refused.value.message == f"G7.1 line 7: {rule}"
-
-
 def test_one_code_switches_on_and_off():
     codes = codes_of_section("G7.1", [], "cylinder_mode", "cylinder_mode", "C")
 
@@ -163,11 +141,11 @@ def test_one_code_switches_on_and_off():
         return SectionBlock((-1, g), (), g, words)
 
     assert codes.off_code == "G7.1 C0"
-    assert [codes.begins(block(**words)) for words in ({"C": 5.0}, {}, {"C": 0.0})] == [
-        True, True, False,
-    ]  # fmt: skip
-    assert codes.ends(block(C=0.0)) and not codes.ends(block(C=1.0)) and not codes.ends(block())
-    assert not codes.begins(block(g=72)) and not codes.ends(block(g=72, C=0.0))
+    for made, begins, ends in (
+        (block(C=5.0), True, False), (block(), True, False), (block(C=0.0), False, True),
+        (block(g=72), False, False), (block(g=72, C=0.0), False, False),
+    ):  # fmt: skip
+        assert (codes.begins(made), codes.ends(made)) == (begins, ends)
 
 
 # ---------------------------------------------------------------- on a mill with A or B
@@ -207,11 +185,14 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
 @pytest.mark.parametrize(
     ("letter", "found", "rule"),
     [
-        ("A", {"y": 2.5},
-         "needs Y0: the tool must stand on the axis of rotation, not at Y2.5"),
+        ("C", {"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
+        ("C", {"words": {"C": 0.0}},
+         "C0, the cylinder's radius, must be above 0 and at most 1000000"),
+        ("A", {"words": {"A": -2.0}},
+         "A-2, the cylinder's radius, must be above 0 and at most 1000000"),
+        ("A", {"words": {}}, "needs A, the cylinder's radius; A0 ends a section"),
         ("B", {"x": -0.01},
          "needs X0: the tool must stand on the axis of rotation, not at X-0.01"),
-        ("A", {"letters": "XYZB"}, "needs a machine with an X, A and a Z axis"),
         ("B", {"letters": "XYZ"}, "needs a machine with an Y, B and a Z axis"),
         ("A", {"shifts": {"X": 9.0, "Y": 0.0, "Z": -3.0}},
          "Z0 must be the axis of rotation: G52 or G92 shifts Z by -3; cancel it with G92.1"
@@ -219,13 +200,9 @@ def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, s
         ("B", {"shifts": {"X": 2.0, "Y": 9.0, "Z": 0.0}},
          "X0 must be the axis of rotation: G52 or G92 shifts X by 2; cancel it with G92.1"
          " (an X offset of G54 may stay)"),
-        ("A", {"words": {}}, "needs A, the cylinder's radius; A0 ends a section"),
-        ("B", {"words": {"B": 0.0}},
-         "B0, the cylinder's radius, must be above 0 and at most 1000000"),
-        ("A", {"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
     ],
 )  # fmt: skip
-def test_where_none_begins_on_a_mill(letter, found, rule):
+def test_where_no_section_begins(letter, found, rule):
     with pytest.raises(Refusal) as refused:
-        on_mill(letter, **found)
+        section(**found) if letter == "C" else on_mill(letter, **found)
     assert refused.value.message == f"G7.1 line 7: {rule}"

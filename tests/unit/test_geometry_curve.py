@@ -60,29 +60,6 @@ def test_the_distance_is_that_of_the_nearest_point(curve, point):
     assert abs(curve.point(share) - point) == near(curve.distance(point))
 
 
-@given(CURVE, SHARE)
-def test_a_curve_reversed_is_the_same_the_other_way(curve, share):
-    back = curve.reversed()
-    assert (back.start, back.end) == (near(curve.end), near(curve.start))
-    assert back.point(share) == near(curve.point(1.0 - share))
-    assert back.direction(share) == near(-curve.direction(1.0 - share))
-
-
-@given(CURVE, st.floats(0.0, 0.4))
-def test_the_curvature_is_the_turn_to_the_left_by_the_length(curve, share):
-    length = min(0.1, 0.5 * curve.length)
-    turned = curve.direction(share + length / curve.length) / curve.direction(share)
-    assert curve.curvature * length == near(angle_of(turned))
-
-
-@given(CURVE, st.floats(0.0, 0.4), st.floats(0.6, 1.0))
-def test_a_portion_lies_between_two_shares(curve, first, last):
-    part = curve.portion(first, last)
-    assert (part.start, part.end) == (near(curve.point(first)), near(curve.point(last)))
-    assert part.length == pytest.approx((last - first) * curve.length)
-    assert part.point(0.5) == near(curve.point((first + last) / 2))
-
-
 @given(CURVE, SHARE, st.sampled_from([-20.0, -2.5, -0.4, 0.3, 3.0, 15.0]))
 def test_a_parallel_is_so_far_to_the_left(curve, share, distance):
     """Also where an arc is offset beyond its own centre; of less than that it runs the same way."""

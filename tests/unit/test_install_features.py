@@ -10,26 +10,22 @@ import pytest
 
 from g12.tools.errors import UsageError
 from g12.tools.install.config import features
-from g12.tools.install.config.findings import Refused
 from g12.tools.install.config.loaded import installed_programs
-from g12.tools.install.installation import question_of
-from g12.tools.install.lathe import kinematics
 from g12.tools.install.lathe.hal import pins_taken
 from g12.tools.install.lathe.kinematics import kinematics_findings
 from g12.tools.install.lathe.spindle_c import read_pins, spindle_c_findings
 from g12.tools.install.rules import filter_findings
-from g12.tools.translate.blocks.control import read_control
 from support.small_configs import (
-    FILES_OF_PAGES,
     LATHE,
     MILL,
     TURNING,
     TURNING_HAL,
     config_of,
-    content_of,
     files_of_package,
+    module_of_kinematics,
     package_of,
     put_in,
+    refused,
     restored,
     with_lines,
     write_config,
@@ -38,20 +34,12 @@ from support.small_configs import (
 FORMS = ("form_haas_mm", "form_haas_inch", "form_circle_mill_mm")
 INCLUDES = [f"configs/include/spindle_c{end}" for end in (".hal", "_limits.sh", ".inc")]
 GUARDS = [f"configs/kinematics/polar_{name}.hal" for name in ("kinematics", "tool_offset")]
+module = module_of_kinematics(autouse=True)
 small_package = package_of(
     {"python/g12/__init__.py": b"", "python/g12/__main__.py": b""}
     | {f"ngc/{name}.ngc": b"(a sub)\n" for name in FORMS}
-    | files_of_package(*FILES_OF_PAGES, *INCLUDES, *GUARDS, "python/toplevel.py")
+    | files_of_package(*INCLUDES, *GUARDS, "python/toplevel.py")
 )
-
-
-def refused(ini, *names, **options):
-    """Return the findings of a refusal, which writes nothing."""
-    before = content_of(ini.parent)
-    with pytest.raises(Refused) as caught:
-        put_in(ini, *names, **options)
-    assert content_of(ini.parent) == before
-    return caught.value.args
 
 
 # Screens.
@@ -118,11 +106,6 @@ def test_each_screen_gets_its_lines_and_loses_them_again(tmp_path, screen, names
         assert put_in(ini, names[-1]) == []
 
 
-def test_of_two_rotary_axes_the_screens_is_asked_for(tmp_path):
-    (finding,) = refused(write_config(tmp_path, with_axes(AXIS, "XYZAB")), "cylinder")
-    assert finding.cure == "write [DISPLAY] GEOMETRY = AXYZ! or -BXYZ! first"
-
-
 def test_lines_of_the_users_own_stay_and_are_not_doubled(tmp_path):
     own = "USER_COMMAND_FILE = own.py\nGEOMETRY = XZ\n"
     lathe = write_config(tmp_path, with_lines(ON_LATHE, "DISPLAY", own), "lathe.ini")
@@ -151,10 +134,14 @@ def test_other_screens_show_the_face_already(tmp_path, screen):
         (TURNING, ["spindle-c"], "install cannot know the inputs of your spindle's drive"),
         (with_lines(PROBE_BASIC, "DISPLAY", "USER_TABS_PATH = own/\n"), ["haas", "cycles-page"],
          "USER_TABS_PATH = own/ is yours"),
+        (with_axes(AXIS, "XYZAB"), ["cylinder"], "[DISPLAY] GEOMETRY = AXYZ! or -BXYZ! first"),
+        (f"{MILL}\n[FILTER]\nTAP = mine\n", ["programs-fanuc-mill"],
+         "[FILTER] TAP = mine is there already"),
     ],
 )  # fmt: skip
 def test_refused_for_what_is_missing(tmp_path, text, names, why):
-    assert why in refused(write_config(tmp_path, text), *names)[0].text
+    finding = refused(write_config(tmp_path, text), *names)[0]
+    assert why in f"{finding.text}\n{finding.cure}"
 
 
 # Programs of other controls.
@@ -186,12 +173,6 @@ def test_each_usual_extension_is_opened_in_both_cases(tmp_path, control, suffixe
         assert list(filter_findings(config_of(ini))) == []
 
 
-def test_a_filter_of_the_users_own_for_a_suffix_is_refused(tmp_path):
-    ini = write_config(tmp_path, f"{MILL}\n[FILTER]\nTAP = mine\n")
-    (finding,) = refused(ini, "programs-fanuc-mill")
-    assert finding.text == "[FILTER] TAP = mine is there already"
-
-
 @pytest.mark.parametrize(
     ("spindles", "control", "settings"),
     [
@@ -208,14 +189,6 @@ def test_programs_on_a_lathe_need_settings(tmp_path, spindles, control, settings
         assert put_in(ini, f"programs-{control}") == []
 
 
-def test_what_a_number_without_a_point_is_is_asked_once():
-    fanuc = read_control("fanuc-lathe")
-    (question,) = question_of(fanuc, "programs-fanuc-lathe")
-    assert question.startswith("asked: X1500 has no decimal point. With --decimals least it is 1.5")
-    assert list(question_of(fanuc, "programs-fanuc-lathe --decimals whole")) == []
-    assert list(question_of(read_control("mill-on-face"), "")) == []
-
-
 # The kinematics of the face, and a spindle that becomes C.
 
 PINS = """\
@@ -226,14 +199,6 @@ holds = "drive.mode"
 brake = "drive.brake"
 """
 TURNS_ONLY = TURNING_HAL.replace("net c joint.2.motor-pos-cmd => joint.2.motor-pos-fb\n", "")
-
-
-@pytest.fixture(autouse=True)
-def module(tmp_path, monkeypatch):
-    """LinuxCNC has the module of the kinematics."""
-    module = tmp_path.parent / "polar_xzc.so"
-    module.write_bytes(kinematics.NEWEST_PIN)
-    monkeypatch.setattr(kinematics, "module_file", lambda: module)
 
 
 def lathe_in(folder, text=TURNING, hal=TURNING_HAL):

@@ -86,6 +86,8 @@ def test_every_file_is_old_or_new_and_a_second_run_completes_it(
         now = content_of(folder)
         for name in (ini.name, "codes.inc"):
             assert now[name] in (before[name], after[name])
+        if b"REMAP" in now["codes.inc"]:  # without its Python LinuxCNC would not start
+            assert b"TOPLEVEL" in now[ini.name]
         if exchanges:
             assert copy_in(now) in (copy_in(before), copy_in(after))
         work(ini)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from g12.tools.path.follow import follow, windows_of, worst_of
-from g12.tools.path.nearest import on_segments, shares_along
 from g12.tools.path.part import Part
 from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import Track, duration
@@ -30,11 +29,8 @@ MILL, FACE = Part(turning=False), Part(turning=True)
 )
 def test_a_move_takes_as_long_as_feed_and_axes_ask(hand, seconds):
     assert duration(hand.moves[-1], LIMITS) == pytest.approx(seconds)
-
-
-def test_feed_per_revolution_needs_the_spindle():
-    move = Hand(feed=0.5).line(x=10).moves[0]._replace(feed_mode="G95")
-    assert duration(move, LIMITS, spindle_speed=600) == pytest.approx(2.0)
+    per_turn = hand.moves[-1]._replace(feed=hand.moves[-1].feed / 600, feed_mode="G95")
+    assert duration(per_turn, LIMITS, spindle_speed=600) == pytest.approx(seconds)
 
 
 def test_a_track_tells_length_time_and_feed_of_each_move():
@@ -99,6 +95,19 @@ def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     assert real.deviation[places > 2].max() < 1e-6
 
 
+def test_a_line_that_linuxcnc_names_late_or_early_has_its_neighbours_path():
+    """Blended: the tool is 2 mm beyond the move of the line."""
+    hand = Hand().line(x=40).next_block().arc(1, 40, 10, x=50, y=10).next_block().line(y=50)
+    along = np.linspace(0, 40 + 5 * math.pi + 40, 2000)
+    for shift in (2.0, -2.0):
+        ends = [40 + shift, 40 + 5 * math.pi + shift]
+
+        def named(samples, ends=ends):
+            samples.line[:] = 1 + np.searchsorted(ends, along)
+
+        assert run_of(hand, change=named).deviation.max() < 1e-3
+
+
 def test_the_tool_length_offset_is_taken_off():
     hand = Hand().line(x=20)
     hand.offset = (0, 0, 30.0, *HOME[3:])
@@ -107,19 +116,13 @@ def test_the_tool_length_offset_is_taken_off():
     assert real.deviation.max() < 1e-6
 
 
-def test_machine_units_are_converted():
-    def in_inches(samples):
+def test_samples_are_converted_to_mm_and_standstill_is_left_out():
+    def in_inches_and_waiting(samples):
         samples.axes.update({letter: values / 25.4 for letter, values in samples.axes.items()})
-
-    real = run_of(Hand().line(x=25.4), 25.4, in_inches)
-    assert real.points[-1][0] == pytest.approx(25.4)
-
-
-def test_standstill_is_left_out():
-    def waiting(samples):
         samples.kind[:500] = 0
 
-    assert len(run_of(Hand().line(x=100), change=waiting).time) == 1500
+    real = run_of(Hand().line(x=25.4), 25.4, in_inches_and_waiting)
+    assert real.points[-1][0] == pytest.approx(25.4) and len(real.time) == 1500
 
 
 def test_the_largest_deviation_is_looked_for_in_cuts_only():
@@ -146,15 +149,6 @@ def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
     assert pace.lowest == pytest.approx(240, rel=0.01)
     assert 45 < pace.point[0] < 55
     assert pace.expected == pytest.approx(10)
-
-
-def test_the_nearest_points_of_segments_are_found_for_many_points_at_once():
-    starts, along = np.array([[0.0, 0], [5, 5]]), np.array([[4.0, 0], [0, 0]])
-    points = np.array([[1.0, 3], [-2, 1], [9, 0]])
-    near = on_segments(points[:, None], starts, along)
-    assert near[:, 0].tolist() == [[1, 0], [0, 0], [4, 0]]
-    assert near[:, 1].tolist() == [[5, 5]] * 3  # a segment without length is its point
-    assert shares_along(points, starts[0], along[0]).tolist() == [0.25, 0, 1]
 
 
 def test_a_sample_may_be_on_its_lines_moves_or_in_a_corner_with_the_neighbours():

@@ -17,10 +17,6 @@ from support.made_moves import Hand
 MILL, FACE = Part(turning=False), Part(turning=True)
 
 
-def position(x=0.0, y=0.0, z=0.0, c=0.0):
-    return np.array([[x, y, z, 0, 0, c, 0, 0, 0]], float)
-
-
 @pytest.mark.parametrize(
     ("centre", "unit", "place"), [(12.7, UNITS["mm"], "X12.7"), (-12.7, UNITS["inch"], "X−0.5")]
 )
@@ -28,11 +24,6 @@ def test_where_x0_lies(centre, unit, place):
     shifted = Part(turning=True, centre=centre)
     assert part.x0_text(shifted, unit) == f"X0, the spindle's axis, is at machine {place}"
     assert part.x0_text(FACE, unit) == ""
-
-
-def test_the_face_turns_counterclockwise_with_c():
-    assert np.allclose(FACE.points(position(x=10, z=-5, c=90)), [[0, 10, -5]])
-    assert np.allclose(FACE.points(position(x=10, c=-30)), [[10 * math.cos(math.pi / 6), -5, 0]])
 
 
 @given(radius=st.floats(0.01, 500), sweep=st.floats(0.01, 2 * math.pi), error=st.floats(1e-5, 0.1))

@@ -94,46 +94,45 @@ def test_numbers_in_words():
 # ---------------------------------------------------------------- what is shown
 
 
-def test_a_floor_that_remains_is_shown_and_none_that_a_deeper_one_hides():
-    floors = floors_of(pocket().pocket([5], depth=-6))
-    assert [floor.z for floor in floors] == pytest.approx([-4, -6])
-    for floor, reach in zip(floors, (13, 8)):
-        assert floor.area.bounds == pytest.approx((50 - reach, -reach, 50 + reach, reach), abs=0.02)
-    bright, dark = (sum(floor.shade.line[:3]) for floor in floors)
-    assert dark < bright
-
-
-def test_turns_of_a_helix_are_no_floors():
+def helix():
     hand = Hand().rapid(x=50).line(z=-2).arc(1, 53, 0, x=56)
-    shallow = hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
-    hand = shallow.rapid(z=1).rapid(x=150).line(z=-1).arc(1, 153, 0, x=156)
-    hand.arc(1, 150, 0, x=144, z=-2.5).arc(1, 150, 0, x=156, z=-5).arc(1, 150, 0)
-    floors = floors_of(hand)
-    assert [floor.z for floor in floors] == pytest.approx([-1, -2, -4, -5])
-    assert floors[2].area.bounds[2] < 100 < floors[3].area.bounds[0]
-    on_face = Hand().rapid(x=9, z=1)
+    return hand.arc(1, 50, 0, x=44, z=-3).arc(1, 50, 0, x=56, z=-4).arc(1, 50, 0)
+
+
+def face_spiral():
+    hand = Hand().rapid(x=9, z=1)
     for step in range(1, 9):
-        on_face.line(c=45.0 * step, z=1 - step / 2)
-    assert [floor.z for floor in floors_of(on_face.line(c=720.0), LATHE)] == pytest.approx([-3])
+        hand.line(c=45.0 * step, z=1 - step / 2)
+    return hand.line(c=720.0)
 
 
-def drilled():
-    return scene(Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5))
-
-
-def test_drilling_sweeps_holes():
-    (level,) = plan_view.floors_of(drilled())
-    assert level.area.bounds == pytest.approx((6, -3, 33, 3), abs=0.01)
-    assert len(level.area.geoms) == 2
-
-
-def test_each_tool_sweeps_with_its_own_diameter():
+def two_tools():
     hand = Hand().line(x=100)
     hand.tool = 2
-    hand.rapid(y=50).line(x=0)
-    (_, area, _) = floors_of(hand)[0]
-    assert not area.contains(Point(50, 4)) and area.contains(Point(50, 2.9))
-    assert area.contains(Point(50, 54)) and not area.contains(Point(50, 56))
+    return hand.rapid(y=50).line(x=0)
+
+
+@pytest.mark.parametrize(
+    ("hand", "ini", "floors"),  # each its level and its bounds
+    [
+        (pocket().pocket([5], depth=-6), MILL, {-4: (37, -13, 63, 13), -6: (42, -8, 58, 8)}),
+        (helix(), MILL, {-2: (47, -3, 53, 3), -4: (41, -9, 59, 9)}),  # its turns are no floors
+        (face_spiral(), LATHE, {-3: (-12, -12, 12, 12)}),
+        (
+            Hand().rapid(x=9).line(z=-5).rapid(z=1).rapid(x=30).line(z=-5),
+            MILL,
+            {-5: (6, -3, 33, 3)},
+        ),
+        (two_tools(), MILL, {0: (-5, -3, 105, 55)}),
+    ],
+)
+def test_floors_that_remain_are_shown_each_darker_than_those_above(hand, ini, floors):
+    shown = floors_of(hand, ini)
+    assert [floor.z for floor in shown] == pytest.approx([*floors])
+    for floor, bounds in zip(shown, floors.values()):
+        assert floor.area.bounds == pytest.approx(bounds, abs=0.03)
+    lights = [sum(floor.shade.line[:3]) for floor in shown]
+    assert lights == sorted(lights, reverse=True)
 
 
 @pytest.mark.parametrize(("count", "shown_at_most"), [(50, 50), (120, plan_view.BANDS)])
@@ -144,10 +143,32 @@ def test_very_many_depths_become_bands_and_few_are_in_the_legend(count, shown_at
     shown = scene(hand)
     floors = plan_view.floors_of(shown)
     assert len(floors) == shown_at_most
-    ends = [f"swept at Z{shown.unit.text(z)}" for z in (-1, -1 - (count - 1) / 10)]
     said = [entry.get_label() for entry in plan_view.legend_entries(shown, floors)]
-    depths = [label for label in said if label.startswith("swept")]
-    assert len(depths) == 10 and [depths[0], depths[-1]] == ends
+    assert (said[0], said[9]) == ("swept at Z−1", f"swept at Z−{1 + (count - 1) / 10:g}")
+    assert said[10:] == ["cutter T1, ⌀ 6 mm", "plunge", "rapid"]
+
+
+@pytest.mark.parametrize("tool", [0, 8])
+def test_a_tool_without_a_diameter_is_only_its_centre(tool):
+    shown, name = scene(Hand(tool=tool).line(x=5)), "T8 has no diameter" if tool else "no tool"
+    assert plan_view.cutter_text(shown, tool) == f"{name}: tool centre only"
+
+
+def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
+    """It is one of radius 20 in the ZX plane about X0 Z0."""
+    floors = floors_of(Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5))
+    side = unary_union([removed_to(floor, 30.0) for floor in floors])
+    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=plan_view.THIN)
+    assert side.contains(Point(22.9, 5)) and not side.contains(Point(19, -14))
+
+
+def test_the_history_begins_where_the_first_rapid_ends_and_c_obeys_its_limit():
+    hand = Hand(feed=100000).rapid(x=10, z=2).line(c=360).line(c=0)
+    history = history_of(scene(hand, LATHE))
+    assert (history.time[0], history.x[0], history.z[0]) == (0, 10, 2)
+    assert history.c_speed.max() == pytest.approx(360) and not history.rapid[1:].any()
+    assert history.time[-1] == pytest.approx(2.0)
+    assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
 
 
 def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
@@ -156,25 +177,6 @@ def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
     assert low[2] < -4 and high[2] > 5
     low, high = plan_view.bounds_of(scene(pocket().rapid(x=70)), floors_of(pocket()))
     assert high[0] > 70 and low[0] < 37
-
-
-def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
-    """It is one of radius 20 in the ZX plane about X0 Z0."""
-    hand = Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5)
-    floors = floors_of(hand)
-    low, high = plan_view.bounds_of(scene(hand), floors)
-    assert low[2] < -20 and high[2] > 20
-    assert floors[-1].z == -20.0
-    side = unary_union([removed_to(floor, 30.0) for floor in floors])
-    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=plan_view.THIN)
-    assert side.contains(Point(0, -19.9)) and side.contains(Point(22.9, 5))
-    assert not side.contains(Point(19, -14)) and side.contains(Point(19, -10))
-
-
-def test_a_tool_without_a_diameter_is_only_its_centre():
-    shown, only = scene(Hand(tool=8).line(x=5)), "tool centre only"
-    texts = [f"no tool: {only}", "cutter T1, ⌀ 6 mm", f"T8 has no diameter: {only}"]
-    assert [plan_view.cutter_text(shown, tool) for tool in (0, 1, 8)] == texts
 
 
 def uncut(centre):
@@ -268,21 +270,6 @@ def test_segments_of_one_block_are_one_element_of_the_face():
     assert len(plan_view.elements(scene(hand, LATHE))) == 2
 
 
-def test_the_history_of_c_obeys_its_limit():
-    hand = Hand(feed=100000).rapid(x=10).line(c=360).line(c=0)
-    history = history_of(scene(hand, LATHE))
-    assert history.c_speed.max() == pytest.approx(360)
-    assert history.time[-1] == pytest.approx(2.0)
-    assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
-
-
-def test_the_history_begins_where_the_first_rapid_ends():
-    hand = Hand().rapid(x=30, z=2).line(z=-3).line(c=90)
-    history = history_of(scene(hand, LATHE))
-    assert (history.time[0], history.x[0], history.z[0]) == (0, 30, 2)
-    assert history.z[-1] == -3 and not history.rapid[1:].any()
-
-
 def test_rapids_from_nobody_knows_where_are_not_shown():
     for hand, first in (
         (Hand().rapid(x=5).rapid(z=2).rapid(x=9).line(z=-1), 2),
@@ -328,33 +315,28 @@ def with_real_motion(hand, ini, aside):
     return replace(shown, program=replace(shown.program, samples=samples))
 
 
-def test_the_window_shows_the_axes_in_which_the_motion_strays():
-    """A plunge that is rounded into Y."""
-    assert clearest_axes(np.array([0, 0.1, -0.1]), np.array([0, -1, -1])) == [1, 2]
-
-
-def test_the_largest_deviation_is_reported_with_its_line():
+def test_the_largest_deviation_is_reported_with_its_line_in_the_axes_that_show_it():
     shown = with_real_motion(Hand().line(x=100), MILL, {"Y": 0.0123})
     lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1], 0.05))
     assert lines == ["0.012 mm,", "line 1, in X and Y", "the window is 0.1 mm wide"]
-
-
-def test_the_window_tells_the_override_and_the_contour():
     shown = with_real_motion(flats(), LATHE, {"X": 0.0123})
     shown = replace(shown, override=1500.0, contour=0.0025)
     lines = list(window_lines(worst_of(shown.real, shown.moves), shown, [0, 1], 0.05))
     assert lines[0].endswith(" mm at 1500 % feed,")
     assert lines[1].endswith(", in X and C") and lines[2] == "off the contour: 0.0025 mm"
+    assert clearest_axes(np.array([0, 0.1, -0.1]), np.array([0, -1, -1])) == [1, 2]
 
 
-def test_a_cylinder_is_drawn_unrolled():
-    shown = on_surface(scene(groove(), LATHE))
-    flat = unrolled(shown)
+def test_a_cylinder_is_drawn_unrolled_with_the_motion_of_a_run():
+    flat = unrolled(on_surface(with_real_motion(groove(), LATHE, {"Z": 0.0123})))
     (level,) = plan_view.floors_of(flat)
+    along_c = 20 * np.radians(270)
     assert level.z == pytest.approx(18)
-    assert level.area.bounds == pytest.approx((-3, -13, 20 * np.radians(270) + 3, 5), abs=0.02)
-    assert flat.path.points[-1] == pytest.approx((20 * np.radians(270), -10, 24))
-    assert flat.path.part.letters == "CZX" and flat.path.time[-1] == shown.path.time[-1]
+    assert level.area.bounds == pytest.approx((-3, -13, along_c + 3, 5), abs=0.02)
+    assert flat.path.points[-1] == pytest.approx((along_c, -10, 24))
+    assert flat.path.part.letters == "CZX"
+    assert worst_of(flat.real, flat.moves).deviation == pytest.approx(0.0123, abs=1e-4)
+    assert flat.real.points[-1, :2] == pytest.approx((along_c, -10), abs=1e-3)
 
 
 def test_what_the_spindle_turns_is_no_swept_area():
@@ -367,42 +349,26 @@ def test_what_the_spindle_turns_is_no_swept_area():
         assert (shown.turned, shown.sweeping) == found
 
 
-def test_a_run_on_a_cylinder_is_drawn_along_its_path():
-    shown = with_real_motion(groove(), LATHE, {"Z": 0.0123})
-    flat = unrolled(on_surface(shown))
-    assert worst_of(flat.real, flat.moves).deviation == pytest.approx(0.0123, abs=1e-4)
-    along_c, z = flat.real.points[-1, :2]
-    assert (along_c, z) == pytest.approx((20 * np.radians(270), -10), abs=1e-3)
-
-
 # ---------------------------------------------------------------- files
 
 
-SCENES = {
-    "mill in inches": lambda: scene(pocket(), units="inch"),
-    "mill run": lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}),
-    "turning run": lambda: with_real_motion(turned(), LATHE, {"X": 0.01}),
-    "rapids only": lambda: scene(Hand().rapid(x=10).rapid(z=5)),
-    "one point": lambda: scene(Hand().line(z=-1)),
-    "face run": lambda: with_real_motion(flats(), LATHE, {"X": 0.01}),
-    "surface run": lambda: on_surface(with_real_motion(groove(), LATHE, {"X": 0.01})),
-}
-
-
-@pytest.mark.parametrize("name", SCENES)
-def test_every_kind_of_picture_is_drawn(name, tmp_path):
-    path = tmp_path / "picture.png"
-    style.save(picture_of(SCENES[name]()), path)
-    assert path.read_bytes().startswith(b"\x89PNG")
-
-
-def test_a_pdf_is_one_and_an_svg_the_same_file_every_time(tmp_path):
-    pdf, one, other = (tmp_path / name for name in ("one.pdf", "one.svg", "other.SVG"))
-    for path in (pdf, one, other):
-        style.save(picture_of(scene(pocket())), path)
-    assert pdf.read_bytes().startswith(b"%PDF")
-    assert ET.parse(one).getroot().tag.endswith("svg")
-    assert one.read_bytes() == other.read_bytes()
+@pytest.mark.parametrize(
+    ("make", "suffix", "start"),
+    [
+        (lambda: with_real_motion(pocket(), MILL, {"Y": 0.01}), "png", b"\x89PNG"),
+        (lambda: with_real_motion(turned(), LATHE, {"X": 0.01}), "png", b"\x89PNG"),
+        (lambda: scene(Hand().rapid(x=10).rapid(z=5)), "png", b"\x89PNG"),
+        (lambda: scene(Hand().line(z=-1)), "PNG", b"\x89PNG"),
+        (lambda: with_real_motion(flats(), LATHE, {"X": 0.01}), "pdf", b"%PDF"),
+        (lambda: on_surface(with_real_motion(groove(), LATHE, {"X": 0.01})), "svg", b"<?xml"),
+    ],
+)
+def test_every_kind_of_picture_is_drawn_the_same_every_time(make, suffix, start, tmp_path):
+    paths = [tmp_path / f"{name}.{suffix}" for name in ("one", "other")]
+    for path in paths:
+        style.save(picture_of(make()), path)
+    one, other = (path.read_bytes() for path in paths)
+    assert one.startswith(start) and one == other
 
 
 def test_other_suffixes_are_refused_by_name(tmp_path):

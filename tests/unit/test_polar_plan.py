@@ -2,6 +2,7 @@
 """Polar planning, whole sections: the contour is cut, at its feed, in as few segments as can be."""
 
 import math
+from math import radians
 
 import numpy as np
 import pytest
@@ -10,11 +11,15 @@ from hypothesis import strategies as st
 
 from g12.compensation.contour import Contour
 from g12.errors import Refusal
+from g12.machine_ini import Axis, FaceAxes
+from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
-from g12.section.effects import Action
+from g12.polar.face import FaceLimits
+from g12.polar.polar_section import Polar
+from g12.settings import Settings
 from support.contour_geometry import Round, Straight, distance, distance_from_path
 from support.planned_cuts import SAGITTA, cuts, path, programmed
-from support.section_starts import polar
+from support.section_starts import START, polar, with_found
 
 TOLERANCE = 0.005
 LEAST = 1e-9  # of the slide: nothing is handed on, so that all of the deviation is seen
@@ -113,9 +118,6 @@ def test_the_feed_is_even_inside_a_segment_where_the_machine_can_hold_it(shapes)
             assert all(speed == pytest.approx(100.0, rel=0.02) for speed in cut.speeds)
 
 
-# In as few segments as can be.
-
-
 # The pole.
 
 
@@ -138,24 +140,7 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
     assert careful.plan(programmed([Straight(9 + 0j, -9 + 0.2j)])).steps
 
 
-# A tool beside the X line.
-
-
-# Corners, marks, sections cut in two.
-
-
-def test_marks_keep_their_place_and_segments_their_lines():
-    contour = Contour(10.0, 0.0, 2.0)
-    contour.mark(Action(1, "M8", None))
-    contour.straight(12.0, 0.0, at=2, feed=100.0)
-    contour.straight(height=-1.0, at=3, feed=50.0)
-    contour.mark(Action(4, "S500", None))
-    contour.straight(12.0, 3.0, at=5, feed=100.0)
-    contour.mark(Action(6, "M9", None))
-    steps = polar().plan(contour).steps
-    order = [step.line if isinstance(step, Segments) else step.text for step in steps]
-    assert order == ["M8", 2, 3, "S500", 5, "M9"]
-    assert steps[2] == Segments(3, "Z", [(12.0, 0.0, -1.0, 50.0)], False)
+# What is left over at the end.
 
 
 def test_what_the_segments_leave_over_of_both_slides_comes_last():
@@ -179,3 +164,103 @@ def test_segments_that_keep_x_stay_within_the_tolerance():
     made = cuts(contour, polar().plan(contour))
     assert any(cut.radius[0] == cut.radius[1] for cut in made)
     assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
+
+
+# Where it begins, from the settings and the machine's axes.
+
+INCH = 25.4
+LIMITS = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
+
+
+def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found):  # noqa: B008
+    """Return a section that begins with what is found."""
+    return Polar(with_found(START, **found), SectionMachine(letters, settings, axes, face))
+
+
+@pytest.mark.parametrize(
+    ("found", "rule"),
+    [
+        ({"alone": False}, "must be alone in its block"),
+        ({"compensated": True}, "needs G40: compensation is switched on inside"),
+        ({"inverse_time": True}, "needs G94 or G95, not G93"),
+        (
+            {"offset_pending": True},
+            "needs a move after G40: the tool is still beside the programmed point",
+        ),
+        ({"plane": "G19"}, "needs G18 or G17, not G19"),
+        ({"surface_speed": True}, "needs G97: with G96 the speed would change with X"),
+        ({"rotation": 1.0}, "needs an unrotated work offset (G10 L2 R0)"),
+        ({"missing_code": "M133"}, "needs the spindle as C: M133 first"),
+        (
+            {"shifts": {"X": -2.5}, "diameter": True},
+            "X0 must be the spindle's axis: G52 or G92 shifts X by -5;"
+            " cancel it with G92.1 (an X offset of G54 may stay)",
+        ),
+        ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
+    ],
+)
+def test_where_no_section_begins(found, rule):
+    with pytest.raises(Refusal) as refused:
+        section(**found)
+    assert str(refused.value) == f"G12.1 line 7: {rule}"
+
+
+@pytest.mark.parametrize(
+    ("machine_mm", "inch", "tolerance"),
+    [
+        (1.0, False, 0.005),
+        (INCH, True, 0.0002),
+        (1 / 0.0393700787, False, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
+    ],
+)
+def test_lengths_are_in_program_units(machine_mm, inch, tolerance):
+    made = section(machine_mm=machine_mm, inch=inch)
+    millimetre = 1 / INCH if inch else 1.0
+    machine_unit = machine_mm * millimetre
+    assert made.rules.radius_tolerance == pytest.approx(0.0005 * INCH * millimetre)
+    assert made.tolerance == pytest.approx(tolerance)
+    assert made.least == pytest.approx(0.001 * millimetre)
+    assert made.in_program(LIMITS["X"]) == pytest.approx(1000.0 * machine_unit)
+
+
+def test_what_settings_make_of_words():
+    settings = Settings(polar_z="allow", polar_g0="feed", polar_g0_feed=500.0)
+    rules = section(settings, machine_mm=INCH).rules
+    assert (rules.height_with_others, rules.rapid_feed) == (True, pytest.approx(12700.0))
+    assert (section().rules.height_with_others, section().rules.rapid_feed) == (False, None)
+
+
+def test_kinematics_are_refused_on_a_machine_without_them():
+    with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
+        section(Settings(polar_kinematics=True))
+
+
+@pytest.mark.parametrize(("override", "kept"), [(1.5, 1.5), (0.5, 1.0)])
+def test_what_the_axes_of_the_face_allow(override, kept):
+    x, y, slide = (Axis(-1.0, 1.0, 9.0, acceleration) for acceleration in (30.0, 40.0, 20.0))
+    axes = {**LIMITS, "C": Axis(-9.0, 9.0, 50.0, 700.0)}
+    kinematics = Settings(polar_kinematics=True)
+    face = FaceAxes(x, y, slide, override)
+    made = section(kinematics, axes=axes, face=face, machine_mm=INCH)
+    assert made.face == FaceLimits(
+        acceleration=pytest.approx(50.0 * INCH),
+        round_acceleration=pytest.approx(30.0 * INCH),
+        slide_acceleration=pytest.approx(20.0 * INCH),
+        c_acceleration=radians(700.0),
+        c_speed=radians(50.0),
+        override=kept,
+        segments_speed=pytest.approx(17.988, abs=0.001),
+    )
+    assert section(face=face).face is None
+
+
+def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed():
+    slide = Axis(-1.0, 1.0, 9.0, 20.0)
+    beside = Settings(polar_kinematics=True, polar_tool_offset=-2.0)
+    face = FaceAxes(slide, slide, slide, 1.0)
+    made = section(beside, face=face, machine_mm=INCH)
+    assert made.rules.beside == made.face.beside == -2.0 * INCH
+    assert made.face.slide_speed == pytest.approx(9.0 * INCH)
+    assert section().rules.beside == 0.0
+    assert section(Settings(polar_pole="refuse")).pole_refused
+    assert not section().pole_refused

@@ -34,12 +34,6 @@ def test_long_work_is_told_of(terminal, between, capsys, monkeypatch):
     assert err.endswith(between)
 
 
-def test_short_work_is_not(capsys):
-    with progress.working("reading"):
-        pass
-    assert capsys.readouterr().err == ""
-
-
 @pytest.mark.parametrize("tick", [0.05, 5.0])
 def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch, tick):
     monkeypatch.setattr(progress, "LINE_TICK", tick)
@@ -57,6 +51,15 @@ def test_on_a_terminal_it_is_told_for_how_long(capsys, monkeypatch):
     assert re.search(rf"{re.escape(progress.HIDDEN)}running \d+ s", err)
 
 
+def test_short_work_and_what_an_error_ended_are_not(capsys, monkeypatch):
+    with progress.working("reading"):
+        pass
+    monkeypatch.setattr(progress, "LINE_TICK", 0.05)
+    with pytest.raises(ValueError, match="wrong"), progress.working("reading"):
+        raise ValueError("wrong")
+    assert capsys.readouterr().err == ""
+
+
 def test_an_interrupt_as_the_telling_starts_ends_it(monkeypatch):
     class Interrupted(threading.Thread):
         def start(self):
@@ -68,11 +71,3 @@ def test_an_interrupt_as_the_telling_starts_ends_it(monkeypatch):
     with pytest.raises(KeyboardInterrupt), progress.working("running", clock=True):
         pass
     assert threading.active_count() == before
-
-
-def test_an_error_ends_the_telling(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "LINE_TICK", 0.05)
-    with pytest.raises(ValueError, match="wrong"), progress.working("reading"):
-        raise ValueError("wrong")
-    time.sleep(0.1)
-    assert capsys.readouterr().err == ""

@@ -91,12 +91,6 @@ def test_no_way_is_quicker_than_the_limits(away, lathe):
             assert 0 < least <= 1.01 * face and face <= segments
 
 
-def test_slow_is_the_same_whoever_plans_it():
-    path = [curve for turn in range(3) for curve in (Line(*ends(turn)), Line(*ends(turn)[::-1]))]
-    segments, face, least = times_of(path, 100)
-    assert segments == pytest.approx(least, rel=0.01) and face == segments
-
-
 @pytest.mark.parametrize("bend", [1 / 30, 0.0])
 def test_the_derivatives_are_those_of_radius_and_angle(bend):
     """Against finite differences, on an arc round (10, 0) and on a line."""
@@ -116,19 +110,20 @@ def test_the_derivatives_are_those_of_radius_and_angle(bend):
         assert (three - 2 * two + one) / step**2 == pytest.approx(second, abs=1e-5)
 
 
-def ends(turn):
-    """Return a radius well off the pole."""
-    return cmath.rect(15, turn), cmath.rect(25, turn)
+ALONG_A_RADIUS = np.linspace(10.0, 50.0, 2001) + 0j
+ABOUT_THE_AXIS = 20.0 * np.exp(1j * np.linspace(0.0, math.pi, 2001))
 
 
-def test_along_a_radius_the_slide_speeds_up_and_brakes():
-    points = np.linspace(10.0, 50.0, 2001) + 0j
-    assert least_seconds(points, 1e4, (1e9, 1000.0), FREE) == pytest.approx(0.4, rel=0.01)
-    assert least_seconds(points, 50.0, (1e9, 1000.0), FREE) == pytest.approx(0.85, rel=0.01)
-    assert least_seconds(points, 1e4, (50.0, 1e9), FREE) == pytest.approx(0.8, rel=0.01)
-
-
-def test_about_the_axis_c_does():
-    points = 20.0 * np.exp(1j * np.linspace(0.0, math.pi, 2001))
-    least = least_seconds(points, 1e4, FREE, (1e9, 10.0))
-    assert least == pytest.approx(2.0 * math.sqrt(math.pi / 10.0), rel=0.01)
+@pytest.mark.parametrize(
+    ("points", "speed", "slide", "spindle", "seconds"),
+    [
+        (ALONG_A_RADIUS, 1e4, (1e9, 1000.0), FREE, 0.4),
+        (ALONG_A_RADIUS, 50.0, (1e9, 1000.0), FREE, 0.85),
+        (ALONG_A_RADIUS, 1e4, (50.0, 1e9), FREE, 0.8),
+        (ABOUT_THE_AXIS, 1e4, FREE, (1e9, 10.0), 2.0 * math.sqrt(math.pi / 10.0)),
+    ],
+)
+def test_along_a_radius_the_slide_speeds_up_and_brakes_and_c_about_the_axis(
+    points, speed, slide, spindle, seconds
+):
+    assert least_seconds(points, speed, slide, spindle) == pytest.approx(seconds, rel=0.01)

@@ -152,7 +152,15 @@ def test_a_bad_call_is_refused_by_name(name, wrong, rule):
     assert refusal(name, **wrong) == f"{name}: {rule}"
 
 
-# ---------------------------------------------------------------- what every shape has
+# ---------------------------------------------------------------- slots and pockets
+
+
+def half_turns_of(numbers):
+    """Count the half turns as the sub makes them: down, flat, rings, back, the finish."""
+    turns = numbers["first_turns"] + (numbers["levels"] - 1) * numbers["next_turns"]
+    further = numbers["further"]
+    turns += numbers["levels"] * (2 + 3 * further + (further > 0))
+    return turns + numbers["finish"] * (3 if further else 4)
 
 
 @pytest.mark.parametrize(
@@ -173,17 +181,6 @@ def test_how_far_the_axes_go(shape, entries, x, back, on):
     assert (made.extent.x, made.extent.z) == (pytest.approx(x), (-4.0, 5.0))
     start = made.locals["start_angle"]
     assert made.extent.c == pytest.approx((start - back, start + (turned if on is None else on)))
-
-
-# ---------------------------------------------------------------- slots and pockets
-
-
-def half_turns_of(numbers):
-    """Count the half turns as the sub makes them: down, flat, rings, back, the finish."""
-    turns = numbers["first_turns"] + (numbers["levels"] - 1) * numbers["next_turns"]
-    further = numbers["further"]
-    turns += numbers["levels"] * (2 + 3 * further + (further > 0))
-    return turns + numbers["finish"] * (3 if further else 4)
 
 
 def rough_radii(numbers):

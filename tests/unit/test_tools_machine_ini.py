@@ -18,15 +18,13 @@ def ini(tmp_path):
     return written
 
 
-def test_an_include_goes_into_the_section_it_stands_in(ini):
-    machine = ini("[A]\nX = 1\n#INCLUDE more.inc\n[B]\n", more="Y = 2\n")
-    assert machine.get("A", "Y") == "2"
-    assert "#INCLUDE" not in machine.text
-
-
-def test_includes_of_an_include_stay_comments(ini):
-    machine = ini("[A]\n#INCLUDE one.inc\n", one="X = 1\n#INCLUDE two.inc\n", two="Y = 2\n")
-    assert machine.lines == ("[A]", "X = 1", "# #INCLUDE two.inc")
+def test_an_include_goes_into_the_section_it_stands_in_and_its_own_stay_comments(ini):
+    machine = ini(
+        "[A]\nX = 1\n#INCLUDE one.inc\n#INCLUDE gone.inc\n[B]\n",
+        one="Y = 2\n#INCLUDE two.inc\n",
+        two="Z = 3\n",
+    )
+    assert machine.lines == ("[A]", "X = 1", "Y = 2", "# #INCLUDE two.inc", "[B]")
 
 
 def test_replacing_adds_replaces_and_takes_out(ini):
@@ -56,15 +54,18 @@ def test_a_number_is_read_as_far_as_it_goes_as_linuxcnc_does(ini, text, value):
     assert ini("[A]\nY = 1\n").number("A", "X", 7) == 7
 
 
-def test_what_is_no_number_is_named(ini):
-    with pytest.raises(IniError, match=r"machine.ini: \[A\] X = abc: must be a number"):
-        ini("[A]\nX = abc\n").number("A", "X", 7)
-
-
-def test_a_setting_that_is_all_but_a_number_is_named(ini):
-    named = r"machine.ini: \[G12\] POLAR_TOLERANCE = 0.005 mm: must be"
-    with pytest.raises(IniError, match=named):
-        _ = ini("[G12]\nPOLAR_TOLERANCE = 0.005 mm\n").settings
+@pytest.mark.parametrize(
+    ("text", "read", "named"),
+    [
+        ("[A]\nX = abc\n", lambda ini: ini.number("A", "X", 7), r"\[A\] X = abc: must be a number"),
+        ("[G12]\nPOLAR_TOLERANCE = 0.005 mm\n", lambda ini: ini.settings,
+         r"\[G12\] POLAR_TOLERANCE = 0.005 mm: must be"),
+        ("[TRAJ]\n#INCLUDE a\0b\n", None, "holds NUL bytes"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_read_is_named(ini, text, read, named):
+    with pytest.raises(IniError, match=rf"machine\.ini: {named}"):
+        read(ini(text))
 
 
 def test_files_are_relative_to_the_ini(ini, tmp_path):
@@ -76,10 +77,3 @@ def test_files_are_relative_to_the_ini(ini, tmp_path):
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(IniError, match=r"nothing\.ini: No such file"):
         read_ini(tmp_path / "nothing.ini")
-
-
-def test_an_ini_with_nul_bytes_is_no_text(tmp_path):
-    ini = tmp_path / "mill.ini"
-    ini.write_bytes(b"[TRAJ]\n#INCLUDE a\0b\n")
-    with pytest.raises(IniError, match="NUL bytes"):
-        read_ini(ini)

@@ -80,7 +80,6 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
      ["M30", "(not reached: O5)", "(not reached: G47 X1.)", "(not reached: M99)"]),
     # words and codes that are not LinuxCNC's
     (HAAS, "G81 X1. Z-.5 R.1 Q.1 P500 F8.", ["G81 X1. Z-.5 R.1 F8. (Q.1)(P0.5)"]),
-    (HAAS, "G81 X1. Z-.5 R.1 P500 Q.1 F8.", ["G81 X1. Z-.5 R.1 F8. (P0.5)(Q.1)"]),
     (HAAS, "G0 X1. A0. B0\nA0.\nG1 Y1. A0 F5.",
      ["G0 X1. (A0.)(B0)", "(A0.)", "G1 Y1. F5. (A0)"]),
     (HAAS, "G28 A0.\nG53 A0.\nG91 G28 A0.\nG90 G92 A0.\nG52 A0.\nG10 L2 P1 A0.\nG154 P1 A0", [
@@ -91,14 +90,9 @@ WRITTEN = [  # control, text (or head|text), the lines after the head
     (HAAS, "M31\nM88", ["(M31)", "M88"]),
     (HAAS, "G187 P1 E.01\nG103 P1\nG103\nG69",
      ["(G187 P1 E.01)", "(G103 P1)", "(G103)", "(G69)"]),
-    (FANUC, "G21 G90|N1 X1. (A)\nY1.",
-     ["(MSG, line 3: no G0 or G1 before it, it runs as G0)", "N1 G0 X1. (A) (line 3)", "Y1."]),
-    (FANUC, "G5.1 Q1\nG8 P1\nG5.1 Q0", ["(G5.1 Q1)", "(G8 P1)", "(G5.1 Q0)"]),
-    (HAAS, "G3 X1. R1. F9. M5 M9\nG0 X2. M9", ["G3 X1. R1. F9.", "M5 M9 (line 3)", "G0 X2. M9"]),
     (HAAS, "G154 P2 G0 X1.\nG112\nG10 L20 P3 X1.\nG10 L2 P0 X1. G90", [
         "G59.2 G0 X1. (G154 P2)", "G59.3 (G112)", "G10 L2 P9 X1.", "G90 G52 X1.",
     ]),
-    (FANUC, "G54.1 P1", ["G59.1 (G54.1 P1)"]),
     (HAAS_LATHE, "G390 G0 X1.\nG391 X-.1", ["G90 G0 X1.", "G91 X-.1"]),
     # the spindle, tools
     (LATHE, "G96 S90 M3\nG50 S900\nG97 S50\nG96",
@@ -221,7 +215,6 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G81 Z-1. R.1 L0 X1.", "G81 with L0 only stores"),
     (HAAS, "G154 P100", "G154 P100: LinuxCNC has G54 to G59, and three more, G154 P1 to P3"),
     (HAAS, "G113", "G154 P4: LinuxCNC has G54 to G59"),
-    (HAAS, "G10 L20 P4 X1.", "G10 L20 P4: LinuxCNC has G54 to G59"),
     (HAAS, "G10 L2 P7 X1.", "G10 L2 P7 must be from 0 to 6"),
     (HAAS, "M19", "M19: LinuxCNC's has R, the angle"),
     (HAAS_LATHE, "G107 Y0 C0 R2.", "G107: Y is mapped onto the cylinder"),
@@ -245,7 +238,6 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "#1=#[2400+#3026]", "#[2400 + #5400]: #2400 means something else"),
     (HAAS, "G0 X#0", "X has no value: #0, the empty variable"),
     (HAAS, "#1=[#2 AND 3]", "AND is translated between comparisons"),
-    (HAAS, "#1=[FIX[#2] AND [1 EQ 2]]", "AND is translated between comparisons"),
     (HAAS, "#1=1 EQ 2 EQ 3", "two comparisons in a row"),
     (HAAS, "#1=#2*3 MOD 2", "MOD beside other operators"),
     (HAAS, "G0 X[ROUND[#1]]", "X: ROUND in a word rounds to the least increment there"),
@@ -270,18 +262,14 @@ LAST = [  # control, text, how the sentence about its last line begins
     (HAAS, "G0 X\N{EN DASH}1.", "X has no value: –1."),
     (HAAS, "G54:", "G54: is a label, which these controls do not have"),
     (LATHE, "$1", "$1 begins the program of one of two channels"),
-    (HAAS, "IF[#1EQ1]GOTO5", "GOTO5 is a jump, and LinuxCNC has no jumps"),
     (HAAS, "M97 P100", "N100 is not in this program: M97 calls a block of it"),
     (OKUMA, "OSAMPLE", "OSAMPLE is a name: programs have numbers here, as O1"),
     (OKUMA, "G95 G1 X40. F0,2", "0,2 has a decimal comma: write a point"),
     (OKUMA, "N1 VC1=5", "VC1= sets a variable of the control's own: set it on the machine"),
-    (OKUMA, "VZOFZ=5", "VZOFZ= sets a variable of the control's own"),
     (OKUMA, "X=VC12", "VC12 is a variable of the control's own: write its value"),
-    (OKUMA, "IF[VC1 EQ 5]GOTO5", "VC1 is a variable of the control's own: write its value"),
     (OKUMA, "CALL OSUBX1", "CALLOSUBX1: only a program and Q"),
     (FANUC, "G0 X0|G1 X1. F60", "F60 has no decimal point: is it a least increment or 60.?"),
     (INTEGREX, "G0 B90.", "B90.: this control's machine has the axes XZC"),
-    (INTEGREX, "G0 Y1.", "Y1.: this control's machine has the axes XZC"),
     (control_of("fanuc-lathe-c"), "G21", "G21 is a cycle here, the thread pass, with X and Z and "
      "no G0 or G1: where it is a mode, the control is another of fanuc-lathe, fanuc-lathe-b and"),
     (control_of("fanuc-lathe-b"), "G77\nX40. Z1.", "G77 is a cycle here, the turning pass, with X"),
@@ -294,9 +282,6 @@ LAST = [  # control, text, how the sentence about its last line begins
                     "G10 L20 P1 X1. A5.", "G52 X1. A5.", "G154 P1 X1. A5.")),
     *((LATHE, f"G21 G98 G0 X50. Z5.{text}", "C beside a slide at a feed: F has another")
       for text in (" C0\nG1 X40. C30. F9.", "\nG1 Z4. C30. F9.", " C0\nG1 U#100 H1. F9.")),
-    (HAAS, "#1=#2\n#2=#33", "#33 means something else"),
-    (HAAS, "IF[#1EQ#0]THEN#1=2.", "#0, the empty variable: LinuxCNC has none: give each argument"),
-    (HAAS, "G10 L10 P1 R2.", "G10 needs L2 or L20; set a tool's values in the tool table"),
     (HAAS, "G91 G10 L2 P1 X1.", "G10 under G91 adds to the offset"),
     (HAAS, "M29 S99", "M29: rigid tapping: take it out for a floating holder, or write"),
     (LATHE, "G98 C0\nG12.1\nG1 X40. C1. F9.\nX39. C2. W-1.", "W-1. beside other axes in a section"),
@@ -319,7 +304,7 @@ ELSEWHERE = [  # control, text, the line and the beginning of its sentence
     (HAAS_LATHE, "G99 S9\nG0 X2. Z.1\nG71 P1 Q2 D.05\nN1 G0 X1.\nG1 Z-1.\nN2 X2.", 3,
      "the control's setting for the retract depends on G20 or G21"),
     (LATHE, "G21 G99 G0 X50. Z2.|G71 U2. R1.\nG71 P1 Q2\nN1 G0 X9.\nG3 X19. Z-5. R5.\nN2 Z-9.", 2,
-     "line 7: G3 needs R, or I and K; a line is G1"),
+     "line 7 in the contour: G3 needs R, or I and K; a line is G1"),
     (LATHE, "G21 G0 X50. Z2.|G71 U2.\nG71 P1 Q2 U1.\nN1 G0 X20.\nG1 Z-5.\nN2 X50.\nG71 R3.\nM99", 2,
      "the retract here is not the same on every way"),
     (LATHE, "G98 G0 X60. Z2. C0\nG12.1|G41 G1 X50. F9.\nG40 Z9.\nG13.1", 3,
@@ -360,6 +345,9 @@ WHOLE = [  # control, a whole program, its first refused line, and how the sente
     (HAAS, "G20 G0 X1\nM30", 1, "X1 has no decimal point: is it 0.0001 or 1.? write --decimals "
      "least, or whole, behind --control haas-mill, in the [FILTER] line too"),
     (HAAS, "%\n(COMMENT)\n%", 1, "there is no block in the file"),
+    (HAAS, "%\nN100 G20 G0 X1.\nM97 P100\nM30", 1, "N100 is called by M97 and also reached"),
+    (LATHE, "G98 G0 X60. Z2. C0\nG12.1\nX30. C5.\nG13.1\nM30", 3,
+     "G0 in polar mode: write G1 with a high feed, or G1 if this is a cut: no G1 is before it"),
 ]  # fmt: skip
 
 
@@ -398,14 +386,6 @@ def test_a_refused_block_sets_its_modes(refused):
     text = f"G98 G0 X60. Z2. C0\nG12.1\n{refused}\nX30. Y5.\nG13.1\nM30\n"
     result = translate_program(text, LATHE)
     assert [block.line for block in result.refused] == [3]
-
-
-def test_no_setting_is_proposed_for_a_rapid_of_a_block_before():
-    text = "G98 G0 X60. Z2. C0\nG12.1\nX30. C5.\nG13.1\nM30\n"
-    result = translate_program(text, LATHE)
-    assert result.refused[0].sentence == (
-        "G0 in polar mode: write G1 with a high feed, or G1 if this is a cut: no G1 is before it"
-    )
 
 
 # ---------------------------------------------------------------- controls and machines
@@ -556,12 +536,6 @@ def test_m97_calls_a_block_of_its_own_program():
     assert "N100 X1. (line 6)" in lines(HAAS, text)
 
 
-@pytest.mark.parametrize("head", ["", "%\n"])
-def test_a_local_subprogram_that_begins_the_file_is_refused(head):
-    refused = translate_program(f"{head}N100 G20 G0 X1.\nM97 P100\nM30\n", HAAS).refused
-    assert refused[0].sentence.startswith("N100 ")
-
-
 def test_programs_are_not_compared_each_with_each():
     def planned(count):
         subs = "".join(f"O{n}\nM98 P{n - 1}\nM99\n" for n in range(2, count))
@@ -661,18 +635,15 @@ WORDS = st.sampled_from([*PARTS.split(), *"\n\n\n\n\0\t "])
 
 
 @hypothesis_settings(max_examples=300)
-@given(st.lists(WORDS, max_size=60), st.sampled_from([HAAS, FANUC, LATHE, HAAS_LATHE]))
+@given(
+    st.lists(WORDS | st.characters(), max_size=60),
+    st.sampled_from([HAAS, FANUC, LATHE, HAAS_LATHE]),
+)
 def test_any_text_is_translated_or_refused(words, control):
     result = translate_program("".join(words), control)
     assert bool(result.text) != bool(result.refused)
     for line in result.text.splitlines():
         assert len(line.encode()) <= 254
-
-
-@given(st.text(max_size=200))
-def test_any_characters_are_translated_or_refused(text):
-    result = translate_program(text, HAAS)
-    assert bool(result.text) != bool(result.refused)
 
 
 @pytest.mark.parametrize(

@@ -59,10 +59,6 @@ class PlaneMove(NamedTuple):
     def level(self, share: float) -> float:
         return self.h0 + share * (self.h1 - self.h0)
 
-    def reversed(self) -> PlaneMove:
-        """Return the move from its end to its start, with the same compensation."""
-        return self._replace(curve=self.curve.reversed(), h0=self.h1, h1=self.h0)
-
     def portion(self, first: float, last: float) -> PlaneMove:
         curve = self.curve.portion(first, last)
         return self._replace(curve=curve, h0=self.level(first), h1=self.level(last))

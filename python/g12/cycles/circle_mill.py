@@ -175,7 +175,7 @@ def plan_event(entries: EventEntries) -> CyclePlan:
     depths = depths_of(entries, depth, first_plane, peck)
     words.check_count(round(roughing["rings"] * depths["levels"]), "J and K make")
     side = side_finish_of(entries, circle, tool)
-    position = {
+    numbers = {
         "x": circle.x,
         "y": circle.y,
         "start_x": context.x,
@@ -183,23 +183,20 @@ def plan_event(entries: EventEntries) -> CyclePlan:
         "first_plane": first_plane,
         "second_plane": second_plane,
         "below": context.z < first_plane - context.rounding,
-    }
-    feeds = {
         "plunge_feed": plunge_feed,
         "feed": context.feed,
         "finish_feed": entries.finish_feed,
+        **roughing,
+        **depths,
+        **side,
     }
     largest = max(roughing["rough_radius"], side["finish_radius"] if entries.finish else 0.0)
     final = depths["final_z"]
     heights = first_plane, second_plane, final
     words.check_travel((circle.x, circle.y, final), largest, heights)
-    return CyclePlan(
-        position | roughing | depths | side | feeds,
-        cut_of_event(entries, circle, tool, depths),
-        None,
-        uncut_material(words, roughing["roughing_width"], tool),
-        given,
-    )
+    message = uncut_material(words, roughing["roughing_width"], tool)
+    cut = cut_of_event(entries, circle, tool, depths)
+    return CyclePlan(numbers, cut, None, message, given)
 
 
 def cut_of_event(

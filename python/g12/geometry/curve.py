@@ -42,9 +42,6 @@ class Line(NamedTuple):
     def portion(self, first: float, last: float) -> Line:
         return Line(self.point(first), self.point(last))
 
-    def reversed(self) -> Line:
-        return Line(self.end, self.start)
-
     def offset(self, distance: float) -> Line:
         """Return the parallel line, ``distance`` to the left of the motion."""
         shift = 1j * distance * self.direction()
@@ -105,9 +102,6 @@ class Arc(NamedTuple):
 
     def portion(self, first: float, last: float) -> Arc:
         return Arc(self.point(first), self.centre, (last - first) * self.sweep)
-
-    def reversed(self) -> Arc:
-        return Arc(self.end, self.centre, -self.sweep)
 
     def offset(self, distance: float) -> Arc:
         """Return the parallel arc, ``distance`` to the left of the motion.

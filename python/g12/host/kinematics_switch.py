@@ -65,24 +65,16 @@ def refusal(values: Sequence[float]) -> str:
     return ""
 
 
-def end_request(interp: Interp) -> None:
-    """End the request for the face at once; the machine leaves it when it is at rest.
-
-    A screen's preview is in a process with HAL, too: it ends nothing.
-    """
-    if interp.task and not is_older():
-        hal.set_p(END_PIN, "1")
-
-
 def leave(interp: Interp) -> None:
     """Switch back from the face where no wait is possible: after an abort or an error.
 
     The position that LinuxCNC takes then is the face's. `Interp::read_inputs` (rs274ngc_pre.cc)
     takes the machine's new position when it reads the next line, as after a tool change. The
-    request ends in HAL: LinuxCNC drops what an abort queues when the mode changes before the axes
-    are at rest.
+    request ends in HAL, and the machine leaves the face when it is at rest: LinuxCNC drops what an
+    abort queues when the mode changes before. A screen's preview has HAL too: it ends nothing.
     """
-    end_request(interp)
+    if interp.task and not is_older():
+        hal.set_p(END_PIN, "1")
     interp.toolchange_flag = True
 
 

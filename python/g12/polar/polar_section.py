@@ -12,13 +12,7 @@ from math import copysign, degrees, hypot, inf, pi, radians, remainder, sqrt
 from g12.compensation.contour import Contour, Motion, PathElement, PlaneMove, Plunge, Start
 from g12.errors import number
 from g12.moves.exact_stops import Direction
-from g12.moves.setup import (
-    RADIUS_TOLERANCE_MM,
-    SectionKind,
-    SectionMachine,
-    StepMaker,
-    check_entry,
-)
+from g12.moves.setup import RADIUS_TOLERANCE_MM, SectionKind, SectionMachine, StepMaker, check_entry
 from g12.moves.steps import FaceMove, FaceSwitch, MachinePosition, SectionPlan, Split
 from g12.polar.face import FaceLimits, in_face, positions_along
 from g12.polar.pole import POLE, along_and_around, check_pole_distance, slide_at, through_pole

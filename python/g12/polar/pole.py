@@ -141,10 +141,8 @@ def _radius(
 ) -> list[PathElement]:
     """Return the radius between a point of a move and the pole: none for a point at the pole."""
     point, level, pole_level = move.curve.point(share), move.level(share), move.level(at_pole)
-    if abs(point) > pole_radius:
-        inwards = move._replace(curve=Line(point, POLE), h0=level, h1=pole_level)
-        return [inwards.reversed() if outwards else inwards]
-    if level == pole_level:
-        return []
     h0, h1 = (pole_level, level) if outwards else (level, pole_level)
-    return [Plunge(move.line, move.feed, h0, h1)]
+    if abs(point) > pole_radius:
+        radius = Line(POLE, point) if outwards else Line(point, POLE)
+        return [move._replace(curve=radius, h0=h0, h1=h1)]
+    return [] if h0 == h1 else [Plunge(move.line, move.feed, h0, h1)]

@@ -162,6 +162,11 @@ class IniLine(NamedTuple):
     host: int
 
     @property
+    def place(self) -> tuple[Path, int]:
+        """Where it is; a file that is included twice has its lines twice."""
+        return self.file, self.row
+
+    @property
     def location(self) -> str:
         return f"{self.file.name}:{self.row + 1}"
 

@@ -9,7 +9,6 @@ stand below their calls stays in its order.
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
-from typing import NamedTuple
 
 from g12.tools.translate.blocks.draft import Draft
 from g12.tools.translate.blocks.errors import NotTranslated
@@ -25,24 +24,10 @@ NUMBERED = re.compile("(/ )?(N[0-9]+ )?")  # what LinuxCNC takes at the start of
 NUMBER_PREFIX = re.compile(r"(N[0-9]+ |)(?=\(|$)")  # with nothing but comments after it
 
 
-class WrittenRow(NamedTuple):
-    """A line of a file, and the indices of the blocks that are written for it."""
-
-    line: int
-    indices: list[int]
-
-
-class FilePart(NamedTuple):
-    """Lines that stay together, and the numbers of the programs in them."""
-
-    rows: list[WrittenRow]
-    numbers: list[int]
-
-
-def written_order(followed: FollowedProgram, count: int) -> tuple[list[WrittenRow], frozenset[int]]:
+def written_order(followed: FollowedProgram, count: int) -> tuple[list[int], frozenset[int]]:
     """Return a file's lines as they are written, and the programs that call each other."""
     parts = _file_parts(followed.structure, count)
-    part_of = {number: at for at, part in enumerate(parts) for number in part.numbers}
+    part_of = {number: at for at, (_, numbers) in enumerate(parts) for number in numbers}
     above: dict[int, set[int]] = {at: set() for at in range(len(parts))}
     for number, callers in followed.callers.items():
         callers_parts = {part_of[followed.structure.programs[index]] for index in callers}
@@ -51,33 +36,33 @@ def written_order(followed: FollowedProgram, count: int) -> tuple[list[WrittenRo
     try:
         sorter.prepare()
     except CycleError as cycle:
-        return [], frozenset(n for at in cycle.args[1] for n in parts[at].numbers)
+        return [], frozenset(number for at in cycle.args[1] for number in parts[at][1])
     ready: list[int] = []
-    rows: list[WrittenRow] = []
+    lines: list[int] = []
     while sorter.is_active():
         first, *ready = sorted((*ready, *sorter.get_ready()))
-        rows += parts[first].rows
+        lines += parts[first][0]
         sorter.done(first)
-    return rows, frozenset()
+    return lines, frozenset()
 
 
-def _file_parts(structure: Structure, count: int) -> list[FilePart]:
-    """Return the parts of a file: one for each program that begins a line, and the text around."""
-    rows = [WrittenRow(line, []) for line in range(1, count + 1)]
-    for index, block in enumerate(structure.blocks):
-        rows[block.line - 1].indices.append(index)
-    parts: list[FilePart] = []
+def _file_parts(structure: Structure, count: int) -> list[tuple[range, list[int]]]:
+    """Return the lines that stay together, and the numbers of the programs in them.
+
+    A part is a program that begins a line, or the text around.
+    """
+    parts: list[tuple[range, list[int]]] = []
     begun, numbers = 1, [] if MAIN in structure.starts.values() else [MAIN]
     for index in sorted(structure.starts):
         line = structure.blocks[index].line
         if line > begun and structure.blocks[index - 1].line != line:
-            parts.append(FilePart(rows[begun - 1 : line - 1], numbers))
+            parts.append((range(begun, line), numbers))
             begun, numbers = line, []
         numbers.append(structure.starts[index])
     last = structure.blocks[-1] if structure.blocks else None
     closed = last and last.kind == "tape" and last.line > begun
     end = last.line if closed else count + 1
-    return [*parts, FilePart(rows[begun - 1 : end - 1], numbers), FilePart(rows[end - 1 :], [])]
+    return [*parts, (range(begun, end), numbers), (range(end, count + 1), [])]
 
 
 def lines_of(draft: Draft) -> list[str]:
@@ -123,7 +108,7 @@ def _as_comment(text: str) -> str:
 
 
 def output_lines(
-    rows: Sequence[str], order: Iterable[WrittenRow], followed: FollowedProgram
+    rows: Sequence[str], order: Iterable[int], followed: FollowedProgram
 ) -> Iterator[str]:
     """Yield the lines of a program from the drafts of its blocks; none of them is refused.
 
@@ -132,9 +117,12 @@ def output_lines(
     """
     start = " ".join(followed.control.start)
     ends = followed.ends_of_macros()
+    indices: dict[int, list[int]] = {}
+    for index, block in enumerate(followed.structure.blocks):
+        indices.setdefault(block.line, []).append(index)
     in_place = True
-    for number, (line, indices) in enumerate(order, 1):
-        lines = _lines_of_row(rows[line - 1], indices, followed, ends)
+    for number, line in enumerate(order, 1):
+        lines = _lines_of_row(rows[line - 1], indices.get(line, ()), followed, ends)
         if number == 1 and start:
             lines = _with_start_codes(start, lines)
         if number == 1:

@@ -23,7 +23,7 @@ C_OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed out
 OTHER_TOOL = kind(
     "rapid-other-tool",
     NOT_JUDGED,
-    "low rapids of turning tools, without a diameter, or between face and side",
+    "low rapids of tools that no code of the package moves, without a diameter, or between sides",
 )
 BORED = "; was it bored before? (--stock 'bore DIAMETER')"
 THREAD = "; a thread outside? H1 is missing"
@@ -135,7 +135,8 @@ def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
         if code in KINDS and 0 < event.at <= last + (code != "M5"):
             yield from _event(code, event, program, solids)
     if last >= 0:
-        yield from (program.found(END, last, tip) for tip in in_part(last, program, solids))
+        tips = in_part(last, program, solids, plain=True)
+        yield from (program.found(END, last, tip) for tip in tips)
     turned = program.turned_at
     if turned and turns_part(program.moves[turned]):
         tips = in_part(turned - 1, program, solids)
@@ -143,11 +144,16 @@ def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     yield from plunges(program, solids)
 
 
-def in_part(index: int, program: TracedProgram, solids: Solids) -> Iterator[np.ndarray]:
-    """Yield the tip at the end of a move where it is in the part."""
+def in_part(
+    index: int, program: TracedProgram, solids: Solids, *, plain: bool = False
+) -> Iterator[np.ndarray]:
+    """Yield the tip at the end of a move where it is in the part.
+
+    ``plain``: also that of a lathe's tool that no code of the package moves, beyond the face.
+    """
     if not program.known_after[index] or not program.is_known(index):
         return
-    for side in program.sides[index] or ():
+    for side in program.sides[index] or ({FACE} if plain and program.turning else ()):
         tip = program.tip(index, side)[-1]
         if solids.surrounds(tip, index, side):
             yield tip
@@ -158,7 +164,7 @@ def _event(code: str, event: Event, program: TracedProgram, solids: Solids) -> I
     lifted = code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
     if lifted or (code == "M5" and _is_followed(event, program)):
         return
-    for tip in in_part(event.at - 1, program, solids):
+    for tip in in_part(event.at - 1, program, solids, plain=code == "tool"):
         yield Finding(KINDS[code], event.line, {"code": code}, tip)
 
 
@@ -175,10 +181,13 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """
     made = [cut for cut in program.cuts if cut.at < cut.end]
     tools = {program.moves[cut.at].tool for cut in made}
+    if not program.turning:  # whose other tools turn the part
+        tools |= {move.tool for move in program.moves}
     cutters = {program.moves[cut.at].tool for cut in made if not cut.places and solids.stock}
     for index, move in enumerate(program.moves):
         sides, own = program.sides[index] or set(), program.cut_at(index)
-        if move.kind != "feed" or (own and own.is_tap) or len(sides) != 1 or move.tool not in tools:
+        taps = own.is_tap if own else move.block in program.tapping
+        if move.kind != "feed" or taps or len(sides) != 1 or move.tool not in tools:
             continue
         (side,) = sides
         speed = program.speed(index)

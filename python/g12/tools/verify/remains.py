@@ -13,7 +13,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.cut_report import PolygonCut
+from g12.cut_report import PolygonCut, RoundPocketCut
 from g12.tools.path.part import disc
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
@@ -57,7 +57,7 @@ def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
             yield from in_air(cut, solids)
-    yield from meeting([cut for cut in program.cuts if cut.is_circle and not cut.upright])
+    yield from meeting(program)
 
 
 # ------------------------------------------------------------ what should be gone
@@ -66,20 +66,25 @@ def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
     radius, level = solids.program.cutter(cut.at), cut.floor - cut.zero[2]
-    left = NOTHING if _is_cleared(cut, solids) else left_of(cut.goes, cut, solids)
+    left = NOTHING
     core = left_of(cut.core, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
-        left, core = NOTHING, left.buffer(-radius / 2)
+        inside = (left_of(o.polygon, cut, solids, o.level) for o in cut.pockets)
+        core = unary_union([NOTHING, *(each.buffer(-radius / 2) for each in inside)])
+    elif not _is_cleared(cut, solids):
+        left = left_of(cut.goes, cut, solids)
     if left.area > LEAST_GONE:
         middle = cut.centre if cut.is_circle else left.representative_point().coords[0]
         values = {"area": left.area, "level": level, "shape": left, "floor": cut.floor}
         yield cut.found(UNCUT, (*middle, cut.floor), **values)
     if core.area > LEAST_GONE and not cut.is_ring:  # whose core is meant
         yield cut.found(CORE, area=core.area)
-    beyond = left_of(_beyond(cut, solids, radius), cut, solids)
-    if beyond.area > LEAST_LEFT:
-        place = (*beyond.representative_point().coords[0], cut.floor)
-        yield cut.found(BAR, place, area=beyond.area, level=level)
+    for region, floor in _beyond(cut, solids, radius):
+        beyond = left_of(region, cut, solids, floor)
+        if beyond.area > LEAST_LEFT:
+            place = (*beyond.representative_point().coords[0], floor)
+            yield cut.found(BAR, place, area=beyond.area, level=floor - cut.zero[2])
+            return
 
 
 def _is_cleared(cut: Cut, solids: Solids) -> bool:
@@ -89,28 +94,36 @@ def _is_cleared(cut: Cut, solids: Solids) -> bool:
     return cut.is_circle and solids.of(cut.surface).has_cleared(cut.centre, edges, level)
 
 
-def left_of(region: BaseGeometry, cut: Cut, solids: Solids) -> BaseGeometry:
-    """Return what stands of a region at a cut's floor, without what is narrower than two slacks."""
-    if region.is_empty or solids.standing(region.buffer(-SLACK), cut.floor, cut.surface).is_empty:
+def left_of(
+    region: BaseGeometry, cut: Cut, solids: Solids, level: float | None = None
+) -> BaseGeometry:
+    """Return what stands of a region at a level, a cut's floor by default.
+
+    What is narrower than two slacks is left out.
+    """
+    level = cut.floor if level is None else level
+    if region.is_empty or solids.standing(region.buffer(-SLACK), level, cut.surface).is_empty:
         return NOTHING  # no more than a rim, of chords and rounding
-    area = solids.standing(region, cut.floor, cut.surface)
+    area = solids.standing(region, level, cut.surface)
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
 
 
-def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
-    """Return what of a given bar lies on the tool's side of a contour, as far as a cutter reaches.
+def _beyond(cut: Cut, solids: Solids, radius: float) -> Iterator[tuple[BaseGeometry, float]]:
+    """Yield what of a given bar lies on the tool's side of a contour, and the contour's level.
 
-    An open contour goes on straight at its ends.
+    It reaches as far as a cutter. An open contour goes on straight at its ends.
     """
     if cut.surface or not solids.given_bar:
-        return NOTHING
-    bar, found = solids.of(cut.surface).shape, []
+        return
+    bar = solids.of(cut.surface).shape
     whole = bar.buffer(3 * radius)
     if isinstance(cut.plan, PolygonCut):
-        found.append(bar.difference(cut.stays[0][0]))
+        outside = bar.difference(cut.stays[0][0])
+        yield reachable(outside, radius).intersection(bar), cut.floor
     for outline in cut.outlines:
         if outline.is_closed:
-            found.append(NOTHING if outline.tool_inside else whole.difference(outline.polygon))
+            outside = NOTHING if outline.tool_inside else whole.difference(outline.polygon)
+            yield reachable(outside, radius).intersection(bar), outline.level
             continue
         points = outline.points
         far = 4.0 * max(bar.bounds[2], float(np.abs(points).max()))
@@ -118,8 +131,8 @@ def _beyond(cut: Cut, solids: Solids, radius: float) -> BaseGeometry:
         ends = points[0] + far * first / abs(first), points[-1] + far * last / abs(last)
         line = LineString([(p.real, p.imag) for p in (ends[0], *points, ends[1])])
         beside = line.buffer(far if outline.left else -far, single_sided=True, join_style=2)
-        found.append(whole.intersection(beside))
-    return unary_union([NOTHING, *(reachable(each, radius) for each in found)]).intersection(bar)
+        outside = whole.intersection(beside)
+        yield reachable(outside, radius).intersection(bar), outline.level
 
 
 # ------------------------------------------------------------ what should stand
@@ -192,17 +205,29 @@ def _cut_away(
     return swept, first if swept.area > LEAST_GONE else None
 
 
-def meeting(circles: list[Cut]) -> Iterator[Finding]:
-    """Yield pockets and bosses that go into each other's walls."""
-    heights = np.array([cut.zero[2] for cut in circles])
-    centres = np.array([complex(*cut.centre) for cut in circles])
-    walls = np.array([cut.wall for cut in circles])
-    for index, cut in enumerate(circles):
+def meeting(program: TracedProgram) -> Iterator[Finding]:
+    """Yield pockets, bosses and holes of a plane that go into each other's walls."""
+    found = [(cut, *disc) for cut in program.cuts for disc in discs_of(cut, program)]
+    cuts, centres, walls = zip(*found) if found else ((), (), ())
+    centres, walls = np.array(centres, complex), np.array(walls, float)
+    heights = np.array([cut.zero[2] for cut in cuts])
+    for index, cut in enumerate(cuts):
         apart, own = np.abs(centres[:index] - centres[index]), walls[index]
         within = apart <= np.abs(walls[:index] - own) + SLACK
         level = np.abs(heights[:index] - heights[index]) < SLACK
         for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
-            yield cut.found(MEETS, other=circles[other].line)
+            yield cut.found(MEETS, other=cuts[other].line)
+
+
+def discs_of(cut: Cut, program: TracedProgram) -> Iterator[tuple[complex, float]]:
+    """Yield the circles of a cut on the face or in XY: the centre and the wall's radius."""
+    if cut.is_circle and not cut.upright:
+        yield complex(*cut.centre), cut.wall
+    elif isinstance(cut.plan, RoundPocketCut):
+        middle = cut.goes.centroid
+        yield complex(middle.x, middle.y), cut.plan.diameter * cut.mm / 2
+    elif cut.places and not cut.surface and cut.at < cut.end:
+        yield from ((at, program.cutter(cut.at)) for at in cut.places)
 
 
 # ------------------------------------------------------------ a cut in the air, or too deep
@@ -230,11 +255,16 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
 
 def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield a first level that is far below what stands, or a level far below the one before."""
-    radius, levels = solids.program.cutter(cut.at), cut.levels
+    program, top = solids.program, solids.top(cut.surface)
+    radius, levels, wanted = program.cutter(cut.at), cut.levels, cut.goes
+    if wanted.is_empty and (cut.is_section or cut.is_shape):
+        wanted, _ = solids.swept_in(solids.of(cut.surface).shape, cut.moves, cut.surface)
+    if cut.is_section:
+        levels = [level for level in cut.steps_down if level < top] or cut.levels
     steps = [upper - lower for upper, lower in pairwise(levels)]
-    high, top = levels[0] + DEEPEST * radius, solids.top(cut.surface)
+    high = levels[0] + DEEPEST * radius
     if high < top:
-        standing = solids.standing(cut.goes, high, cut.surface, before=cut.at)
+        standing = solids.standing(wanted, high, cut.surface, before=cut.at)
         steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
     if max(steps, default=0.0) > DEEPEST * radius:
         yield cut.found(DEEP, deep=max(steps), cutter=2 * radius)

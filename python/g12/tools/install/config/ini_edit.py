@@ -126,6 +126,10 @@ class IniText(IniFiles):
 
     def _put(self, file: Path, extent: slice, texts: Sequence[str]) -> None:
         """Put lines in place of others; a missing last line end remains missing."""
+        hosts = {line.host for line in self.lines() if line.file == file}
+        if file != self.path and len(hosts) > 1:  # a line of it is one of several sections
+            cure = f"write the lines of one of them into {self.path.name} itself"
+            raise IniError(f"{file.name}: would have to change, and is included twice: {cure}")
         present = self.files[file]
         end, at_end = line_end(present), extent.stop == len(present)
         new = [text if text.endswith("\n") else text + end for text in texts]
@@ -135,8 +139,8 @@ class IniText(IniFiles):
         present[extent] = new
 
     def blocks(self) -> list[list[IniLine]]:
-        """Return the blocks, markers included, of the INI and its included files."""
-        lines = self.lines()
+        """Return the blocks, markers included, of the INI and its included files, each once."""
+        lines = list({line.place: line for line in self.lines()}.values())
         marks = [row for row, line in enumerate(lines) if line.text.startswith(MARKS)]
         pairs = zip(marks[::2], [*marks[1::2], *marks[-1:]])
         blocks = [lines[first : last + 1] for first, last in pairs]
@@ -168,8 +172,9 @@ class IniText(IniFiles):
             for line in lines:
                 own = digest_of(line.text) in digests
                 (removed if own and not line.text.startswith(WAS) else users).append(line)
+        ours = {line.place for line in removed}
         for line in (each for each in removed if each.text.startswith("[")):
-            others = [each for each in self.section(line.text[1:-1]) if each not in removed]
+            others = [each for each in self.section(line.text[1:-1]) if each.place not in ours]
             if any(key_and_value(each.text)[0] for each in others):
                 removed.remove(line)
         for line in (each for each in users if each.text.startswith(WAS)):

@@ -162,12 +162,18 @@ class Cut:
         """The levels of its floors: machine Z, or the radius on a cylinder."""
         plan = self.plan
         if isinstance(plan, SectionCut):
-            ends = [min(each.z0, each.z1) for each in self.drawn]
+            ends = [min(each.z0, each.z1) for each in self.elements]
             return [self._level(min(ends))] if ends else []
         if isinstance(plan, HolesCut):
             x, z, _ = plan.places[0]
             return [self._level((x if plan.surface else z) - plan.depth)]
         return [self._level(level) for level in self.passes.levels]
+
+    @cached_property
+    def steps_down(self) -> list[float]:
+        """The levels at which a section moves in its plane, the highest first."""
+        ends = {self._level(round(min(each.z0, each.z1), 6)) for each in self.drawn}
+        return sorted(ends, reverse=True) or self.levels
 
     @cached_property
     def floor(self) -> float:
@@ -185,7 +191,12 @@ class Cut:
             return self._shape[0]
         if self.is_circle and not self.upright and not isinstance(self.plan, ThreadCut):
             return disc(self.centre, self.wall, CHORD).difference(self._middle)
-        return unary_union([o.polygon for o in self.outlines if o.is_closed and o.tool_inside])
+        return unary_union([outline.polygon for outline in self.pockets])
+
+    @property
+    def pockets(self) -> list[Outline]:
+        """The closed contours of a section that are cut from the inside."""
+        return [each for each in self.outlines if each.is_closed and each.tool_inside]
 
     @property
     def _middle(self) -> BaseGeometry:
@@ -314,9 +325,11 @@ class Cut:
     @cached_property
     def deep_reach(self) -> float:
         """How far its path below Z0 is from the axis."""
-        deep = (e for e in self.elements if e.start is not None and min(e.z0, e.z1) < 0)
-        ends = (abs(at) for e in deep for at in (e.start, e.end or e.start))
-        return max(ends, default=0.0) * self.mm
+        at, ends = complex(self.report.at[0]), [0.0]
+        for each in self.elements:
+            start, at = at, each.end or at
+            ends += [abs(start), abs(at)] if min(each.z0, each.z1) < 0 else []
+        return max(ends) * self.mm
 
 
 def curve_points(element: CutElement, chord_error: float = CHORD) -> Iterator[complex]:

@@ -38,6 +38,8 @@ A, B = 3, 4
 SPINDLE, SPEED, LENGTH = r"M[345]$", r"S[\d.]+$", r"G43|G49|tool "
 RUNS = ("M3", "M4")
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
+MOTION = re.compile(r"G0*([0-3]|5(?:\.\d)?|33(?:\.1)?|38\.\d|7[346]|8\d)(?![.\d])")
+TAPS = {"33.1", "74", "84"}
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
 
@@ -84,6 +86,16 @@ class TracedProgram:
         """The program's lines, without comments, in upper case."""
         text = self.file.read_text(encoding="utf-8", errors="replace")
         return [COMMENT.sub("", line).upper() for line in text.splitlines()]
+
+    @cached_property
+    def tapping(self) -> set[int]:
+        """The lines in which a code of a tap is in force."""
+        found, tapping = set(), False
+        for number, text in enumerate(self.texts, 1):
+            codes = MOTION.findall(text)
+            tapping = codes[-1] in TAPS if codes else tapping
+            found |= {number} if tapping else set()
+        return found
 
     # ------------------------------------------------------------ the part
 

@@ -111,7 +111,7 @@ def length_not_used(site: Site) -> Values:
 )
 def length_mixed(site: Site) -> Values:
     program, moves = site.program, site.program.moves
-    if program.turning or program.uses_lengths or site.tool <= 0:
+    if program.uses_lengths or site.tool <= 0:
         return None
     first = next(i for i, move in enumerate(moves) if move.kind != "rapid" and move.tool > 0)
     off = program.missing_length(site.at) - program.missing_length(first)
