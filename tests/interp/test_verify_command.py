@@ -80,6 +80,8 @@ def test_a_finding_ends_with_1_and_is_reported(verify):
 def test_the_core_of_a_ring_is_said_in_its_line(verify):
     code, out, _ = verify(CORED.replace("I18 K20 Q2", "I20"), "--strict")
     assert code == 0 and ", a core of ⌀ 20 stays  0 mm off" in out
+    cleared = GOOD.removesuffix(UP) + f"G0 X0 Y0 Z1\nG12 I20 Z-3 D4\n{UP}"
+    assert "core" not in verify(cleared)[1]
 
 
 def test_warnings_count_on_demand(verify):

@@ -44,6 +44,7 @@ OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
 BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
 MINUS = ": a lost minus sign?"
+NO_DEPTH = ("yasnac", "mitsubishi")  # whose blocks have no Z
 
 
 def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -239,7 +240,8 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
     if not material.sweeps_of(cut.moves):
         tips = (program.tip(index, cut.surface) for index in program.fed(cut))
         above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
-        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL else "")
+        by_word = program.dialects.get(cut.code) not in NO_DEPTH
+        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL and by_word else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)

@@ -24,6 +24,7 @@ from g12.tools.verify.model.finding import (
     verdict,
 )
 from g12.tools.verify.model.solid import FACE
+from g12.tools.verify.remains import left_of
 from g12.tools.verify.rules.whole import travel_needed
 
 GAP = "  "
@@ -204,7 +205,8 @@ def _cut_lines(judgement: Judgement, unit: Unit) -> Iterator[tuple[str, ...]]:
     for cut in judgement.program.cuts:
         values, name = measures(cut, judgement), kind_of(cut)
         cutter = CUTTER if values["cutter"] and name in ("sections", "shapes") else ""
-        core = CORE if cut.is_ring and cut.inner > cut.cutter else ""
+        stays = cut.is_ring and cut.inner > cut.cutter and not cut.upright
+        core = CORE if stays and left_of(cut.core, cut, judgement.solids).area > 0 else ""
         what = in_words(cutter + LINES[name] + core, values, unit)
         time = in_words(TIME, values, unit) if is_known(TIME, values) else ""
         off = in_words(OFF, values, unit)

@@ -12,7 +12,7 @@ from g12.machine_ini import remap_lines
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
-from g12.tools.verify.model.program import SPINDLE, TracedProgram
+from g12.tools.verify.model.program import RUNS, SPINDLE, TracedProgram
 from g12.tools.verify.rules.table import Site, Values, rule
 
 C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
@@ -23,7 +23,7 @@ NAMED, BLOCK_WORD, JUMPS = re.compile(r"\$(-?\d+)"), re.compile(r"\s*O"), {"M98"
 MAIN, LIVE, EVERY = 0, 1, -1
 
 
-@rule("spindle", FINDING, "{which} does not turn: {code} and S are missing", plain=True)
+@rule("spindle", FINDING, "{which} does not turn: {missing} missing", plain=True)
 def spindle_off(site: Site) -> Values:
     return _first_move(lambda index: _standing(index, site), site)
 
@@ -42,8 +42,10 @@ def _standing(index: int, site: Site) -> Values:
     """Tell which spindle should turn at a move and does not, None if none is known."""
     program = site.program
     if not program.several_spindles:
-        turns = program.last(USER_CODE, index) or program.turns(index)
-        return None if turns else {"which": "the spindle", "code": "M3"}
+        if program.last(USER_CODE, index) or program.turns(index):
+            return None
+        on = program.last(SPINDLE, index) in RUNS
+        return {"which": "the spindle", "missing": "S is" if on else "M3 and S are"}
     states = spindles_of(program)
     if not states:
         return None
@@ -52,8 +54,8 @@ def _standing(index: int, site: Site) -> Values:
     if turning is None or (turning if of_live else MAIN in turning):
         return None
     if of_live:
-        return {"which": "the live tool", "code": "M3 $1"}
-    return {"which": "the spindle", "code": "M3"}
+        return {"which": "the live tool", "missing": "M3 $1 and S are"}
+    return {"which": "the spindle", "missing": "M3 and S are"}
 
 
 @rule("spindle-m4", WARNING, "M4: right-hand tools cut with M3", plain=True)
