@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 from shapely.geometry import Point
 
-from g12.cut_report import PocketCut
-from g12.tools.path.part import C
+from g12.cut_report import PocketCut, ThreadCut
+from g12.tools.path.part import C, disc
 from g12.tools.verify.model.cut import Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, SUB_BEGIN
@@ -20,6 +20,7 @@ SAME_ANGLE = 1e-2
 STAYED = 1e-6
 AT_EDGE = 0.01  # mm
 MIDDLE = 0.2  # mm: the radius of a hole's middle
+OPEN_INSIDE, OPEN_AROUND = 0.9, 1.1  # times the radius that is to be open
 LEVELS_MEANT = 3  # L2 is a spring pass
 BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
@@ -116,6 +117,29 @@ def undrilled(site: Site) -> Values:
     middles = (Point(at.real, at.imag).buffer(MIDDLE) for at in cut.places)
     left = (site.solids.standing(each, cut.floor, cut.surface, before=cut.at) for each in middles)
     return {} if any(each.area > MIDDLE**2 for each in left) else None
+
+
+@rule(
+    "not-open",
+    FINDING,
+    "{area:mm2} of material stand at Z{level:mm} where it is to be open: was it cut before?"
+    " (--stock 'bore DIAMETER')",
+)
+def not_open(site: Site) -> Values:
+    """Look inside of a bore's K and of an inner thread, and around the boss of an outer one."""
+    cut, program = site.own, site.program
+    plan, radius = cut.plan, program.cutter(site.at)
+    if isinstance(plan, ThreadCut) and plan.outside:
+        boss = disc(cut.centre, OPEN_AROUND * cut.wall)
+        region = disc(cut.centre, cut.wall + 2 * radius).difference(boss)
+    elif isinstance(plan, ThreadCut):
+        region = disc(cut.centre, OPEN_INSIDE * plan.small * cut.mm)
+    elif program.dialects.get(cut.code) == "bore":
+        region = disc(cut.centre, OPEN_INSIDE * cut.report.words.get("K", 0.0) * cut.mm)
+    else:
+        return None
+    standing = site.solids.standing(region, cut.floor, cut.surface, before=cut.at)
+    return {"area": standing.area, "level": cut.floor - cut.zero[2]} if standing.area > 1 else None
 
 
 @rule("same-levels", WARNING, "its {n} levels are all at Z{level:mm}: L steps in G91 only")
