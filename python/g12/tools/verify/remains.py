@@ -14,11 +14,11 @@ from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.cut_report import PolygonCut, RoundPocketCut
-from g12.tools.path.part import disc
+from g12.tools.path.part import disc, swept
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram
-from g12.tools.verify.model.solid import JUST_ABOVE, Solids, reachable
+from g12.tools.verify.model.solid import JUST_ABOVE, Solids, pieces, reachable
 
 SLACK = 0.02  # mm: boundaries are compared with so much less
 LEAST_GONE, LEAST_LEFT = 0.1, 0.5  # mm², of what should stand, of what should not
@@ -257,15 +257,19 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
 
 def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield a first level that is far below what stands, or a level far below the one before."""
-    program, top = solids.program, solids.top(cut.surface)
-    radius, levels, wanted = program.cutter(cut.at), cut.levels, cut.goes
-    if wanted.is_empty and (cut.is_section or cut.is_shape):
-        wanted, _ = solids.swept_in(solids.of(cut.surface).shape, cut.moves, cut.surface)
+    program, top, levels = solids.program, solids.top(cut.surface), cut.levels
     if cut.is_section:
-        levels = [level for level in cut.steps_down if level < top] or cut.levels
+        levels = [level for level in cut.steps_down if level < top] or levels
+    radius = program.cutter(cut.at)
     steps = [upper - lower for upper, lower in pairwise(levels)]
     high = levels[0] + DEEPEST * radius
     if high < top:
+        wanted = cut.goes
+        if wanted.is_empty and (cut.is_section or cut.is_shape):
+            tips = [program.tip(index, cut.surface) for index in program.fed(cut)]
+            wanted = swept(
+                (part for tip in tips if tip[:, 2].max() < top for part in pieces(tip)), radius
+            )
         standing = solids.standing(wanted, high, cut.surface, before=cut.at)
         steps += [top - levels[0]] if standing.area > math.pi * radius**2 else []
     if max(steps, default=0.0) > DEEPEST * radius:
