@@ -208,16 +208,22 @@ def _cut_away(
 
 def meeting(program: TracedProgram) -> Iterator[Finding]:
     """Yield pockets, bosses and holes of a plane that go into each other's walls."""
-    found = [(cut, *disc) for cut in program.cuts for disc in discs_of(cut, program)]
-    cuts, centres, walls = zip(*found) if found else ((), (), ())
-    centres, walls = np.array(centres, complex), np.array(walls, float)
-    heights = np.array([cut.zero[2] for cut in cuts])
-    for index, cut in enumerate(cuts):
+    first: dict[tuple, Cut] = {}  # of equal circles
+    for cut in program.cuts:
+        for centre, wall in discs_of(cut, program):
+            first.setdefault((centre, wall, cut.zero[2]), cut)
+    centres, walls, heights = np.array([*first], complex).reshape(-1, 3).T
+    walls, heights, of = walls.real, heights.real, np.array([cut.index for cut in first.values()])
+    met: dict[tuple[int, int], Finding] = {}
+    for index, cut in enumerate(first.values()):
         apart, own = np.abs(centres[:index] - centres[index]), walls[index]
         within = apart <= np.abs(walls[:index] - own) + SLACK
         level = np.abs(heights[:index] - heights[index]) < SLACK
-        for other in np.flatnonzero((apart < walls[:index] + own - SLACK) & ~within & level):
-            yield cut.found(MEETS, other=cuts[other].line)
+        walled = (apart < walls[:index] + own - SLACK) & ~within & level
+        for other in map(int, np.unique(of[:index][walled])):
+            line = program.cuts[other].line
+            met.setdefault((cut.index, other), cut.found(MEETS, other=line))
+    yield from met.values()
 
 
 def discs_of(cut: Cut, program: TracedProgram) -> Iterator[tuple[complex, float]]:
