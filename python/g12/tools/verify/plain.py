@@ -4,6 +4,7 @@
 import re
 from collections.abc import Iterator
 
+import numpy as np
 from shapely.geometry import Point
 
 from g12.tools.verify.model.finding import KINDS, WARNING, Finding, kind
@@ -22,26 +23,28 @@ def judge_plain(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     if program.turning:
         return
     yield from _other_d(program)
+    whole = bool(solids.stock and solids.stock.is_whole)
     for rapid, run in program.runs():
         known = program.sides[run[0]] == {FACE} and program.is_known(run[-1])
         if not rapid and not program.cut_at(run[0]) and known and program.cutter(run[0]) > 0:
-            yield from _against_stock(run, program, solids)
+            if whole:
+                yield from _against_stock(run, program, solids)
             if program.moves[run[0]].block in program.tapping:
                 yield from _undrilled(run, program, solids)
 
 
 def _against_stock(run: range, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield what goes through the stock's bottom, or meets nothing of a stock."""
-    tips, radius = program.tips(list(run)), program.cutter(run[0])
-    lowest = min(run, key=lambda index: program.tip(index, FACE)[:, 2].min())
-    low = tips[:, 2].min()
+    """Yield what goes through a stock's bottom, or meets nothing of it."""
+    levels = [program.tip(index, FACE)[:, 2].min() for index in run]
+    low, radius = min(levels), program.cutter(run[0])
+    lowest = run[levels.index(low)]
+    place = program.tip(lowest, FACE)[-1]
     if solids.bottom - low > THROUGH + POINT * radius:
-        place = program.tip(lowest, FACE)[-1]
         yield program.found(BELOW, lowest, place, below=solids.bottom - low)
     approach = program.cut_at(min(run[-1] + 1, len(program.moves) - 1))
-    whole = solids.stock and solids.stock.is_whole and low < solids.top(FACE) - JUST_ABOVE
-    if whole and not approach and not solids.of(FACE).is_under(tips[:, :2], radius):
-        yield program.found(BESIDE, lowest, tips[0])
+    deep, material = low < solids.top(FACE) - JUST_ABOVE, solids.of(FACE)
+    if deep and not approach and not material.is_under(program.tips(run)[:, :2], radius):
+        yield program.found(BESIDE, lowest, place)
 
 
 def _undrilled(run: range, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
@@ -54,12 +57,13 @@ def _undrilled(run: range, program: TracedProgram, solids: Solids) -> Iterator[F
 
 def _other_d(program: TracedProgram) -> Iterator[Finding]:
     """Yield a G41 or G42 outside of sections whose D is not the loaded tool's diameter."""
-    cuts = [range(cut.line, cut.last_line + 1) for cut in program.cuts if cut.is_section]
+    sections = [range(cut.line, cut.last_line + 1) for cut in program.cuts if cut.is_section]
+    blocks = np.array([move.block for move in program.moves])
     for number, text in enumerate(program.texts, 1):
         side = SIDE.search(text)
-        after = next((i for i, m in enumerate(program.moves) if m.block >= number), None)
-        if not side or after is None or any(number in lines for lines in cuts):
+        if not side or any(number in lines for lines in sections) or not (blocks >= number).any():
             continue
+        after = int((blocks >= number).argmax())
         table, d = program.trace.table_at(after).diameters, int(side[1] or side[2])
         tool = program.moves[after].tool
         used, loaded = table.get(d, 0.0), table.get(tool, 0.0)

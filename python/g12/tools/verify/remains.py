@@ -212,8 +212,9 @@ def meeting(program: TracedProgram) -> Iterator[Finding]:
     for cut in program.cuts:
         for centre, wall in discs_of(cut, program):
             first.setdefault((centre, wall, cut.zero[2]), cut)
-    centres, walls, heights = np.array([*first], complex).reshape(-1, 3).T
-    walls, heights, of = walls.real, heights.real, np.array([cut.index for cut in first.values()])
+    centres = np.array([centre for centre, _, _ in first], complex)
+    walls, heights = np.array([sizes for _, *sizes in first], float).reshape(-1, 2).T
+    of = np.array([cut.index for cut in first.values()])
     met: dict[tuple[int, int], Finding] = {}
     for index, cut in enumerate(first.values()):
         apart, own = np.abs(centres[:index] - centres[index]), walls[index]

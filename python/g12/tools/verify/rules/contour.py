@@ -21,6 +21,7 @@ STAYED = 1e-6
 AT_EDGE = 0.01  # mm
 MIDDLE = 0.2  # mm: the radius of a hole's middle
 OPEN_INSIDE, OPEN_AROUND = 0.9, 1.1  # times the radius that is to be open
+CLOSED_SHARE = 0.05  # of that area: less may stand
 LEVELS_MEANT = 3  # L2 is a spring pass
 BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
@@ -139,7 +140,8 @@ def not_open(site: Site) -> Values:
     else:
         return None
     standing = site.solids.standing(region, cut.floor, cut.surface, before=cut.at)
-    return {"area": standing.area, "level": cut.floor - cut.zero[2]} if standing.area > 1 else None
+    closed = standing.area > CLOSED_SHARE * region.area
+    return {"area": standing.area, "level": cut.floor - cut.zero[2]} if closed else None
 
 
 @rule("same-levels", WARNING, "its {n} levels are all at Z{level:mm}: L steps in G91 only")
