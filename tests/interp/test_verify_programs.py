@@ -7,9 +7,13 @@ import numpy as np
 import pytest
 
 from g12.tools.machine.ini import read_ini
+from g12.tools.material.stock import StockText
 from g12.tools.units import MM
+from g12.tools.verify import judge
+from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.report import as_text
 from support.clamped import with_clamp
+from support.growth import growth
 from support.judged_programs import prove, prove_lines
 from support.made_moves import samples_of
 from support.sim_machines import PROGRAMS, SIM, copy_of_machines
@@ -64,6 +68,20 @@ SAID = [  # a machine, its blocks, its stock, a part of the report
 def test_what_a_report_says(machine, blocks, stock, said, tmp_path):
     judgement = prove_lines(tmp_path, blocks, machine, stock=stock).judgement
     assert said in as_text(judgement, MM, full=True)
+
+
+@pytest.mark.parametrize("stock", ["", "300x300x20"])
+def test_a_long_program_of_plain_moves_takes_a_pass_for_each_line(stock, tmp_path):
+    program, ini = tmp_path / "long.ngc", read_ini(SIM / "mill_mm_headless.ini")
+
+    def judged(lines):
+        body = [f"G1 X{n % 200 / 2:g} Y{n // 200 / 2:g} F600" for n in range(lines)]
+        program.write_text("\n".join([*MILL, "G1 Z-1", *body, "G0 Z30", "M2", ""]))
+        traced = TracedProgram(program, ini, judge.traced(program, ini))
+        given = StockText(stock) if stock else None
+        return lambda: judge.judge_trace(traced, stock=given)
+
+    assert growth(judged, 3_000) < 10
 
 
 CLAMPED = [  # M10 closes the clamp of C, M11 opens it: a program, and C_CLAMP_SHAPES
