@@ -66,13 +66,15 @@ def split_move(curve: Curve, law: Law, beside: float = 0.0) -> Split:
         lengths, shares = spaced(length, density, apsides, lambda at: abs(seen(at)))
     slides: list[float] = []
     angles: list[float] = []
-    angle, phase, bend = angle_of(curve.direction(0.0)), 0.0, curve.curvature
+    angle, before, bend = angle_of(curve.direction(0.0)), 0.0, curve.curvature
+    square = beside * beside
     for at, share in zip(lengths, shares):
-        there, before = seen(at), phase
+        there = seen(at)
         x, y = there.real, there.imag - deviation * share
-        slide = sqrt(x * x + y * y - beside * beside)
+        slide = sqrt(x * x + y * y - square)
         phase = atan2(y * slide + x * beside, x * slide - y * beside)  # of motion against slide
         angle -= remainder(phase - before, FULL_TURN)
+        before = phase
         slides.append(slide)
         angles.append(angle + bend * at)
     return Split(slides, angles, lengths)
@@ -135,25 +137,27 @@ def _density(
     """
     even, fewest = 0.5 / law.ripple, FEWEST / length
     bulging, flat = 1.0 / (8.0 * BULGE * deviation), 1.0 / (18.0 * BULGE * deviation)
+    beside_square = beside * beside
 
     def density(at: float) -> tuple[float, float]:
         there = seen(0.0 if at < 0.0 else at if at < length else length)
         x, y = there.real, there.imag
         square = x * x + y * y
-        slide_square = square - beside * beside
+        slide_square = square - beside_square
         slide = sqrt(slide_square)
         along, around = (x * slide - y * beside) / square, (y * slide + x * beside) / square
         sliding, turning, growth = x / slide, around / slide, abs(x) / slide_square
         bulge = bulging * (turning * (1.0 + along * sliding) - own)
-        change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
         segments = sqrt(abs(bulge))
         if growth > segments:
             segments = growth
         if fewest > segments:
             segments = fewest
-        cube = flat * growth * abs(change)
-        if cube > segments * segments * segments:
-            segments = cube ** (1.0 / 3.0)
+        if own:  # the curvatures may be equal
+            change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
+            cube = flat * growth * abs(change)
+            if cube > segments * segments * segments:
+                segments = cube ** (1.0 / 3.0)
         smooth = even * growth * around * around
         if smooth > segments:
             segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))
