@@ -43,7 +43,6 @@ CALLED_PROGRAM = re.compile(r"O([0-9]{1,8})(?:Q([0-9]{1,4}))?")
 NO_JUMPS = "LinuxCNC has no jumps: write IF […] before each block, or WHILE […] DO and END"
 ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
 VARIABLE = re.compile("#([0-9]{1,9})")
-STOP_MACROS = ("3000", "3006")  # an alarm, a stop with a message
 OBEYED_COMMENT = re.compile(
     r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I
 )
@@ -121,8 +120,8 @@ class ForeignWord(NamedTuple):
 class ForeignBlock(NamedTuple):
     """One block of a program, or a statement in its place.
 
-    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, ``if`` and ``endif``
-    around the blocks that a condition rules, or ``stop``.
+    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, or ``if`` and
+    ``endif`` around the blocks that a condition rules.
     """
 
     line: int  # from 1
@@ -186,9 +185,8 @@ def blocks_of(
             sentence = str(problem).replace(OWN, "") + (f"; {REMARKS}" if number else "")
             motion = tuple(ForeignWord("G", code) for code in MOTION.findall(part))
             blocks = [ForeignBlock(line, words=motion, problem=sentence)]
-        if number == 0:  # a stop has them as its message
-            at = next((at for at, block in enumerate(blocks) if block.kind == "stop"), 0)
-            blocks[at] = blocks[at]._replace(comments=blocks[at].comments + comments)
+        if number == 0:
+            blocks[0] = blocks[0]._replace(comments=blocks[0].comments + comments)
         yield from blocks
 
 
@@ -299,8 +297,6 @@ def _statement(line: int, text: str) -> list[ForeignBlock]:
 def _assignment(
     line: int, match: re.Match[str], read_value: Callable[[str, int], Expression]
 ) -> ForeignBlock:
-    if match[1] in STOP_MACROS:
-        return ForeignBlock(line, "stop", label=match[1])
     variable = variable_number(match[1])
     value = read_value(match.string, match.end())
     return ForeignBlock(line, "assign", variable=variable, expression=value)
@@ -317,13 +313,13 @@ def _if(line: int, text: str) -> list[ForeignBlock]:
 def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     """Yield the blocks after a condition: an assignment, words, or both."""
     match = ASSIGNMENT.match(text)
-    if match and match[1] not in STOP_MACROS:
+    if match:
         assignment = _assignment(line, match, expression_from)
         yield assignment
         text = text[assignment.expression.end :]
     if text:
         block, *_ = _parsed(line, text)
-        if block.kind not in ("words", "stop") or block.skipped:
+        if block.kind != "words" or block.skipped:
             raise NotTranslated("after IF […] only #… = … and words are translated")
         yield block
 
