@@ -518,8 +518,12 @@ def test_clamp_and_c_are_the_machines_own(machine_of, ini, expected):
     control = machine_of("doosan-lathe", TWO + ini)
     assert lines_after(control, "M35\nM89\nM90\nM34")[:-1] == expected
     codes = frozenset(code for code in expected if code[0] == "M")
-    parted = lines_after(replace(control, machine_codes=codes), "M35 M89")
-    assert parted[:2] == (["M254", "M10 (line 3)"] if codes else ["(M35)(M89)", "M30"])
+    if codes:
+        known = replace(control, machine_codes=codes)
+        assert refusal(known, "M35 M89") == (
+            1,
+            "M35 and M89 in one block: give one a block of its own",
+        )
 
 
 def test_a_position_of_g28_that_was_never_set_is_reported(machine_of, tmp_path):

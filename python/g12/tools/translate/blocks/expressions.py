@@ -57,14 +57,6 @@ def bracketed_from(text: str, start: int) -> Expression:
     return _brackets(text, start, 0)
 
 
-def whole_expression(text: str, start: int) -> Expression:
-    """Return what is on the right of ``=``, which needs no brackets there."""
-    found = expression_from(text, start)
-    if found.end < len(text):
-        raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
-    return found
-
-
 def expression_from(text: str, start: int, depth: int = 0) -> Expression:
     """Return values with operators between them, as far as they go."""
     first = _operand(text, start, depth)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -22,7 +22,6 @@ from g12.tools.translate.blocks.expressions import (
     expression_from,
     value_from,
     variable_number,
-    whole_expression,
 )
 
 PLAIN_WORDS = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
@@ -288,17 +287,17 @@ def _statement(line: int, text: str) -> list[ForeignBlock]:
     if statement:
         block, *ruled = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
     elif match := ASSIGNMENT.match(rest):
-        block, ruled = _assignment(line, match, whole_expression), []
+        block, ruled = _assignment(line, match), []
+        if end := rest[block.expression.end :]:
+            raise NotTranslated(f"{excerpt(end)} is no part of an expression")
     else:
         block, ruled = ForeignBlock(line, words=_words(rest)), []
     return [block._replace(words=words + block.words), *ruled]
 
 
-def _assignment(
-    line: int, match: re.Match[str], read_value: Callable[[str, int], Expression]
-) -> ForeignBlock:
+def _assignment(line: int, match: re.Match[str]) -> ForeignBlock:
     variable = variable_number(match[1])
-    value = read_value(match.string, match.end())
+    value = expression_from(match.string, match.end())
     return ForeignBlock(line, "assign", variable=variable, expression=value)
 
 
@@ -314,7 +313,7 @@ def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     """Yield the blocks after a condition: an assignment, words, or both."""
     match = ASSIGNMENT.match(text)
     if match:
-        assignment = _assignment(line, match, expression_from)
+        assignment = _assignment(line, match)
         yield assignment
         text = text[assignment.expression.end :]
     if text:

@@ -37,7 +37,7 @@ def keep_as_comments(draft: Draft) -> None:
 
 def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
-    _part_builders_codes(draft)
+    _refuse_two_of_builders(draft)
     named: Mapping[str, Any] = draft.control.tables.get("words", {})
     live = _speed_by_p(draft)
     words: list[ForeignWord] = []
@@ -80,12 +80,10 @@ def live_spindle(draft: Draft, code: ForeignWord) -> str:
     return f"${live}" if live != "0" else ""
 
 
-def _part_builders_codes(draft: Draft) -> None:
-    """Write all builder's codes but the last on lines before: LinuxCNC takes one in a block."""
-    found = [w for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
-    for word in found[:-1]:
-        draft.before += [one.text for one in mapped(draft, word)]
-        draft.drop([word])
+def _refuse_two_of_builders(draft: Draft) -> None:
+    codes = [w.code for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
+    if len(codes) > 1:
+        raise NotTranslated(f"{codes[0]} and {codes[1]} in one block: give one a block of its own")
 
 
 def is_own(draft: Draft, word: ForeignWord) -> bool:
