@@ -24,7 +24,6 @@ from g12.lengths import MM_PER_INCH
 from g12.machine_ini import AXIS_LETTERS, face_joints
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
-from g12.tools.units import Unit
 
 CHORD_ERROR = 2e-4  # of the polylines of curves
 LONGEST_ARC_CHORD = math.radians(10)
@@ -138,12 +137,6 @@ def last_zero(trace: Trace, axis: int = X) -> float:
     state, name = trace.state, f"current_{'xyz'[axis]}"
     unit = MM_PER_INCH if state.get("length_units") == INCHES else 1.0
     return trace.position[axis] - state[name] * unit if name in state else 0.0
-
-
-def x0_text(part: Part, unit: Unit) -> str:
-    """Return a text with the position of a turning part's X0; "" where it is machine X0."""
-    position = unit.text(part.centre)
-    return f"X0, the spindle's axis, is at machine X{position}" if position != "0" else ""
 
 
 def _spiral_segments(move: Move, chord_error: float) -> int:
