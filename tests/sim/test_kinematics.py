@@ -8,7 +8,6 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.preview.tracer import Tracer
 from support.kinematics import keeps_its_limits, needs_kinematics, on_the_face, place
 from support.operated_machine import Machine, kept_machine
 from support.polar_programs import (
@@ -158,28 +157,6 @@ def test_g12_1_with_offsets_inches_and_diameters(lathe):
     corners = 25.4 * np.array([1, 1 + 1j, 1.5j, -1])
     off = np.abs(points[:, None] - corners).min(axis=0)
     assert off == pytest.approx([0] * 4, abs=0.02)
-
-
-@pytest.mark.parametrize(
-    "modes", ["G17 G90 G94 F500 G64 P0.01", "G18 G91 G95 F1 G61 G90.1 S500 M3"]
-)
-def test_modes_behind_g13_1_are_those_of_a_section_in_segments(modes):
-    section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
-    names = (
-        "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
-    )
-    reported = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in names.split())})"
-    ways = []
-    for kinematics in "01":
-        overrides = {"G12": {"POLAR_KINEMATICS": kinematics}}
-        with Tracer(SIM / "lathe_mm_kinematics.ini", overrides=overrides) as tracer:
-            ways.append(tracer.trace_text([*START, modes, *section, reported, "M2"]))
-    assert [way.error for way in ways] == [None, None]
-    assert [any(move.end[Y] for move in way.moves) for way in ways] == [False, True]
-    assert [message.text for message in ways[0].messages] == [
-        message.text for message in ways[1].messages
-    ]
-    assert ways[0].modes == ways[1].modes
 
 
 CORNERS = np.array([40 + 30j, -40 + 30j, -40 - 30j, 40 - 30j])
