@@ -270,42 +270,26 @@ def face_accelerations(machine):
     return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
 
 
-@pytest.mark.parametrize(
-    ("interrupt", "own"),
-    [("abort", "M52 P1"), ("abort_mdi", "M52 P0"), ("estop", "M52 P1"), ("jog_mode", "M52 P0")],
-)
-def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
-    chance = random.Random(interrupt)
-    for section in (SECTION, CIRCLE_NEAR):
-        program = (own, *section)
-        lathe.sample()
-        start_on_the_face(lathe, program)
-        if section is CIRCLE_NEAR:  # round it the slide needs some of its acceleration
-            lathe.wait_for(lambda _: face_accelerations(lathe) < [707, 707])
-        time.sleep(chance.uniform(0, 1))
-        if interrupt == "estop":
-            lathe.estop()
-            lathe.enable()
-        else:
-            lathe.abort(interrupt != "abort_mdi")
-        if interrupt == "abort_mdi":
-            lathe.mdi_mode()
-        lathe.wait_for(lambda _: not on_the_face(lathe))
-        if interrupt == "jog_mode":
-            lathe.manual()
-            lathe.mdi("G4 P0")
-        lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707])
-        if interrupt not in ("estop", "abort_mdi"):
-            adaptive = own == "M52 P1"
-            lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is adaptive)  # noqa: B023
-        lathe.mdi("M52 P0")
-        lathe.mdi("G0 X22 C10")
-        assert place(lathe) == (22, 0, 10)
-        keeps_its_limits(lathe.samples())
-        assert lathe.errors() == []
-    lathe.motion_of(program)
-    assert not on_the_face(lathe)
+@pytest.mark.parametrize("mode", ["mdi_mode", "manual"])
+def test_an_abort_leaves_the_face_and_what_belongs_to_it(lathe, mode):
+    """Also where the operator changes the mode at once, which drops what the abort has queued."""
+    lathe.sample()
+    start_on_the_face(lathe, ("M52 P1", *CIRCLE_NEAR))
+    # round the circle the slide needs some of its acceleration
+    lathe.wait_for(lambda _: face_accelerations(lathe) < [707, 707])
+    lathe.abort(mode == "manual")
+    getattr(lathe, mode)()
+    lathe.wait_for(lambda _: not on_the_face(lathe))
+    lathe.mdi("G4 P0")
+    lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707])
+    if mode == "manual":
+        lathe.wait_for(lambda now: "M52" in now.modes.mcodes)
     lathe.mdi("M52 P0")
+    lathe.mdi("G0 X22 C10")
+    assert place(lathe) == (22, 0, 10)
+    keeps_its_limits(lathe.samples())
+    lathe.motion_of(CIRCLE_NEAR)
+    assert not on_the_face(lathe)
 
 
 def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):
