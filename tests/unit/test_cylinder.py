@@ -81,7 +81,8 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 
 
 def section(letters="XZC", axes=AXES, **found):
-    return Cylinder(with_found(START, **found), SectionMachine(frozenset(letters), Settings(), axes))
+    machine = SectionMachine(frozenset(letters), Settings(), axes)
+    return Cylinder(with_found(START, **found), machine)
 
 
 def test_one_code_switches_on_and_off():

@@ -137,7 +137,8 @@ LIMITS = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found):  # noqa: B008
     """Return a section that begins with what is found."""
-    return Polar(with_found(START, **found), SectionMachine(frozenset(letters), settings, axes, face))
+    machine = SectionMachine(frozenset(letters), settings, axes, face)
+    return Polar(with_found(START, **found), machine)
 
 
 @pytest.mark.parametrize(
