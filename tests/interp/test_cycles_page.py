@@ -215,13 +215,6 @@ def test_a_program_of_the_other_unit_is_not_loaded(page, tmp_path):
     assert mm.steps == []
 
 
-def test_turns_on_each_other_are_drawn_as_few(page):
-    sketch = page("mill_mm").show("bore", p="0.001")
-    assert sketch.state == READY and sum(map(len, sketch.cut)) < 2000
-    cut = np.concatenate(sketch.cut)
-    assert np.abs(cut[-1]).max() < 1e-6
-
-
 @pytest.mark.parametrize(
     "name", ["mill_mm", "mill_inch", "mill_yasnac_mm", "mill_mitsubishi_mm", "lathe_mm"]
 )

@@ -15,7 +15,6 @@ from support.foreign_programs import FOREIGN, translation
 from support.sim_machines import copy_of_machines
 
 CAM = FOREIGN / "cam"
-DRILLED = sorted(path.parent.name for path in CAM.glob("*/holes.nc"))
 POSTED = sorted((p.parent.name, p.stem) for p in CAM.glob("*/*.nc") if p.stem in PARTS)
 CUTTERS = {"mm": {1: 12.0, 2: 10.0, 3: 6.0}, "inch": {1: 12 / 25.4, 2: 10 / 25.4, 3: 6 / 25.4}}
 TOLERANCE = 0.008  # mm: POLAR_TOLERANCE, and the last digit of the posts
@@ -75,14 +74,11 @@ def moves_of(tracer, post, part):
     return traced.moves
 
 
-@pytest.mark.parametrize("post", DRILLED)
-def test_posted_holes_are_those_of_the_drawing(lathe, post):
-    moves = moves_of(lathe(post), post, "holes")
+def test_posted_holes_are_those_of_the_drawing(lathe):
+    moves = moves_of(lathe("takisawa-lathe"), "takisawa-lathe", "holes")
     drilled = [hole_of(m) for m in moves if m.kind == "feed"]
     assert ends(hole for hole in drilled if hole.tool > 1) == near_to(FACE_HOLES)
-    assert ends(hole for hole in drilled if hole.tool == 1) == near_to(
-        [] if post == "mazak-integrex" else SIDE_HOLES
-    )
+    assert ends(hole for hole in drilled if hole.tool == 1) == near_to(SIDE_HOLES)
     assert all(hole.feed == pytest.approx(FEEDS[hole.tool], rel=1e-3) for hole in drilled)
     assert not [m for m in moves if turns_in_the_bar(m)]
 
@@ -104,7 +100,6 @@ def ends(ways):
 
 
 def near_to(holes):
-    """Return holes to compare with: posts write inches with four decimals."""
     return [pytest.approx(hole, abs=0.002) for hole in sorted(holes)]
 
 

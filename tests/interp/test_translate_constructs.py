@@ -18,7 +18,6 @@ TAILS = {"mill": "X3. Y2.\n", "lathe": "X40. Z2.\n"}
 CONSTRUCTS = [
     # G53, G28, G30: rapid moves, whatever mode they stand in; the mode stays
     ("haas-mill", "G1 X2.\nG53 Z0", "G1 X2\nG53 G0 Z0\nG1"),
-    ("haas-mill", "G1 X2.\nG0 G53 Z0", "G1 X2\nG53 G0 Z0"),
     ("haas-mill", "G1 X2.\nG28", "G1 X2\nG53 G0 X0 Y0 Z0\nG1"),
     ("haas-mill", "G1 X2.\nG91 G28 Z0\nG90", "G1 X2\nG53 G0 Z0\nG1"),
     ("haas-mill", "G1 X2.\nG0 G28 Z.5", "G1 X2\nG0 Z.5\nG53 Z0"),
@@ -68,8 +67,6 @@ CONSTRUCTS = [
      "T1 M6\nG0 Y1.5\nZ.5\nG41 D1 G1 X2\nY3\nG40 X4"),
     ("fanuc-mill", "T1 M6\nG1 G42 D1 Z.5\nZ.4\nX2.\nY3.\nG40 X4.",
      "T1 M6\nG1 Z.5\nZ.4\nG42 D1 X2\nY3\nG40 X4"),
-    ("haas-mill", "T1 M6\nG0 X1. Y1.\nG1 G41 D1 X1. Y1.\nX2.\nY3.\nG40 X4.",
-     "T1 M6\nG0 X1 Y1\nG41 D1 G1 X2\nY3\nG40 X4"),
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nM98 P5\nG40 X4.\nM30\nO5\nX2.\nY3.\nM99",
      "T1 M6\nG1 Z.5\nG41 D1 X2\nY3\nG40 X4"),
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nG40 Z.4\nX2.", "T1 M6\nG1 Z.5\nZ.4\nX2"),
@@ -87,6 +84,7 @@ CONSTRUCTS = [
     ("haas-mill", "G10 L20 P2 X.5 Y0\nG10 L2 P1 X1. G90\nG154 P2 X1. Y1.\nG54 X1.\nG10 L2 P1 X0",
      "X1.5 Y1\nX2\nG10 L2 P1 X0"),
     # subprograms, macros
+    ("haas-mill", "G65 P5 A.5 L2\nM30\nO5\n#10=#1\nG91 X#10\nG90\nM99", "X1.5\nX2"),
     ("haas-mill", "G65 P5 X2. Z.5\nX2.\nM30\nO5\nG1 X#24 Z#26\nM99", "G1 X2 Z.5\nX2"),
     # the last D is a pocket's, wherever it stood; a T is no tool before its M6
     ("haas-mill", "T2 M6\nG43 H2 D1 Z.5\nG12 I1. F9.\nD0\nG13 I1.", "T2 M6\nG43 H2 Z.5\n"

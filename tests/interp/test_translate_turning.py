@@ -95,12 +95,6 @@ def check_roughing(part, moves, depth, start):
 
 CONTOURS = [  # control's blocks P to Q, the same as LinuxCNC's, start, cycle, depth, allowance
     pytest.param(
-        "N10 G0 X20.\nG1 Z-10.\nX30. Z-15.\nG2 X40. Z-20. R5.\nN20 G1 X50.",
-        "G0 X20 Z2\nG1 Z-10\nX30 Z-15\nG2 X40 Z-20 R5\nG1 X50",
-        "G0 X50. Z2.", "G71 U2. R.5\nG71 P10 Q20 U.4 W.1 F.3", 2.0, 0.1 + 0.2j, False, True,
-        id="outside",
-    ),
-    pytest.param(
         "N10 G1 X0\nG1 Z0\nG3 X30. Z-15. R15.\nG1 W-5.\nU4. W-2.\nN20 X46.",
         "G1 X0 Z1\nZ0\nG3 X30 Z-15 R15\nG1 Z-20\nX34 Z-22\nX46",
         "G0 X46. Z1.", "G71 U1.5 R1.\nG71 P10 Q20 U.5 W0 F.3", 1.5, 0.25j, False, True,

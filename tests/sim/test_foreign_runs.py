@@ -3,7 +3,6 @@
 
 import pytest
 
-from g12.tools.commands import main
 from support.operated_machine import smoke
 from support.sim_machines import SIM
 
@@ -15,11 +14,6 @@ def program(tmp_path):
     path = tmp_path / "slot.nc"
     path.write_text(PROGRAM)
     return path
-
-
-def test_run_opens_a_haas_program(program, capsys):
-    assert main.main(["run", str(program), "--ini", str(SIM / "mill_inch.ini")]) == 0
-    assert "ends at X0.5 Y0 Z0 (machine position, in)" in capsys.readouterr().out
 
 
 def test_the_headless_screen_opens_a_haas_program(program):

@@ -30,11 +30,6 @@ def at(radius, angle):
     return round(radius * math.cos(angle), 4), round(radius * math.sin(angle), 4)
 
 
-def polygon(sides, corner, first=0.0):
-    """Return the corners of a polygon, clockwise, and the first again."""
-    return [at(corner, first - math.tau * k / sides) for k in range(sides + 1)]
-
-
 def lines(points, z):
     """Return lines through points at a level."""
     return [("line", x, y, z) for x, y in points]
@@ -58,13 +53,7 @@ def helix(radius, top, bottom, parts):
     ]
 
 
-HEX = polygon(6, 16.5, math.radians(30))
 PARTS = {
-    "hexagon": CamPart(1, 400, (
-        ("rapid", 34, 0, 5), ("rapid", 34, 0, 2), ("line", 34, 0, -3),
-        *lines([(14.2894, 14), *HEX[1:], (19.4856, 5.25)], -3), ("line", 34, 5.25, -3),
-        ("rapid", 34, 5.25, 5),
-    ), 41, 3),
     "pocket": CamPart(3, 250, (
         ("rapid", 4, 0, 5), ("rapid", 4, 0, 1), ("line", 4, 0, 0), *helix(4, 0, -3, 6),
         *ring(4, -3, 1), ("line", 7, 0, -3), *ring(7, -3, 1), ("line", 6, 0, -2.5),

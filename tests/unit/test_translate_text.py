@@ -263,6 +263,7 @@ LAST = [  # control, text, how the sentence about its last line begins
     (OKUMA, "CALL OSUBX1", "CALLOSUBX1: only a program and Q"),
     (control_of("fanuc-lathe-c"), "G21", "G21 is a cycle here, the thread pass, with X and Z and "
      "no G0 or G1: where it is a mode, the control is another of fanuc-lathe, fanuc-lathe-b and"),
+    (control_of("fanuc-lathe-b"), "G77\nX40. Z1.", "G77 is a cycle here, the turning pass, with X"),
     (LATHE, "G21 G99 G0 X50. Z5.\n/G90 X40. Z1. F.2\nX30.",
      "X and Z may repeat a turning cycle, but the turning cycle here is not the same"),
     (LATHE, "G21 G10.9 X0\nG90 X9. Z1. F9.", "a turning cycle where X words are radii"),
