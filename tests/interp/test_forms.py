@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The forms: what ngcgui makes of them is cut as filled in, and verify has no finding in it."""
 
-import re
-
 import pytest
 
 from g12.tools.machine.ini import read_ini
@@ -216,23 +214,6 @@ def test_the_live_tool_beside_a_main_spindle_that_is_c(tmp_path):
             found = spindle_lathe.trace_text(["G0 X60 Z20", *program.splitlines()])
             assert (found.error is None) == (spindle == 1)
             assert ("M3" in [event.text for event in found.events]) == (spindle == 0)
-
-
-SHOWN = {
-    ini: re.findall(r"^NGCGUI_SUBFILE = (\S+)\.ngc$", ini.read_text(), re.MULTILINE)
-    for ini in sorted(SIM.glob("*.ini"))
-}
-
-
-@pytest.mark.parametrize("ini", [ini for ini in SHOWN if SHOWN[ini]], ids=lambda ini: ini.stem)
-def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path):
-    with Tracer(ini, tools={1: 0.25 if "inch" in ini.stem else 6.0}) as running:
-        for form in SHOWN[ini]:
-            program = filled_in(form, tmp_path / "auto.ngc")
-            found = running.trace_text(["T1 M6", *program.read_text().splitlines()])
-            assert found.error is None, (form, found.error)
-            assert all("C has turned" in message.text for message in found.messages)
-            assert cut_geometry.cutting(found.moves)
 
 
 # ---------------------------------------------------------------- T0
