@@ -54,7 +54,7 @@ def _pace(cut: Cut, judgement: Judgement) -> dict[str, Any]:
         return {}
     part, speed = program.part_at(cut.surface, cut.at), program.trace.modes.speed
     path = Track(part, program.moves, program.limits, speed, cut.moves)
-    pace = pace_of(cut.moves, program.fed(cut), path, program.real)
+    pace = pace_of(cut.moves, cut.fed, path, program.real)
     taps = cut.is_tap  # no trace has the time of a synchronized move
     return {
         "seconds": None if taps else pace.seconds,
@@ -88,8 +88,8 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
 
 
 def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
-    fed, diameters = program.fed(cut), program.diameters(cut.at)
-    lengths = [length for i in fed if (length := program.moves[i].length) > 0]
+    diameters = program.diameters(cut.at)
+    lengths = [length for i in cut.fed if (length := program.moves[i].length) > 0]
     sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
     turn, _, height, _ = cut.roles
     times, limit = times_of(cut, program.ini), program.limits.axes[turn]
@@ -101,7 +101,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "x_words": "diameters" if diameters else "radii",
         "third": AXIS_LETTERS[height] if cut.surface else "Z",
         "lowest": 2 * lowest if cut.surface and height == X and diameters else lowest,
-        "segments": len(fed),
+        "segments": len(cut.fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
         "turn": AXIS_LETTERS[turn],
