@@ -13,7 +13,6 @@ from hypothesis import settings
 
 from g12.tools import progress
 from g12.tools.headless.namespaces import OneAtATime
-from g12.tools.install import package_copy
 from support.processes import kill_session, start_in_terminal
 from support.sim_machines import ROOT
 
@@ -99,7 +98,7 @@ def unsynced():
     """Write nothing through to the disk: it would be whatever else the system has written."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(os, "fsync", lambda _: None)
-        patch.setattr(package_copy, "sync", lambda *_: None)
+        patch.setattr(os, "sync", lambda: None)
         yield
 
 

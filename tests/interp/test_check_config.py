@@ -21,6 +21,8 @@ from support.small_configs import (
     HAAS,
     LATHE,
     MILL,
+    TURNING,
+    TURNING_HAL,
     config_of,
     content_of,
     restored,
@@ -33,6 +35,7 @@ REFERRED = f"SUBROUTINE_PATH = {ROOT}/ngc\n{ABORT}{HAAS}"
 PYTHON = f"[PYTHON]\nTOPLEVEL = {ROOT}/python/toplevel.py\nPATH_PREPEND = {ROOT}/python\n"
 GOOD = with_lines(MILL, "RS274NGC", REFERRED) + PYTHON
 POCKET = ["G21 G17 G90 G94 G61 F600", "G13 I5 K9 Q3 Z-1 D1", "M2"]
+PINS = "velocity = 'drive.velocity'\nposition = 'p'\nholds = 'h'\n"
 OWN = "[PYTHON]\nPATH_PREPEND = mine\nTOPLEVEL = mine/toplevel.py\n"
 
 
@@ -63,7 +66,8 @@ def remap(text):
 @pytest.mark.parametrize(
     ("change", "files", "expected"),
     [
-        (("TOPLEVEL = ", "TOPLEVEL = /nowhere"), {}, ["no-python"]),
+        (("TOPLEVEL = ", "TOPLEVEL = /nowhere"), {}, ["python-fails"]),
+        ((PYTHON, f"{PYTHON}[G12]\nTOPLEVEL = gone.py\n"), {}, ["python-fails"]),
         (("REMAP = G13", "REMAP = G33.1"), {}, ["owned"]),
         ((HAAS, HAAS + "REMAP = M400 modalgroup=10 python=mine\n"), {}, ["does-not-load"]),
         ((PYTHON, OWN), remap("def f(:\n"), ["python-fails"]),
@@ -175,16 +179,19 @@ REFUSED = [  # an INI, other files, the feature, what is said
     (LATHE, {}, ["haas"], "haas needs axis Y"),
     (MILL + OWN, remap("import nowhere\n"), ["haas"], "No module named 'nowhere'"),
     (MILL + OWN, remap("def g12_haas(self): pass\n"), ["haas"], "has no g12_haas of the package"),
-    (MILL + "[PYTHON]\nTOPLEVEL = gone.py\n", {}, ["haas"], "TOPLEVEL = gone.py"),
+    (MILL + "[PYTHON]\nTOPLEVEL = gone.py\n", {}, ["haas"], "can't resolve path to 'gone.py'"),
     (with_lines(MILL, "RS274NGC", "REMAP = M400 python=x\n"), {}, ["haas"], "does not load"),
     (MILL, {}, ["haas", "yasnac"], "haas and yasnac exclude each other"),
+    (TURNING, {"motion_hal": f"{TURNING_HAL}loadrt pid names=drive\n", "pins_toml": PINS},
+     ["spindle-c", "--pins", "pins.toml"], "there is no pin drive.velocity"),
 ]  # fmt: skip
 
 
 @pytest.mark.parametrize(("text", "files", "names", "says"), REFUSED)
 def test_what_check_calls_a_problem_is_refused_and_nothing_is_touched(
-    tmp_path, capsys, text, files, names, says
+    tmp_path, capsys, monkeypatch, text, files, names, says
 ):
+    monkeypatch.chdir(tmp_path)
     ini = write_config(tmp_path, text, **files)
     before = content_of(tmp_path)
     assert installed(ini, *names) in (1, 2)

@@ -13,7 +13,7 @@ from g12.tools.forms.table import HANDLERS
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import Refused
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import installed_programs, load_config
+from g12.tools.install.config.loaded import filters_of, load_config
 from g12.tools.machine.ini import read_ini
 from support.sample_configs import SAMPLES, copy_samples, problems_of, tree
 from support.small_configs import planned
@@ -53,13 +53,13 @@ def full_set(ini):
 def in_and_out(path, names):
     """Plan an installation, and take it out again in memory; return the refused kinds."""
     try:
-        plan = planned(path, *names)
+        text = planned(path, *names)
     except Refused as refused:
         return {finding.kind for finding in refused.args}
-    assert plan.text.changes()
-    assert plan.text.words() == [name for name in features.FEATURE_NAMES if name in names]
-    plan.text.take_out()
-    assert plan.text.files == IniText(path).files
+    assert text.changes()
+    assert text.words() == [name for name in features.FEATURE_NAMES if name in names]
+    text.take_out()
+    assert text.files == IniText(path).files
     return set()
 
 
@@ -113,7 +113,7 @@ def test_the_full_set_loads_in_the_stock_interpreter(samples, name):
     assert main(["install", str(path), "--with", *names]) == 0
     assert problems_of(path) == []
     config = load_config(IniText(path))
-    there = {*config.features} | {f"programs-{control}" for control in installed_programs(config)}
+    there = {*config.features} | {f"programs-{call['control']}" for *_, call in filters_of(config)}
     assert there == {*names} - {"forms", "cycles-page"}
     assert bool(config.ini.all("DISPLAY", "NGCGUI_SUBFILE")) == ("forms" in names)
     installed = tree(path.parent)

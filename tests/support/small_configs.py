@@ -13,7 +13,7 @@ from g12.tools.install import installation, package_copy
 from g12.tools.install.config import features
 from g12.tools.install.config.findings import ConfigFinding, Refused
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, Python, remaps_in
+from g12.tools.install.config.loaded import Config, Python
 from g12.tools.install.lathe import kinematics
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
 from g12.tools.install.plan import make_plan
@@ -111,7 +111,7 @@ def config_of(ini: Path | IniText, *, failure=None, owned=(), version="2.9.0", *
     """Return the config of an INI that no LinuxCNC has loaded."""
     text = ini if isinstance(ini, IniText) else IniText(ini)
     loaded = Python(**python)
-    return Config(text, text.ini(), remaps_in(text), version, loaded, frozenset(owned), failure)
+    return Config(text, text.ini(), version, loaded, frozenset(owned), failure)
 
 
 def content_of(folder: Path) -> dict[str, bytes]:
@@ -121,7 +121,7 @@ def content_of(folder: Path) -> dict[str, bytes]:
 
 
 def planned(ini: Path, *names: str, pins: Pins | None = None, options: str = "", **python):
-    """Return the plan of an installation in an INI that no LinuxCNC has loaded."""
+    """Return the lines of an INI that no LinuxCNC has loaded, with an installation planned."""
     text = IniText(ini)
     earlier, pins = text.words(), pins or pins_in_ini(text.ini())
     text.take_out()
@@ -131,10 +131,10 @@ def planned(ini: Path, *names: str, pins: Pins | None = None, options: str = "",
 
 def put_in(ini: Path, *names: str, **options) -> list[str]:
     """Install features in an INI that no LinuxCNC has loaded; return the lines to show."""
-    plan = planned(ini, *names, **options)
+    text = planned(ini, *names, **options)
     copy = ini.parent / features.COPY
     files = {} if package_copy.is_current(copy) else package_copy.package_files()
-    return list(installation.write_all(plan.text.changes(), copy, files))
+    return list(installation.write_all(text.changes(), copy, files))
 
 
 def refused(ini: Path, *names: str, **options) -> tuple[ConfigFinding, ...]:

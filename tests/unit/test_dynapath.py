@@ -87,8 +87,8 @@ LEAVES_OUT = "would be left out: -9999 in the call means no entry"
     [
         ("G3", "G3 must be one of 0, 7"),
         ("D1.5", "D1.5 must be one of 0, 1, 2, 3"),
-        ("L0", "L0 must not be 0"),
-        ("L/-.02", "L-0.02 must not be negative; L/ is the side only"),
+        ("L0", "L0 must be greater than 0"),
+        ("L/-.02", "L-0.02 must be greater than 0"),
         *((f"{letter}0", f"{letter}0 must be greater than 0") for letter in "RKJPFV"),
         ("X-9999", f"X-9999 {LEAVES_OUT}"),
         ("Z/-9999.1", f"Z-9999 {LEAVES_OUT}"),

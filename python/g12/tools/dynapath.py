@@ -8,9 +8,8 @@ with auxiliary axes W and C writes I for W and H for C.
 
 Rules: every line is empty or an event of type 4; no entry twice, by either of its letters; X, Y,
 Z, R, C in every event, W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0
-or 7, D from 0 to 3, C from 0 to 2; R, K, J, P, F, V above 0, L not below 0 and L/ not 0; no value
-beyond any machine or that the call would take for an entry left out; no call longer than a block
-of LinuxCNC can be.
+or 7, D from 0 to 3, C from 0 to 2; L, R, K, J, P, F, V above 0; no value beyond any machine or that
+the call would take for an entry left out; no call longer than a block of LinuxCNC can be.
 """
 
 import re
@@ -39,7 +38,7 @@ REQUIRED = "XYZRC"
 MODAL = "WOF"
 NEEDED = "WF"  # of them, in the first event
 INCREMENTAL = "XYZL"
-POSITIVE = "RKJPFV"
+POSITIVE = "LRKJPFV"
 ALLOWED_VALUES = {
     "G": (PERIMETER_CYCLE, POCKET_CYCLE),
     "D": range(len(ROUGH_FINISH_ARCS)),
@@ -141,10 +140,6 @@ def broken_by_entry(letter: str, entry: WrittenEntry) -> Iterator[str]:
         yield f"{written} must be one of {', '.join(map(str, ALLOWED_VALUES[letter]))}"
     if letter in POSITIVE and not value > 0:
         yield f"{written} must be greater than 0"
-    if letter == "L" and value < 0:
-        yield f"{written} must not be negative; L/ is the side only"
-    if letter == "L" and value == 0:
-        yield f"{written} must not be 0"
 
 
 def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:

@@ -43,9 +43,9 @@ def report_of(config: Config, found: Sequence[ConfigFinding]) -> Iterator[str]:
     for code in config.codes:
         meaning = f"{MEANING[code.feature]} ({code.line.location})"
         yield f"  {code.remap.code:6} {code.feature:12} {meaning}"
-    for each in filters_of(config):
-        if each.control:
-            yield f"  .{each.suffix:5} programs of {each.control}"
+    for suffix, _, call in filters_of(config):
+        if call["control"]:
+            yield f"  .{suffix:5} programs of {call['control']}"
     for finding in found:
         yield f"{finding.level} [{finding.kind}]: {finding.text}"
         yield f"  cure: {finding.cure}"

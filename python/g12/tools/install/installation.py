@@ -18,10 +18,10 @@ from g12.tools.install.config import features
 from g12.tools.install.config.features import COPY
 from g12.tools.install.config.findings import WARNING, ConfigFinding, refuse, refuse_problems
 from g12.tools.install.config.ini_edit import BEGIN_MARK, IniText, other_inis
-from g12.tools.install.config.loaded import codes_of, load_config, remaps_in
+from g12.tools.install.config.loaded import load_config, remaps_in
 from g12.tools.install.config.screen import HERE
 from g12.tools.install.lathe.spindle_c import Pins, pins_in_ini
-from g12.tools.install.plan import InstallPlan, make_plan
+from g12.tools.install.plan import make_plan
 from g12.tools.install.rules import LOADING, STOPPING, findings_of
 from g12.tools.machine.files import (
     backup_of,
@@ -55,15 +55,16 @@ def install(
     config = load_config(text)
     before = findings_of(config)
     refuse_problems(finding for finding in before if finding.kind in LOADING)
-    plan = make_plan(config, names, pins, options or options_in(earlier))
+    options = options or "".join(f" {word}" for word in earlier if word not in names)
+    make_plan(config, names, pins, options)
     for name in filter(None, map(features.CONTROLS.get, requested)):
-        yield from question_of(read_control(name), plan.words)
+        yield from question_of(read_control(name), options)
     changes = text.changes()
     files = {} if package_copy.is_current(copy) else package_copy.package_files()
     if not changes and not files:
         yield f"{text.path}: {', '.join(requested)}: installed already, nothing to do"
         return
-    warnings = try_out(plan, before)
+    warnings = try_out(text, before)
     for path, content in changes.items():
         yield from difference(path, content)
     if files:
@@ -79,11 +80,6 @@ def install(
     yield f"to take it out again: {COMMAND} uninstall {text.path}"
 
 
-def options_in(words: Sequence[str]) -> str:
-    """Return the options of `translate` among the words of an earlier installation."""
-    return "".join(f" {word}" for word in words if word not in features.FEATURE_NAMES)
-
-
 def refuse_excluding(names: Sequence[str]) -> None:
     """Refuse features of which a machine has one."""
     for group in features.EXCLUSIVE:
@@ -95,9 +91,9 @@ def refuse_excluding(names: Sequence[str]) -> None:
             )  # fmt: skip
 
 
-def question_of(control: Control, words: str) -> Iterator[str]:
+def question_of(control: Control, options: str) -> Iterator[str]:
     """Yield the question for ``--decimals``, where neither control nor user have answered it."""
-    if not control.decimals and "--decimals" not in words:
+    if not control.decimals and "--decimals" not in options:
         mm = 1500 * float(control.value("increments", "length_mm", 0.0))
         yield (
             f"asked: X1500 has no decimal point. With --decimals least it is {mm:g} mm, with "
@@ -129,19 +125,19 @@ def write_all(
 # The trial.
 
 
-def try_out(plan: InstallPlan, before: Sequence[ConfigFinding]) -> list[ConfigFinding]:
-    """Return the warnings of `check` for the plan; refuse if it causes a problem.
+def try_out(text: IniText, before: Sequence[ConfigFinding]) -> list[ConfigFinding]:
+    """Return the warnings of `check` for an edited INI; refuse if the edits cause a problem.
 
     What was found before, and a spindle that may not be there, are no reason. Another INI of the
     folder that includes a changed file has to load as well.
     """
     warnings = refuse_problems(
         replace(each, level=WARNING) if each in before or each.kind == "live-spindle" else each
-        for each in trial(plan.text)
+        for each in trial(text)
         if each.kind != "copy"  # which is renewed
     )
-    for other in other_inis(plan.text):
-        shared = [file.name for file in plan.text.changes() if file in other.files]
+    for other in other_inis(text):
+        shared = [file.name for file in text.changes() if file in other.files]
         name, found = other.path.name, trial(other) if shared else []
         refuse_problems(
             replace(
@@ -183,7 +179,7 @@ def uninstall(text: IniText, dry_run: bool) -> Iterator[str]:
     if not dry_run:
         package_copy.recover(copy)
     users = text.take_out(shared_files(text))
-    needing = [*names_copy(text), *(code.line for code in codes_of(remaps_in(text)))]
+    needing = [*names_copy(text), *(code.line for code in remaps_in(text) if code.feature)]
     used = any(map(names_copy, other_inis(text)))
     if not blocks and (used or not package_copy.is_copy(copy)):
         yield f"{text.path}: nothing that install put in"

@@ -9,7 +9,7 @@ import hashlib
 import os
 import re
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from g12.tools.install.config.features import ROOT
@@ -18,17 +18,13 @@ from g12.tools.machine.files import free_name, take_owner
 MANIFEST = "MANIFEST"  # as sha256sum writes and checks it
 FILES = (  # the code, and the pages that a machinist reads at the machine
     "LICENSE",
-    "ngc/*.*",
-    "ngc/pictures/*.png",
+    "ngc/**/*.*",
     "configs/*.md",
     "configs/include/*.*",
     "configs/include/probe_basic/**/*.py",
-    "configs/kinematics/README.md",
-    "configs/kinematics/polar_*",
-    "python/README.md",
+    "configs/kinematics/*.*",
     "python/**/*.py",
-    "python/g12/tools/regress/README.md",
-    "python/g12/tools/translate/README.md",
+    "python/**/*.md",
     "python/**/*.toml",
 )
 EDITED_SUFFIX = ".edited"
@@ -89,9 +85,9 @@ def replace(copy: Path, files: Mapping[str, bytes]) -> list[str]:
     """
     new, old = recover(copy)
     renamed = build(new, copy, files)
-    sync(copy.parent, LIBC.syncfs)
+    os.sync()
     put_in_place(new, copy, old)
-    sync(copy.parent, os.fsync)
+    os.sync()
     remove(new)
     remove(old)
     return renamed
@@ -111,48 +107,37 @@ def recover(copy: Path) -> tuple[Path, Path]:
 
 
 def build(new: Path, copy: Path, files: Mapping[str, bytes]) -> list[str]:
-    """Write a new copy with the user's files of the present one; return those renamed."""
-    manifest = "".join(f"{value}  {name}\n" for name, value in digests(files).items())
+    """Write a new copy with the user's files of the present one; return those renamed.
+
+    A file keeps its name unless the package brings another version of it, or none any more.
+    """
+    present, coming = listed(copy), digests(files)
+    manifest = "".join(f"{value}  {name}\n" for name, value in coming.items())
     for name, content in {**files, MANIFEST: manifest.encode()}.items() if files else ():
         (new / name).parent.mkdir(parents=True, exist_ok=True)
         (new / name).write_bytes(content)
-    names = dict(users_files(copy, digests(files)))
-    for name, target in names.items():
-        if (new / target).is_dir():  # the user's link stands in place of a folder
-            names[name] = target = aside(copy, name)
+    renamed = []
+    for name in files_below(copy):
+        versions, target = (present.get(name), coming.get(name)), name
+        if name == MANIFEST or digest_of(copy / name) in versions:
+            continue
+        if versions[0] != versions[1] or (new / name).is_dir():  # a link in place of a folder
+            aside = free_name(copy / f"{name}{EDITED_SUFFIX}")
+            target = aside.relative_to(copy).as_posix()
+            renamed.append(target)
         (new / target).parent.mkdir(parents=True, exist_ok=True)
         (new / target).unlink(missing_ok=True)
         shutil.copy2(copy / name, new / target, follow_symlinks=False)
     for path in (new, *new.rglob("*")) if new.exists() else ():
         take_owner(path, copy.parent)
-    return [target for name, target in names.items() if target != name]
-
-
-def users_files(copy: Path, new: Mapping[str, str]) -> Iterator[tuple[str, str]]:
-    """Yield the user's files of a copy, each with its name in the next one, whose list is ``new``.
-
-    A file keeps its name unless the package brings another version of it, or none any more.
-    """
-    old = listed(copy)
-    for name in files_below(copy):
-        versions = old.get(name), new.get(name)
-        if name != MANIFEST and digest_of(copy / name) not in versions:
-            yield name, name if versions[0] == versions[1] else aside(copy, name)
-
-
-def aside(copy: Path, name: str) -> str:
-    return free_name(copy / f"{name}{EDITED_SUFFIX}").relative_to(copy).as_posix()
+    return renamed
 
 
 def files_below(folder: Path) -> list[str]:
     """Return the files and links below a folder, but for Python's caches."""
-    found = []
-    for above, folders, files in os.walk(folder):
-        folders[:] = sorted(name for name in folders if name != "__pycache__")
-        links = [name for name in folders if os.path.islink(os.path.join(above, name))]
-        here = Path(above).relative_to(folder)
-        found += [(here / name).as_posix() for name in (*links, *sorted(files))]
-    return found
+    below = sorted(folder.rglob("*"))
+    files = [path.relative_to(folder) for path in below if path.is_symlink() or not path.is_dir()]
+    return [file.as_posix() for file in files if "__pycache__" not in file.parts]
 
 
 def put_in_place(new: Path, copy: Path, old: Path) -> None:
@@ -169,14 +154,6 @@ def put_in_place(new: Path, copy: Path, old: Path) -> None:
         new.rename(copy)
 
 
-def sync(folder: Path, function: Callable[[int], object]) -> None:
-    handle = os.open(folder, os.O_DIRECTORY)
-    function(handle)
-    os.close(handle)
-
-
 def remove(path: Path) -> None:
-    if path.is_dir() and not path.is_symlink():
+    if path.exists():
         shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)

@@ -15,7 +15,7 @@ from g12.tools.install.config import features, screen
 from g12.tools.install.config.features import COPY
 from g12.tools.install.config.findings import refuse, refuse_problems
 from g12.tools.install.config.ini_edit import IniText
-from g12.tools.install.config.loaded import Config, both_cases, filters_of, folder_from_ini
+from g12.tools.install.config.loaded import Config, both_cases, folder_from_ini
 from g12.tools.install.lathe import kinematics, spindle_c
 from g12.tools.install.rules import calls_abort_sub, odd_folder
 from g12.tools.translate.blocks.control import read_control
@@ -37,10 +37,6 @@ class InstallPlan:
     added: dict[str, list[str]] = field(default_factory=lambda: {"RS274NGC": []})
 
     @property
-    def text(self) -> IniText:
-        return self.config.text
-
-    @property
     def words(self) -> str:
         """The features and options as typed."""
         return f"{' '.join(self.features)}{self.options}"
@@ -57,13 +53,13 @@ class InstallPlan:
             self.added.setdefault(section, []).extend(new)
 
     def replace(self, section: str, key: str, value: str) -> None:
-        self.text.replace(section, key, value, self.words)
+        self.config.text.replace(section, key, value, self.words)
 
 
 def make_plan(
     config: Config, names: Sequence[str], pins: spindle_c.Pins | None = None, options: str = ""
-) -> InstallPlan:
-    """Edit a config's text so that it has the features."""
+) -> IniText:
+    """Return a config's text, edited so that it has the features."""
     plan, copy = InstallPlan(config, names, options), config.folder / COPY
     if copy.exists() and not package_copy.is_copy(copy):
         text = f"{copy} is there already, and is no copy of the package that install made"
@@ -89,21 +85,21 @@ def make_plan(
     add_picture(plan, on_face)
     for section, lines in plan.added.items():
         if lines:
-            plan.text.add(section, lines, plan.words)
-    for path in plan.text.changes():
+            config.text.add(section, lines, plan.words)
+    for path in config.text.changes():
         if not path.resolve().is_relative_to(config.folder.resolve()):
             raise refuse("outside", f"{path} would have to change, which is outside the folder of "
                          f"{config.text.path.name}", "copy it into that folder")  # fmt: skip
-    return plan
+    return config.text
 
 
 def add_codes(plan: InstallPlan) -> None:
     """Add the REMAP lines that are not there, under this code and with this meaning."""
-    present = [(remap.number, features.own_names(remap)) for _, remap in plan.config.remaps]
-    for remap in (remap for feature in plan.codes for remap in features.remaps_of(feature)):
-        own = features.own_names(remap)
-        if not any(number == remap.number and names & own for number, names in present):
-            plan.add({"RS274NGC": [f"REMAP = {remap.text}"]})
+    present = [(code.remap.number, code.feature) for code in plan.config.codes]
+    for feature in plan.codes:
+        for remap in features.remaps_of(feature):
+            if (remap.number, feature) not in present:
+                plan.add({"RS274NGC": [f"REMAP = {remap.text}"]})
 
 
 def add_subroutines(plan: InstallPlan) -> None:
@@ -150,11 +146,9 @@ def add_filter(plan: InstallPlan, name: str) -> None:
             "CYLINDER_X = allow" if on_round else "POLAR_Z = allow",
             *([] if on_round and features.rotary_of_mill(ini.axes) else live),
         ]})  # fmt: skip
-    suffixes = (written for suffix in control.extensions for written in both_cases(suffix))
-    present = {suffix: ini.get("FILTER", suffix) for suffix in suffixes}
-    ours = {each.suffix for each in filters_of(plan.config) if each.control == name}
-    for suffix, value in present.items():
-        if value and (suffix not in ours or not value.endswith(plan.options)):
+    suffixes = [written for suffix in control.extensions for written in both_cases(suffix)]
+    for suffix in suffixes:
+        if value := ini.get("FILTER", suffix):
             raise refuse(
                 "filter",
                 f"[FILTER] {suffix} = {value} is there already",
@@ -162,11 +156,8 @@ def add_filter(plan: InstallPlan, name: str) -> None:
                 "hand (python/g12/tools/translate/README.md)",
             )
     command = f"python3 {COPY}/python/g12 translate --control {name}{plan.options}"
-    command = next(filter(None, present.values()), command)
-    missing = [suffix for suffix, value in present.items() if not value]
-    if missing:
-        shown = f"PROGRAM_EXTENSION = .{',.'.join(missing)} Programs of {name}"
-        plan.add({"FILTER": [shown, *(f"{suffix} = {command}" for suffix in missing)]})
+    shown = f"PROGRAM_EXTENSION = .{',.'.join(suffixes)} Programs of {name}"
+    plan.add({"FILTER": [shown, *(f"{suffix} = {command}" for suffix in suffixes)]})
 
 
 def add_forms(plan: InstallPlan) -> None:
@@ -182,7 +173,7 @@ def add_forms(plan: InstallPlan) -> None:
     if features.FORMS in asked:
         plan.add(screen.form_lines(plan.config, codes))
     if features.CYCLES_PAGE in asked:
-        plan.add(screen.cycles_lines(plan.config))
+        plan.add(screen.page_lines(plan.config, screen.CYCLES))
 
 
 def add_picture(plan: InstallPlan, on_face: bool) -> None:

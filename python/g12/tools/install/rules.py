@@ -22,7 +22,6 @@ from g12.tools.install.config.loaded import (
     both_cases,
     filters_of,
     folder_from_ini,
-    installed_programs,
     subs_named,
 )
 from g12.tools.install.lathe.hal import pins_missing, pins_taken
@@ -38,13 +37,12 @@ AFTERMATH = "Bad character 'g'"  # prefix of the error of an interpreter that di
 LOADING = {"python-fails", "does-not-load"}
 STOPPING = {*LOADING, "taken", "no-sub", "blank-in-path", "no-python"}
 
-Rule = Callable[[Config], Iterator[ConfigFinding]]
 
 # The codes.
 
 
 def codes_missing(config: Config) -> Iterator[ConfigFinding]:
-    if not config.codes and not installed_programs(config):
+    if not config.codes and not any(filters_of(config)):
         yield problem(
             "no-codes",
             "no code of the package is set up here",
@@ -53,11 +51,9 @@ def codes_missing(config: Config) -> Iterator[ConfigFinding]:
 
 
 def taken_codes(config: Config) -> Iterator[ConfigFinding]:
-    own = [code.line for code in config.codes]
-    for code in config.codes:
-        earlier = own[: own.index(code.line)]
-        for line, remap in config.remaps:
-            if remap.number == code.remap.number and line not in (code.line, *earlier):
+    for row, code in enumerate(config.codes):
+        for line, remap, _ in (each for each in config.remaps if each not in config.codes[:row]):
+            if remap.number == code.remap.number and line != code.line:
                 yield problem(
                     "taken",
                     f"{line.location}: {remap.code} is remapped here already: REMAP = {remap.text}",
@@ -143,15 +139,6 @@ def abort_not_handled(config: Config) -> Iterator[ConfigFinding]:
 def python_not_loaded(config: Config) -> Iterator[ConfigFinding]:
     """Find what keeps LinuxCNC from loading the machine's Python: then it does not start."""
     error = config.python and config.python.error
-    named = [(section, config.ini.get(section, "TOPLEVEL")) for section in ("PYTHON", INI_SECTION)]
-    missing = [(section, name) for section, name in named
-               if name and not folder_from_ini(config.ini, name).is_file()]  # fmt: skip
-    for section, name in missing if config.codes or error else ():
-        yield problem(
-            "no-python",
-            f"[{section}] TOPLEVEL = {name}: there is no such file: LinuxCNC does not start",
-            f"correct the name; it is relative to {config.folder}; {MEND}",
-        )
     if config.codes and not config.ini.get("PYTHON", "TOPLEVEL"):
         yield problem(
             "no-python",
@@ -159,8 +146,8 @@ def python_not_loaded(config: Config) -> Iterator[ConfigFinding]:
             "add [PYTHON], TOPLEVEL = …/python/toplevel.py and PATH_PREPEND = …/python "
             "with the package's folder",
         )
-    elif error and not missing:
-        cure = "correct the module named"
+    elif error:
+        cure = f"correct the module or the name; {MEND}"
         if "No module named" in error:
             cure = "add the folder of that module to [PYTHON] as PATH_PREPEND or PATH_APPEND"
         yield problem("python-fails", f"[PYTHON] does not load: {error}", cure)
@@ -190,7 +177,7 @@ def wrong_values(config: Config) -> Iterator[ConfigFinding]:
     try:
         check_section(config.ini.lines)
         settings = settings_from_lines(config.ini.lines)
-        remaps = (remap for _, remap in config.remaps)
+        remaps = (code.remap for code in config.remaps)
         codes = m_codes_of(config.ini.get, remaps, config.ini.directory)
         wrong = settings.unknown_clamp_code(codes)
     except Refusal as refusal:
@@ -223,8 +210,8 @@ def needs(config: Config) -> Iterator[ConfigFinding]:
 
 def filter_findings(config: Config) -> Iterator[ConfigFinding]:
     """Find a filter that cannot work."""
-    for suffix, command, program, _ in filters_of(config):
-        file = folder_from_ini(config.ini, program)
+    for suffix, command, call in filters_of(config):
+        file = folder_from_ini(config.ini, call["program"])
         if not file.exists():
             yield problem(
                 "filter",
@@ -253,7 +240,7 @@ def changed_copy(config: Config) -> Iterator[ConfigFinding]:
         yield note("copy", f"{copy / name}: was changed after it was installed", cure)
 
 
-CONFIG_RULES: tuple[Rule, ...] = (
+CONFIG_RULES: tuple[Callable[[Config], Iterator[ConfigFinding]], ...] = (
     codes_missing,
     taken_codes,
     owned_codes,

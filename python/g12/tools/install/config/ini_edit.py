@@ -20,12 +20,7 @@ from g12.tools.machine.ini import IniError, IniFiles, IniLine, broken_line
 BEGIN_MARK, END_MARK = MARKS = "# >>> g12 install", "# <<< g12 install"
 WAS = "# was: "  # before the user's line that one of ours replaces
 CONTINUED = re.compile(r"\\\r?\n?\Z")
-Point = tuple[Path, int]  # before a line of a file
 DIGITS = 4  # of a digest: a section of ours has 30 lines at most
-
-
-def line_end(lines: Sequence[str]) -> str:
-    return "\r\n" if lines and lines[0].endswith("\r\n") else "\n"
 
 
 def belongs(text: str) -> bool:
@@ -54,12 +49,8 @@ class IniText(IniFiles):
                     for file in files}  # fmt: skip
         return {file: content for file, content in contents.items() if content != file.read_bytes()}
 
-    def headers(self, section: str) -> list[IniLine]:
-        """Return every header of that section; LinuxCNC 2.9 reads the first one's lines only."""
-        return [line for line in self.lines() if line.text.lstrip().startswith(f"[{section}]")]
-
     def section(self, section: str) -> list[IniLine]:
-        """Return the lines LinuxCNC finds in a section, its header first."""
+        """Return the lines LinuxCNC finds in a section, its header first: 2.9 reads one of each."""
         lines = self.lines()
         extent = section_extent([line.text for line in lines], section)
         return list(lines[extent.start - 1 : extent.stop]) if extent.start else []
@@ -70,8 +61,8 @@ class IniText(IniFiles):
         found = entries_of([line.text for line in lines], section)
         return [(lines[entry.row], entry.value) for entry in found if entry.key == key]
 
-    def end_of_section(self, section: str) -> Point | None:
-        """Return the point after the section's last entry, in the INI itself if possible.
+    def end_of_section(self, section: str) -> tuple[Path, int] | None:
+        """Return file and row after the section's last entry, in the INI itself if possible.
 
         A section that goes on in an included file ends behind that #INCLUDE, unless another section
         begins in the file: then before it. Where the file has the header, too, it is in the file.
@@ -106,7 +97,7 @@ class IniText(IniFiles):
             lines = [f"[{section}]", *lines]
             point = self.path, len(self.files[self.path])
             if self.end_of_section("RS274NGC")[0] != self.path:
-                header = self.headers("RS274NGC")[0]
+                header = self.section("RS274NGC")[0]
                 point = header.file, header.row
         file, row = point
         self._put(file, slice(row, row), between_marks(words, lines))
@@ -131,7 +122,8 @@ class IniText(IniFiles):
             cure = f"write the lines of one of them into {self.path.name} itself"
             raise IniError(f"{file.name}: would have to change, and is included twice: {cure}")
         present = self.files[file]
-        end, at_end = line_end(present), extent.stop == len(present)
+        end = "\r\n" if present and present[0].endswith("\r\n") else "\n"
+        at_end = extent.stop == len(present)
         new = [text if text.endswith("\n") else text + end for text in texts]
         if at_end and present and not present[-1].endswith("\n"):
             present[-1] += end

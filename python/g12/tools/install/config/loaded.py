@@ -4,9 +4,8 @@
 import json
 import os
 import re
-import tempfile
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
@@ -22,19 +21,18 @@ from g12.tools.system import PROGRAM
 
 ANSWER = "G12 CONFIG "
 # Code executed in the interpreter: it reports what the machine's Python modules defined.
-QUESTION = f"""\
-def g12_config():
-    import json, sys
-    remap = vars(sys.modules["__main__"]).get("remap")
-    items = vars(remap).items() if hasattr(remap, "__dict__") else ()
-    return {ANSWER!r} + json.dumps(
-        {{key: getattr(item, "__module__", None) for key, item in items if callable(item)}})
-print(g12_config(), flush=True)
-"""
+QUESTION = (
+    "import json, sys; "
+    "found = getattr(vars(sys.modules['__main__']).get('remap'), '__dict__', {}); "
+    f"print({ANSWER!r} + json.dumps({{name: getattr(found[name], '__module__', None) "
+    "for name in found if callable(found[name])}), flush=True)"
+)
 UNKNOWN = "Unknown"  # begins LinuxCNC's error for a G code that it does not have
 NO_REMAPS: Overrides = {"RS274NGC": {"REMAP": None, "RS274NGC_STARTUP_CODE": None}}
 # The commands that are filters, behind the package's program.
-CALL = re.compile(rf"(\S*{PROGRAM.name}) (?:dynapath\b|translate\s(?:.*\s)?--control (\S+))")
+CALL = re.compile(
+    rf"(?P<program>\S*{PROGRAM.name}) (?:dynapath\b|translate\s(?:.*\s)?--control (?P<control>\S+))"
+)
 MOST_FOLDERS = 10  # of SUBROUTINE_PATH; LinuxCNC ignores the rest
 
 
@@ -55,18 +53,17 @@ class Python:
         return sorted(name for name in modules if modules[name].split(".")[0] != "g12")
 
 
-@dataclass(frozen=True)
-class Code:
-    """A REMAP line of the package in a config, and its feature."""
+class Code(NamedTuple):
+    """A REMAP line in a config, and its feature, None if it is not the package's."""
 
     line: IniLine
     remap: Remap
-    feature: str
+    feature: str | None
 
 
 @dataclass(frozen=True)
 class Config:
-    """A machine config: its lines, values and REMAP lines, and the loaded interpreter's state.
+    """A machine config: its lines and values, and the loaded interpreter's state.
 
     ``version`` is LinuxCNC's, empty if its Python modules are missing. ``python`` is None if the
     interpreter did not run. ``owned`` has the package's codes that are LinuxCNC's own.
@@ -75,7 +72,6 @@ class Config:
 
     text: IniText
     ini: Ini
-    remaps: list[tuple[IniLine, Remap]]
     version: str
     python: Python | None = None
     owned: frozenset[str] = frozenset()
@@ -94,41 +90,41 @@ class Config:
             return None
 
     @cached_property
+    def remaps(self) -> list[Code]:
+        return remaps_in(self.text)
+
+    @property
     def codes(self) -> list[Code]:
-        return codes_of(self.remaps)
+        """The REMAP lines that are the package's."""
+        return [code for code in self.remaps if code.feature]
 
     @cached_property
     def features(self) -> dict[str, None]:
         return dict.fromkeys(code.feature for code in self.codes)
 
 
-def remaps_in(text: IniText) -> list[tuple[IniLine, Remap]]:
+def remaps_in(text: IniText) -> list[Code]:
     """Return the REMAP lines that LinuxCNC reads."""
-    return [(line, remap_from_value(value)) for line, value in text.entries("RS274NGC", "REMAP")]
-
-
-def codes_of(remaps: list[tuple[IniLine, Remap]]) -> list[Code]:
-    """Return the REMAP lines that are the package's."""
-    found = (Code(line, remap, feature_of(remap)) for line, remap in remaps)
-    return [code for code in found if code.feature]
+    entries = ((line, remap_from_value(value)) for line, value in text.entries("RS274NGC", "REMAP"))
+    return [Code(line, remap, feature_of(remap)) for line, remap in entries]
 
 
 def load_config(text: IniText, ini: Ini | None = None) -> Config:
     """Return the config of an INI, loaded by LinuxCNC: as ``ini`` instead, if that is given."""
-    ini, remaps, version = ini or text.ini(), remaps_in(text), linuxcnc_version()
-    if not version:
-        return Config(text, ini, remaps, version, failure="there is none on this computer")
-    failure = load_failure(ini)
+    config = Config(text, ini or text.ini(), linuxcnc_version())
+    if not config.version:
+        return replace(config, failure="there is none on this computer")
+    failure = load_failure(config.ini)
     try:
-        with Tracer(ini, overrides=NO_REMAPS) as tracer:
+        with Tracer(config.ini, overrides=NO_REMAPS) as tracer:
             python = python_of(tracer)
-            codes = {code.remap.code for code in codes_of(remaps) if code.remap.number[0] == "G"}
+            codes = {code.remap.code for code in config.codes if code.remap.number[0] == "G"}
             if python.error:  # then LinuxCNC 2.9.0~pre1 may crash in the second program
                 codes = set()
             owned = frozenset(code for code in codes if is_owned(tracer, code))
-            return Config(text, ini, remaps, version, python, owned, failure)
+            return replace(config, python=python, owned=owned, failure=failure)
     except TraceFailure as refused:
-        return Config(text, ini, remaps, version, failure=failure or str(refused))
+        return replace(config, failure=failure or str(refused))
 
 
 def is_owned(tracer: Tracer, code: str) -> bool:
@@ -142,10 +138,7 @@ def python_of(tracer: Tracer) -> Python:
     error = python_error(tracer.printed)
     if error:
         return Python(error=error)
-    with tempfile.TemporaryDirectory(prefix="g12-config-") as folder:
-        question = Path(folder) / "question.py"
-        question.write_text(QUESTION, encoding="utf-8")
-        printed = tracer.trace_text([f"(pyrun,{question})"]).printed
+    printed = tracer.trace_text([f";py,{QUESTION}"]).printed
     answers = [line for line in printed.splitlines() if line.startswith(ANSWER)]
     if not answers:
         return Python(error="the modules loaded, but the interpreter's Python gives no answer")
@@ -157,18 +150,12 @@ def folder_from_ini(ini: Ini, name: str) -> Path:
     return (ini.directory / os.path.expanduser(name)).resolve()
 
 
-def sub_folders(ini: Ini) -> list[Path]:
-    """Return the folders that LinuxCNC searches for NGC subs, in its order."""
-    prefix = ini.get("DISPLAY", "PROGRAM_PREFIX")
-    names = [name for name in ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":") if name]
-    folders = [folder_from_ini(ini, name) for name in names]
-    first = [ini.directory, *([folder_from_ini(ini, prefix)] if prefix else [])]
-    return [*first, *[folder for folder in folders if folder.exists()][:MOST_FOLDERS]]
-
-
 def subs_named(ini: Ini, name: str) -> list[Path]:
-    """Return every file LinuxCNC could take for an NGC sub; it takes the first."""
-    files = (folder / f"{name}.ngc" for folder in sub_folders(ini))
+    """Return every file LinuxCNC could take for an NGC sub, in its order; it takes the first."""
+    names = filter(None, ini.get("RS274NGC", "SUBROUTINE_PATH", "").split(":"))
+    folders = [folder for each in names if (folder := folder_from_ini(ini, each)).exists()]
+    first = [ini.directory, folder_from_ini(ini, ini.get("DISPLAY", "PROGRAM_PREFIX") or "")]
+    files = (folder / f"{name}.ngc" for folder in (*first, *folders[:MOST_FOLDERS]))
     return list(dict.fromkeys(file for file in files if file.is_file()))
 
 
@@ -176,26 +163,11 @@ def subs_named(ini: Ini, name: str) -> list[Path]:
 # up among the keys of [FILTER] as it is written: with ``nc`` alone PART.NC is opened as it is.
 
 
-class Filter(NamedTuple):
-    """A line of [FILTER] that calls the package; ``control`` is "" where it does not translate."""
-
-    suffix: str
-    command: str
-    program: str
-    control: str
-
-
-def filters_of(config: Config) -> Iterator[Filter]:
-    """Yield the lines of [FILTER] that call the package."""
-    for _, key, value in entries_of(config.ini.lines, "FILTER"):
-        call = CALL.search(value)
-        if call:
-            yield Filter(key, value, call[1], call[2] or "")
-
-
-def installed_programs(config: Config) -> list[str]:
-    """Return the controls whose programs the machine opens."""
-    return list(dict.fromkeys(each.control for each in filters_of(config) if each.control))
+def filters_of(config: Config) -> Iterator[tuple[str, str, re.Match[str]]]:
+    """Yield suffix and command of the filters that are the package's, with the match of `CALL`."""
+    for _, suffix, command in entries_of(config.ini.lines, "FILTER"):
+        if call := CALL.search(command):
+            yield suffix, command, call
 
 
 def both_cases(suffix: str) -> tuple[str, str]:

@@ -28,17 +28,17 @@ OWN_KEYS = {  # a screen and a page that it shows by a key of [DISPLAY]: the key
     (AXIS, FACE): ("USER_COMMAND_FILE", f"{INCLUDE}/axis_face.py"),
     (PROBE_BASIC, CYCLES): ("USER_TABS_PATH", f"{INCLUDE}/probe_basic/"),
 }
+WITH_NGCGUI = "tabWidget_utilities"  # of the screens of QtVCP that contain ngcgui
 TAB_LOCATIONS = {  # start of a screen's name: its widget for tabs, "" if it has one place for them
     AXIS: "",
     "touchy": "",
     "gmoccapy": "ntb_user_tabs",
-    "qtdragon": "tabWidget_utilities",
-    "woodpecker": "tabWidget_utilities",
+    "qtdragon": WITH_NGCGUI,
+    "woodpecker": WITH_NGCGUI,
     "qtaxis": "rightTab",
 }
 FACE_SCREENS = (AXIS, "gmoccapy", "touchy")  # they show a lathe's XZ plane alone
 NGCGUI = "Ngcgui"  # the Tcl package that AXIS loads
-QTVCP_WITH_NGCGUI = ("qtdragon", "woodpecker")  # prefix of these screens' names
 HERE = "/proc/self/cwd"  # LinuxCNC and its screen work in the INI's folder
 
 
@@ -72,10 +72,17 @@ def glade_files(config: Config) -> list[str]:
 
 
 def page_lines(config: Config, page: str) -> Lines:
-    """Return the lines that show a page; none where the user has them or others."""
+    """Return the lines that show a page; none where the user has them, or others for the face.
+
+    It is refused where the folder of the user's own pages takes the key of the Cycles page.
+    """
     key, value = OWN_KEYS.get((screen_of(config), page), ("", ""))
+    users = config.ini.get("DISPLAY", key) if key else None
+    if users and page == CYCLES and not (folder_from_ini(config.ini, users) / "cycles").exists():
+        text = f"[DISPLAY] {key} = {users} is yours and stays: the screen does not show {page}"
+        raise refuse("cycles-page", text, f"link {value}cycles into that folder")
     if key:
-        return {} if config.ini.get("DISPLAY", key) else {"DISPLAY": [f"{key} = {value}"]}
+        return {} if users else {"DISPLAY": [f"{key} = {value}"]}
     if Path(GLADE[page]).name in (Path(name).name for name in glade_files(config)):
         return {}
     return tab_or_window(config, page)
@@ -99,16 +106,6 @@ def tab_or_window(config: Config, page: str) -> Lines:
     return {"DISPLAY": [f"EMBED_TAB_NAME = {page}", *place, command]}
 
 
-def cycles_lines(config: Config) -> Lines:
-    """Return the lines that show the Cycles page; refuse where the user's folder takes its key."""
-    key, value = OWN_KEYS.get((screen_of(config), CYCLES), ("", ""))
-    users = config.ini.get("DISPLAY", key) if key else None
-    if users not in (None, value) and not (folder_from_ini(config.ini, users) / "cycles").exists():
-        text = f"[DISPLAY] {key} = {users} is yours and stays: the screen does not show {CYCLES}"
-        raise refuse("cycles-page", text, f"link {value}cycles into that folder")
-    return page_lines(config, CYCLES)
-
-
 # The forms of ngcgui.
 
 
@@ -123,7 +120,7 @@ def form_lines(config: Config, features: Sequence[str]) -> Lines:
     """Return the missing lines that show the features' forms."""
     present = {Path(name).name for name in config.ini.all("DISPLAY", "NGCGUI_SUBFILE")}
     path, subs, folder = config.ini.get("DISPLAY", "NGCGUI_SUBFILE_PATH"), f"{COPY}/ngc", ""
-    if has_own_ngcgui(config):  # it searches that path alone
+    if tab_location(config) == WITH_NGCGUI:  # it searches that path alone
         lines = {} if path else {"DISPLAY": [f"NGCGUI_SUBFILE_PATH = {subs}"]}
         folder = "" if path in (None, subs) else f"{HERE}/{subs}/"
     else:
@@ -131,13 +128,6 @@ def form_lines(config: Config, features: Sequence[str]) -> Lines:
     pages = [f"NGCGUI_SUBFILE = {folder}{name}" for name in form_files(config, features)
              if name not in present]  # fmt: skip
     return {**lines, "DISPLAY": [*lines.get("DISPLAY", []), *pages]}
-
-
-def has_own_ngcgui(config: Config) -> bool:
-    """Return whether a screen is one of QtVCP that contains ngcgui."""
-    return screen_of(config) == QTVCP and any(
-        name.startswith(QTVCP_WITH_NGCGUI) for name in words_of(config)[1:]
-    )
 
 
 def ngcgui_lines(config: Config) -> Lines:

@@ -45,10 +45,16 @@ class HalLine(NamedTuple):
     location: str
 
 
-def hal_files(config: Config, key: str = "HALFILE") -> list[list[HalLine]]:
-    """Return the lines of each HAL file, in LinuxCNC's order; a missing one has none."""
-    names = (value.split()[0] for value in config.ini.all("HAL", key) if value.strip())
-    return [hal_lines(hal_file(config, name)) for name in names]
+def all_hal(config: Config) -> list[HalLine]:
+    """Return all HAL lines, in LinuxCNC's order: files, HALCMD, files for after the screen."""
+    commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
+    return [*hal_files(config, "HALFILE"), *commands, *hal_files(config, "POSTGUI_HALFILE")]
+
+
+def hal_files(config: Config, key: str) -> Iterator[HalLine]:
+    """Yield the lines of the HAL files of a key; a missing one has none."""
+    for value in filter(str.strip, config.ini.all("HAL", key)):
+        yield from hal_lines(hal_file(config, value.split()[0]))
 
 
 def hal_file(config: Config, name: str) -> Path:
@@ -79,17 +85,6 @@ def hal_lines(path: Path) -> list[HalLine]:
         found += [HalLine(text, f"{path.name}:{number}")] if text else []
         number += len(rows)
     return found
-
-
-def later_hal(config: Config) -> list[HalLine]:
-    """Return the lines of HALCMD, and of the HAL files for after the screen's start."""
-    commands = [HalLine(text, "HALCMD") for text in config.ini.all("HAL", "HALCMD")]
-    return [*commands, *chain(*hal_files(config, "POSTGUI_HALFILE"))]
-
-
-def all_hal(config: Config) -> list[HalLine]:
-    """Return all HAL lines, in LinuxCNC's order."""
-    return [*chain(*hal_files(config)), *later_hal(config)]
 
 
 def substituted(text: str, config: Config) -> str:

@@ -22,12 +22,7 @@ from g12.machine_ini import (
 from g12.tools.install.config.features import COPY, POLAR_FEATURES
 from g12.tools.install.config.findings import ConfigFinding, problem, warning
 from g12.tools.install.config.loaded import Config, folder_from_ini
-from g12.tools.install.lathe.hal import (
-    all_hal,
-    hal_files,
-    linuxcnc_folder,
-    names,
-)
+from g12.tools.install.lathe.hal import all_hal, hal_files, linuxcnc_folder, names
 
 KINEMATICS_PAGE = "configs/kinematics/README.md"
 GUARD_HAL = Path("configs/kinematics/polar_kinematics.hal")
@@ -202,10 +197,9 @@ def limits_wrong(config: Config) -> Iterator[ConfigFinding]:
 
 
 def hal_wrong(config: Config) -> Iterator[ConfigFinding]:
-    files = hal_files(config)
-    guards = [number for number, lines in enumerate(files) if names(lines, REQUEST)]
-    loading = [number for number, lines in enumerate(files) if names(lines, "motmod", "EMCMOT")]
-    if not guards or (loading and guards[0] < loading[0]):
+    lines = [*hal_files(config, "HALFILE")]
+    guard = next((at for at, line in enumerate(lines) if REQUEST in line.text), None)
+    if guard is None or names(lines[guard:], "motmod", "EMCMOT"):
         yield problem(
             "kinematics-hal",
             f"no HALFILE of [HAL] after the one that loads motion connects {FACE_KINEMATICS}",

@@ -21,7 +21,6 @@ from g12.tools.install.lathe.hal import (
     HalLine,
     all_hal,
     hal_lines,
-    modules_of,
     names,
     signals,
     substituted,
@@ -74,11 +73,6 @@ DRIVE = {  # names in the pins' file, and the signals that their pins get
 REQUIRED_PINS = ("velocity", "position", "holds")
 DRIVE_LINE = re.compile(rf"net ({'|'.join(DRIVE.values())}) => (\S+)")
 LOADS_MOTION = re.compile(r"loadrt motmod\b(?:.*\bnum_spindles=(\d+))?")
-PINS_EXAMPLE = """\
-velocity = "…"     input of the drive for M3 and M4, revolutions per second times velocity_scale
-position = "…"     input of the drive for C, revolutions times position_scale (360: degrees)
-holds = "…"        input of the drive that makes it obey its position
-clamp_open, brake  outputs, if there are any"""
 
 
 class Pins(NamedTuple):
@@ -101,8 +95,7 @@ def read_pins(path: Path) -> Pins:
         if key not in known:
             faults.append(f"{key} is none of {', '.join(known)}")
         elif key not in DRIVE:
-            is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-            fault = wrong_number(key.upper(), value if is_number else None)
+            fault = wrong_number(key.upper(), value)
             faults += [f"{key} = {value!r:.40}: {fault}"] if fault else []
         elif not isinstance(value, str):
             faults.append(f"{key} is the name of a pin, not {value!r:.40}")
@@ -121,9 +114,9 @@ def pins_in_ini(ini: Ini) -> Pins | None:
     return Pins(drive, numbers) if drive else None
 
 
-def wrong_number(key: str, value: float | None) -> str:
+def wrong_number(key: str, value: object) -> str:
     """Return the rule that a value of `NUMBERS` breaks, "" if none."""
-    if value is None:
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
         return "must be a number"
     if not abs(value) <= MAX_MEASURE:  # nor is nan
         return f"must be {MAX_MEASURE:g} at most"
@@ -152,13 +145,11 @@ def obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
         yield problem(
             "pins",
             "install cannot know the inputs of your spindle's drive",
-            "write them into a file and name it, --pins spindle.toml "
-            f"({SPINDLE_C_PAGE}):\n{PINS_EXAMPLE}",
+            f"name them in a file, as {SPINDLE_C_PAGE} shows, and name that: --pins spindle.toml",
         )
     if joint_of_c(config) < 0:
         yield problem("spindle-c", "no joint is C alone", lines_of_c(config))
-    lines = all_hal(config)
-    found, modules = signals(config, lines), modules_of(config, lines)
+    found = signals(config, all_hal(config))
     tcl = [name for name in config.ini.all("HAL", "HALFILE") if ".tcl" in name]
     for pin in (SIGNALS[key][0] for key in ENCODER):
         if pin not in found:
@@ -169,10 +160,6 @@ def obstacles(config: Config, pins: Pins | None) -> Iterator[ConfigFinding]:
                 f"connect the spindle's encoder first, G33 has to work: net SIGNAL => {pin} in a "
                 f".hal file ({SPINDLE_C_PAGE})",
             )
-    for name, pin in pins.drive.items() if pins else ():
-        if modules.lack(pin):
-            text = f'{name} = "{pin}": there is no such pin: LinuxCNC would not start'
-            yield problem("pins", text, "correct its name")
 
 
 def lines_of_c(config: Config) -> str:
@@ -188,7 +175,7 @@ def lines_of_c(config: Config) -> str:
     kinematics = re.sub(r"coordinates=\w+", f"coordinates={letters}C", present)
     text = JOINT_INC.read_text(encoding="utf-8").replace("JOINT_2", f"JOINT_{len(letters)}")
     blocks = (block[block.index("[") :] for block in text.strip().split("\n\n"))
-    missing = [block for block in blocks if not config.text.headers(block[1 : block.index("]")])]
+    missing = [block for block in blocks if not config.text.section(block[1 : block.index("]")])]
     return (
         f"change these lines ({SPINDLE_C_PAGE}):\n"
         f"[KINS] KINEMATICS = {kinematics}\n[KINS] JOINTS = {len(letters) + 1}\n"
@@ -234,9 +221,13 @@ def lines_for(config: Config, features: Sequence[str], pins: Pins) -> dict[str, 
 
 
 def spindle_c_findings(config: Config) -> Iterator[ConfigFinding]:
-    if any(PROLOG in remap.handlers for _, remap in config.remaps):
+    if becomes_c(config):
         yield from keys_wrong(config)
         yield from hal_wrong(config)
+
+
+def becomes_c(config: Config) -> bool:
+    return any(PROLOG in code.remap.handlers for code in config.remaps)
 
 
 def keys_wrong(config: Config) -> Iterator[ConfigFinding]:
@@ -291,7 +282,7 @@ def live_spindle_missing(config: Config) -> Iterator[ConfigFinding]:
     One whose spindle becomes C may have no live tool.
     """
     named = int((config.settings and config.ini.get(INI_SECTION, LIVE_SPINDLE)) or 0)
-    live = named or int(any(PROLOG in remap.handlers for _, remap in config.remaps))
+    live = named or int(becomes_c(config))
     spindles = leading_number(config.ini.get("TRAJ", "SPINDLES") or "") or 1
     loading = (LOADS_MOTION.match(substituted(line.text, config)) for line in all_hal(config))
     loaded = next((int(found[1] or 1) for found in loading if found), spindles)
