@@ -11,14 +11,24 @@ from g12.tools.material.material import ALLOWED, Touch
 from g12.tools.path.part import C, X, Y, Z, disc
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import Stretch, TracedProgram, straight_down, turns_part
-from g12.tools.verify.model.solid import FACE, Solids
+from g12.tools.verify.model.program import (
+    RUNS,
+    Stretch,
+    TracedProgram,
+    straight_down,
+    turns_part,
+)
+from g12.tools.verify.model.solid import FACE, NEAR, Solids
 
 RAPID = kind(
     "rapid", FINDING, "a rapid goes {how} {area:mm2} of material, at {at:xyz}{to:to}{hint}"
 )
-BY_MACHINE = kind("rapid-by-machine", NOT_JUDGED, "low rapids by G53, G28 or G30")
-ROTARY = kind("rotary", NOT_JUDGED, "what follows: A or B has turned what was solid")
+BY_MACHINE = kind(
+    "rapid-by-machine",
+    NOT_JUDGED,
+    "rapids from below the top by G53, G28 or G30: their way depends on the work offset (--var)",
+)
+ROTARY = kind("rotary", NOT_JUDGED, "this and what follows: A or B turns what was solid")
 C_OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed outside of a section")
 OTHER_TOOL = kind(
     "rapid-other-tool",
@@ -33,11 +43,12 @@ PER_TURN = 0.6  # mm: no tool plunges so fast
 CHANGE = kind("change-in-part", FINDING, "the tool is changed in the part")
 STOP = kind("stop-in-part", FINDING, "the spindle stops (M5) in the part")
 START = kind("start-in-part", WARNING, "the spindle starts ({code}) in the part")
+HELD = kind("start-in-cut", FINDING, "the spindle starts ({code}) with the cutter in the material")
 ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
 END = kind("ends-in-part", FINDING, "the program ends with the tool in the part")
 KINDS = {"tool": CHANGE, "M5": STOP, "M3": START, "M4": START}
 PLUNGE = kind(
-    "plunge", WARNING, "it plunges at {feed:feed} with its centre: can the tool cut there?"
+    "plunge", WARNING, "T{tool} mills, and plunges with its centre here: can it cut there?"
 )
 PLUNGE_FAST = kind(
     "plunge-fast", FINDING, "it plunges at {feed:feed}, {per_turn:fine} a revolution"
@@ -129,14 +140,15 @@ def _rapid(
 
 
 def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    last = len(program.moves) - 1
+    last, runs = len(program.moves) - 1, False
     for event in program.trace.events:
         code = event.text.split()[0]
         if code in KINDS and 0 < event.at <= last + (code != "M5"):
-            yield from _event(code, event, program, solids)
+            yield from _event(code, event, runs, program, solids)
+        runs = code in RUNS or (runs and code != "M5")
     if last >= 0:
         tips = in_part(last, program, solids, plain=True)
-        yield from (program.found(END, last, tip) for tip in tips)
+        yield from (Finding(END, program.end_line, {}, tip) for tip in tips)
     turned = program.turned_at
     if turned and turns_part(program.moves[turned]):
         tips = in_part(turned - 1, program, solids)
@@ -160,13 +172,26 @@ def in_part(
             yield tip
 
 
-def _event(code: str, event: Event, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield a tool change, a start or a stop of the spindle with the tip in the part."""
+def _event(
+    code: str, event: Event, runs: bool, program: TracedProgram, solids: Solids
+) -> Iterator[Finding]:
+    """Yield a tool change, a stop of the spindle or a start with the tip in the part."""
     lifted = code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
     if lifted or (code == "M5" and _is_followed(event, program)):
         return
+    in_cycle = any(e.line == event.line and e.text == "M5" for e in program.trace.events)
+    starts = code in RUNS and not runs and not in_cycle
     for tip in in_part(event.at - 1, program, solids, plain=code == "tool"):
-        yield Finding(KINDS[code], event.line, {"code": code}, tip)
+        held = starts and _is_held(tip, event.at - 1, program, solids)
+        yield Finding(HELD if held else KINDS[code], event.line, {"code": code}, tip)
+
+
+def _is_held(tip: np.ndarray, index: int, program: TracedProgram, solids: Solids) -> bool:
+    """Return whether material stands beside a tool at the end of a move."""
+    stretch = program.stretch_at(index)
+    around = disc(tip[:2], stretch.radius + NEAR)
+    found = (solids.standing(around, tip[2], side, index + 1) for side in stretch.sides)
+    return any(each.area > 0.0 for each in found)
 
 
 def _is_followed(event: Event, program: TracedProgram) -> bool:
@@ -200,8 +225,8 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
                 continue
             tip = program.tip(index, side)
             if _plunges(tip, CENTRE * stretch.radius, side, index, solids):
-                of, values = PLUNGE_FAST if fast else PLUNGE, {"per_turn": per_turn}
-                yield program.found(of, index, tip[-1], feed=per_minute, **values)
+                values = {"feed": per_minute, "per_turn": per_turn, "tool": move.tool}
+                yield program.found(PLUNGE_FAST if fast else PLUNGE, index, tip[-1], **values)
 
 
 def _plunges(tip: np.ndarray, radius: float, side: float, index: int, solids: Solids) -> bool:

@@ -13,7 +13,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.cut_report import PolygonCut, RoundPocketCut
+from g12.cut_report import PolygonCut, RoundPocketCut, ThreadCut
 from g12.tools.path.part import disc, swept
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
@@ -37,11 +37,12 @@ LEVEL = 1e-3  # mm
 DEEPEST = 3.0  # times a cutter's radius: few pockets are milled so deep at once
 AIR = kind("air", FINDING, "it cuts nothing: it stays {above:length} above the part{hint}")
 BESIDE = kind("no-stock-met", FINDING, "it meets nothing of the stock")
-BEFORE = kind("cut-before", WARNING, "all of it was cut before: a spring pass, or the wrong place?")
+BEFORE = kind("cut-before", WARNING, "all of it was cut before: {why}?")
+SPRING, SIZE = "a spring pass, or the wrong place", "is its hole too large, its boss too small"
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
 OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
-MINUS = ": a lost minus sign?"
+MINUS, DOWN = ": a lost minus sign?", ": no move down to the depth before it?"
 NO_DEPTH = ("yasnac", "mitsubishi")  # whose blocks have no Z
 
 
@@ -244,13 +245,13 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
     if not material.sweeps_of(cut.moves):
         tips = (program.tip(index, cut.surface) for index in cut.fed)
         above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
-        by_word = program.dialects.get(cut.code) not in NO_DEPTH
-        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL and by_word else "")
+        hint = DOWN if program.dialects.get(cut.code) in NO_DEPTH else MINUS
+        yield cut.found(AIR, place, above=above, hint=hint if above > LEVEL else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)
         elif not cut.is_tap:
-            yield cut.found(BEFORE, place)
+            yield cut.found(BEFORE, place, why=SIZE if isinstance(cut.plan, ThreadCut) else SPRING)
     elif solids.stock and material.beyond(_wanted(cut)) > LEAST_GONE:
         yield cut.found(OUTSIDE, place)
     if cut.levels and program.dialects.get(cut.code) != "bore":  # cuts by its helices

@@ -39,6 +39,7 @@ RUNS = ("M3", "M4")
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
 MOTION = re.compile(r"G0*([0-3]|5(?:\.\d)?|33(?:\.1)?|38\.\d|7[346]|8\d)(?![.\d])")
 TAPS = {"33.1", "74", "84"}
+ENDS = re.compile(r"M0*(2|30)(?!\d)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
 
@@ -100,6 +101,13 @@ class TracedProgram:
         """The program's lines, without comments, in upper case."""
         text = self.file.read_text(encoding="utf-8", errors="replace")
         return [COMMENT.sub("", line).upper() for line in text.splitlines()]
+
+    @property
+    def end_line(self) -> int:
+        """The line that ends it after its last move, by M2 or M30; else that of the move."""
+        last = self.moves[-1].block
+        ends = (n for n, text in enumerate(self.texts, 1) if n > last and ENDS.search(text))
+        return next(ends, last)
 
     @cached_property
     def tapping(self) -> set[int]:

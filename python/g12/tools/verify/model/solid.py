@@ -36,13 +36,15 @@ FULL_TURN = 2 * math.pi - 1e-6
 class Solids:
     """The materials of a program by the side that a tool works on.
 
-    ``given_bar`` is the radius of the bar that is given, 0 without one.
+    ``given_bar`` is the radius of the bar that is given, 0 without one; ``face`` is the level of
+    the top.
     """
 
     def __init__(self, program: TracedProgram, stock: Stock | None) -> None:
         self.program, self.stock, self.z0 = program, stock, program.z0
         self.given_bar = stock.diameter / 2 if stock else 0.0
-        self.bottom = self.z0 - stock.size[2] if stock and stock.size else -math.inf
+        self.face = self.z0 + (stock.top if stock else 0.0)
+        self.bottom = self.face - stock.size[2] if stock and stock.size else -math.inf
         self._materials: dict[float, Material] = {}
         for side in {FACE, *(cut.surface for cut in program.cuts)}:
             shape = self._stock(side, stock)
@@ -52,7 +54,7 @@ class Solids:
     # ------------------------------------------------------------ the stock
 
     def top(self, side: float) -> float:
-        return (self.given_bar or side) if side else self.z0
+        return (self.given_bar or side) if side else self.face
 
     @cached_property
     def bar(self) -> float:
