@@ -81,7 +81,8 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 
 
 def section(letters="XZC", axes=AXES, **found):
-    return Cylinder(with_found(START, **found), SectionMachine(letters, Settings(), axes))
+    machine = SectionMachine(frozenset(letters), Settings(), axes)
+    return Cylinder(with_found(START, **found), machine)
 
 
 def test_one_code_switches_on_and_off():
@@ -110,7 +111,7 @@ AT_AXIS = {"A": dict(x=30.0, z=22.0, c=0.0), "B": dict(x=0.0, y=30.0, z=22.0)}
 
 def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B008 - it is frozen
     start = with_found(START, **{"words": {letter: RADIUS}, **AT_AXIS[letter], **found})
-    return CYLINDERS[letter](start, SectionMachine(letters, settings, ON_MILL))
+    return CYLINDERS[letter](start, SectionMachine(frozenset(letters), settings, ON_MILL))
 
 
 @pytest.mark.parametrize(

@@ -137,7 +137,8 @@ LIMITS = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found):  # noqa: B008
     """Return a section that begins with what is found."""
-    return Polar(with_found(START, **found), SectionMachine(letters, settings, axes, face))
+    machine = SectionMachine(frozenset(letters), settings, axes, face)
+    return Polar(with_found(START, **found), machine)
 
 
 @pytest.mark.parametrize(
@@ -160,6 +161,10 @@ def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found)
             " cancel it with G92.1 (an X offset of G54 may stay)",
         ),
         ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
+        (
+            {"letters": "XYZC", "y": 10.0},
+            "needs Y0: the tool must stand on the spindle's axis, not at Y10",
+        ),
     ],
 )
 def test_where_no_section_begins(found, rule):

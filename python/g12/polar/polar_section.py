@@ -63,7 +63,7 @@ class Polar(SectionKind):
         x, machine = start.state.x, self.machine
         above = f"needs the tool at X above zero, not at {number(x)} (radius)"
         own = ((start.state.plane != YZ, "needs G18 or G17, not G19"), (x > 0, above))
-        check_entry(start, machine.letters, "XC", own)
+        check_entry(start, machine, "XC", own)
         if machine.settings.polar_kinematics and not machine.face:
             raise start.location.refuse(
                 "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
