@@ -286,28 +286,6 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert ini.read_bytes() == before
 
 
-def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
-    ini, pins, program = plain_lathe(tmp_path), tmp_path / "spindle.toml", tmp_path / "part.ngc"
-    before = ini.read_bytes()
-    pins.write_text(PINS.replace("drive-pid.command", "drive-pid.comand"))
-    program.write_text("M2\n")
-    assert main(["install", str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
-    wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
-    assert capsys.readouterr().err == (f"g12 install: {wrong}; cure: correct its name\n")
-    assert ini.read_bytes() == before
-    for line, says in (
-        ("HALCMD = unlinkp drive-pid.comand", "HAL: ERROR: pin 'drive-pid.comand' not found"),
-        ("HALCMD = net c-follows drive-pid.comand", "Pin 'drive-pid.comand' does not exist"),
-        ("HALFILE = wrong.hal", "wrong.hal:2: Pin 'drive-pid.comand' does not exist"),
-    ):
-        (ini.parent / "wrong.hal").write_text("# of ours\nnet c-follows drive-pid.comand\n")
-        ini.write_bytes(before.replace(b"plain.hal\n", f"plain.hal\n{line}\n".encode()))
-        assert main(["check", str(ini)]) == 1
-        assert "there is no pin drive-pid.comand" in capsys.readouterr().out
-        assert main(["run", str(program), "--ini", str(ini)]) == 2
-        assert says in capsys.readouterr().err.splitlines()[-1]
-
-
 @needs_kinematics
 def test_installed_with_the_kinematics_of_the_face(tmp_path):
     ini, pins = plain_lathe(tmp_path), tmp_path / "spindle.toml"
