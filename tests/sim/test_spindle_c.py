@@ -151,17 +151,6 @@ def test_m3_turns_nothing_while_it_is_c(lathe, word):
     assert lathe.get("axis.x.pos-cmd") == pytest.approx(30)
 
 
-def test_m3_in_mdi_turns_nothing_while_it_is_c(lathe):
-    as_c(lathe)
-    lathe.mdi("S300 M3", wait=False)
-    lathe.wait_for_error("M3 or M4 while the spindle is C: it does not turn. M5 and C off first")
-    assert abs(lathe.get("spindle-rps")) < 0.001 and lathe.is_c()
-    lathe.abort()
-    for block in ("M5", "G0 C90", "M255"):
-        lathe.mdi(block)
-    assert lathe.errors() == [] and not lathe.is_c()
-
-
 def test_a_spindle_that_cannot_become_c(tmp_path):
     paths = f"{tmp_path}:../../ngc:subs"
     slow = {
