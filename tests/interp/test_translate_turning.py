@@ -280,7 +280,6 @@ def test_the_chamfer_of_fanucs_g76_is_in_tenths_of_the_lead(tracer):
 REFUSED = [
     ("G71 U2. R.5\nG71 P10 Q30 U.4 W.1 F.3\nN10 G0 X20.\nN20 G1 X50.",
      "N30 is not in this program"),
-    ("G71 U2. R.5\nG71 P9 Q20\nN10 G0 X20.\nN20 G1 X50.", "N9 is not in this program"),
     ("G71 U2. R.5\nG71 P10 Q20\nN10 G0 X20.\n/G1 Z-9.\nN20 X50.", "line 6 in the contour: /"),
     ("G71 U2. R.5\nG71 P10 Q20 U-.4\nN10 G0 X20.\nG1 Z-9.\nN20 X50.",
      "the allowance U or W has the"),

@@ -87,7 +87,7 @@ class Polar(SectionKind):
         return self.machine.settings.polar_pole == "refuse"
 
     @property
-    def face(self) -> FaceLimits | None:
+    def face_limits(self) -> FaceLimits | None:
         """The limits on the face, None where sections are made of segments alone."""
         face = self.machine.face
         if not (face and self.machine.settings.polar_kinematics):
@@ -179,7 +179,7 @@ class PolarSteps(StepMaker):
             self.run(move.line, "XC", [segment], True)
 
     def make_all(self, path: Sequence[PathElement], stopping: Sequence[bool]) -> None:
-        limits = self._kind.face
+        limits = self._kind.face_limits
         if not limits:
             super().make_all(path, stopping)
             return
