@@ -55,7 +55,7 @@ def operated(ini, display, folder):
     seen = json.loads((folder / "result.json").read_text())
     if "failed" in seen:
         pytest.fail(f"{seen['failed']}\n{log}")
-    motion = np.fromfile(folder / "samples").reshape(-1, 7)[:, :3]
+    motion = np.fromfile(folder / "samples").reshape(-1, 6)[:, :3]
     with_tool = np.argmax(motion[:, 2] > LENGTH)
     return seen, (folder / "cycles.ngc").read_text(), motion[with_tool:]
 
