@@ -6,7 +6,7 @@ What differs from LinuxCNC and is written anew or refused:
 - FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
 - MOD has the sign of what is divided there, none here: refused.
 - AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
-- #0, the empty variable, has no counterpart.
+- #0, the empty variable, the alarms of #3000 and #3006, and #[…] have no counterpart: refused.
 """
 
 import re
@@ -114,15 +114,10 @@ def variable_number(digits: str) -> int:
     number = int(digits[:9])
     if number in WITHOUT_COUNTERPART:
         raise NotTranslated(f"#{number}, {WITHOUT_COUNTERPART[number]}")
-    if not _is_kept(number) and number not in POSITION_VARIABLES:
+    if not any(number in numbers for numbers in (LOCAL_VARIABLES, *COMMON, POSITION_VARIABLES)):
         say = f'say under [variables] what it is, {digits[:9]} = "…"'
         raise NotTranslated(f"#{digits[:9]} {OTHER_MEANING}; {say}")
     return POSITION_VARIABLES.get(number, number)
-
-
-def _is_kept(number: float) -> bool:
-    """Whether a variable has its number on LinuxCNC, too, and no other meaning there."""
-    return any(number in numbers for numbers in (LOCAL_VARIABLES, *COMMON))
 
 
 def _brackets(text: str, start: int, depth: int) -> Expression:
