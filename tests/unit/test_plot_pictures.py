@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The geometry that pictures show, and that a picture of every kind comes out in every format."""
 
-import re
-import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
 
@@ -282,22 +280,6 @@ def test_holes_in_an_area_stay_holes():
     assert outline.contains_point((7, 0))
     assert len(outline.to_polygons()) == 2
     assert style.outline_of(Point(0, 0).buffer(0)) is None
-
-
-# ---------------------------------------------------------------- layout
-
-
-def test_every_text_of_a_wide_picture_is_on_the_page(tmp_path):
-    """Of the detail of a deviation, too: below the views."""
-    hand = Hand().rapid(z=5).pocket([5, 10], depth=-21.7351).rapid(z=5).rapid(x=200)
-    shown = with_real_motion(hand.pocket([5, 10], depth=-22.1239), MILL, {"Y": 0.01})
-    path = tmp_path / "picture.svg"
-    style.save(picture_of(shown), path)
-    page = ET.parse(path).getroot()
-    height = float(page.get("height").removesuffix("pt"))
-    (last,) = (each for each in page.iter() if (each.text or "").startswith("the window is"))
-    across, down = map(float, re.findall(r"[-.\d]+", last.get("transform"))[:2])
-    assert across > 0 and 0 < down < height
 
 
 # ---------------------------------------------------------------- deviations

@@ -33,7 +33,6 @@ from g12.tools.plot.scene import Scene
 from g12.tools.plot.side_view import draw_side
 from g12.tools.units import plain
 
-WIDE, HIGH, LEAST = 7.0, 5.6, 1.2  # a view
 MOST_SIDE, LEAST_SIDE = 3.2, 0.8  # the height of the side view
 BETWEEN, BESIDE, BELOW = 0.5, 0.25, 0.6  # views, and what is beside and below them
 PANELS, PANEL, PANEL_GAP = 5, (4.55, 1.0), 0.3
@@ -87,28 +86,10 @@ def draw_views(
     return mill_views(page, scene, floors, low, high)
 
 
-def add_view(
-    page: Figure,
-    scene: Scene,
-    low: np.ndarray,
-    high: np.ndarray,
-    names: Sequence[str],
-    pair: Sequence[int] = PLAN,
-    top: float = 0.0,
-) -> SceneView:
-    """Return a view of a portion of the part, to scale."""
-    low, high = low[pair], high[pair]
-    across, up = np.maximum((high - low) * (np.array([WIDE, HIGH]) / (high - low)).min(), LEAST)
-    axes = style.add_axes(page, 0, top, across, up)
-    style.frame(axes, low, high, scene.unit, names)
-    axes.set_aspect("equal", adjustable="datalim")
-    return SceneView(axes, scene, pair)
-
-
 def mill_views(
     page: Figure, scene: Scene, floors: Sequence[Floor], low: np.ndarray, high: np.ndarray
 ) -> list[SceneView]:
-    plan = add_view(page, scene, low, high, "XY")
+    plan = SceneView(style.add_view(page, low[PLAN], high[PLAN], scene.unit, "XY"), scene, PLAN)
     plan.axes.set_xlabel("")
     style.caption(plan.axes, "Plan")
     draw_plan(plan, floors)
@@ -129,7 +110,9 @@ def mill_views(
 def profile_view(page: Figure, scene: Scene, low: np.ndarray, high: np.ndarray) -> SceneView:
     """Draw the toolpath in Z and X, as seen from the front of the lathe."""
     low = np.minimum(low, (0.0, np.inf, np.inf))
-    view = add_view(page, scene, low, high, ("Z", "X (radius)"), PROFILE)
+    names = "Z", "X (radius)"
+    axes = style.add_view(page, low[PROFILE], high[PROFILE], scene.unit, names)
+    view = SceneView(axes, scene, PROFILE)
     view.axes.axhline(0, **style.CENTRE_LINE)
     draw_paths(view)
     draw_arrows(view)
@@ -140,9 +123,11 @@ def profile_view(page: Figure, scene: Scene, low: np.ndarray, high: np.ndarray) 
 def face_view(
     page: Figure, scene: Scene, floors: Sequence[Floor], low: np.ndarray, high: np.ndarray
 ) -> SceneView:
-    low, high = np.minimum(low, 0), np.maximum(high, 0)
-    middle, half = (low + high) / 2, max(high[:2] - low[:2]) / 2
-    view = add_view(page, scene, middle - half, middle + half, ("towards C0", "towards C90"))
+    low, high = np.minimum(low[PLAN], 0), np.maximum(high[PLAN], 0)
+    middle, half = (low + high) / 2, max(high - low) / 2
+    names = "towards C0", "towards C90"
+    axes = style.add_view(page, middle - half, middle + half, scene.unit, names)
+    view = SceneView(axes, scene)
     view.axes.axhline(0, **style.CENTRE_LINE)
     view.axes.axvline(0, **style.CENTRE_LINE)
     style.caption(view.axes, "; ".join(filter(None, ["The part's face", scene.x0_text])))
@@ -156,7 +141,8 @@ def surface_view(
     """Draw a portion of the surface, with C's angles and the position of X0 above it."""
     radius, part = scene.program.surface, scene.path.part
     turn, along, _ = tuple(part.letters)
-    view = add_view(page, scene, low, high, (f"along {turn}", along), top=ANGLES)
+    names = f"along {turn}", along
+    view = SceneView(style.add_view(page, low[PLAN], high[PLAN], scene.unit, names, ANGLES), scene)
     around = radius / scene.unit.mm * getattr(part, "sense", 1.0)
     to_degrees = (lambda length: np.degrees(length / around)), (lambda c: np.radians(c) * around)
     above = view.axes.secondary_xaxis("top", functions=to_degrees)
