@@ -10,7 +10,7 @@ from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import stored_values
 from g12.tools.material.stock import StockText, read_stock
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer

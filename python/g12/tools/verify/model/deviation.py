@@ -10,7 +10,7 @@ import numpy as np
 from shapely.geometry import MultiLineString
 
 from g12.cut_report import CutElement
-from g12.tools.path.nearest import on_segments
+from g12.tools.path.part import on_segments
 from g12.tools.verify.model.cut import Cut, curve_points
 from g12.tools.verify.model.finding import FINDING, WARNING, Finding, kind
 from g12.tools.verify.model.program import TracedProgram

@@ -17,11 +17,19 @@ import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS, remap_lines
 from g12.tools.machine.ini import Ini
-from g12.tools.path.follow import Followed, follow
-from g12.tools.path.nearest import shares_along
-from g12.tools.path.part import C, Part, X, Y, Z, last_zero, part_of, part_of_program
-from g12.tools.path.samples import Samples
-from g12.tools.path.surface import Surface
+from g12.tools.path.follow import Followed, Samples, follow
+from g12.tools.path.part import (
+    C,
+    Part,
+    Surface,
+    X,
+    Y,
+    Z,
+    last_zero,
+    part_of,
+    part_of_program,
+    shares_along,
+)
 from g12.tools.path.track import Track, limits_of
 from g12.tools.preview.moves import Move, Trace
 from g12.tools.units import plain
