@@ -55,7 +55,7 @@ SAID = [  # a machine, its blocks, its stock, a part of the report
     ("mill_mm", [*MILL, "Z-3", *P], "", "was it bored before? (--stock 'bore DIAMETER') [rapid]"),
     ("mill_mm", [*MILL, *P], "100x80x0.5 bore 12", "it goes 2.5 mm below the block [below-stock]"),
     ("mill_mm", [MILL[0], "T4 M6 G43", "M3", "G0 X0 Y0 Z1", *P], "", "S is missing [spindle]"),
-    ("mill_yasnac_mm", [*MILL, "G13 I20 D4", "G0 Z9"], "", "stays 1 mm above the part [air]"),
+    ("mill_yasnac_mm", [*MILL, "G13 I20 D4", "G0 Z9"], "", "part: no move down to the depth"),
     ("mill_mm", [*MILL, *P], "100x80x20", "stock: 100x80x20, its top at Z0\n"),
     ("lathe_mm", [*LATHE, *FLAT, *FLAT], "",
      "line 13: C is where line 5 left it, −39.806°: the zero line is turned"),

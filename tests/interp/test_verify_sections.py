@@ -16,8 +16,8 @@ OUT = ["Z2", "G13.1"]
 def found(tmp_path):
     """Return a function: the codes and lines that verify finds in a section of some lines."""
 
-    def codes(*lines, head=HEAD, machine="lathe_mm", changed=None):
-        proof = prove_lines(tmp_path, [*head, *lines, *OUT], machine, changed)
+    def codes(*lines, head=HEAD):
+        proof = prove_lines(tmp_path, [*head, *lines, *OUT], "lathe_mm")
         assert proof.sections
         return proof.finding_codes
 
@@ -58,15 +58,3 @@ TWO_PASSES = {  # the lines before a section, and in it
 def test_rough_with_an_allowance_and_finish_in_one_section(form, found):
     before, passes = TWO_PASSES[form]
     assert found("G1 X40 C12 F1000", *passes, head=[*before, *HEAD]) == []
-
-
-def test_a_line_that_a_copy_puts_into_a_section_does_not_change_its_plan(found):
-    """On the face a message between two moves counts as a corner, which decides between ways."""
-    ramp = ["G1 X20.06308 C-0.64048 F1448.16", "G41 X10.62862 C-0.3393", "Z-2.282"]
-    corners = ["X10.45765 C-5.69514", "X0.43899 C-11.89976", "X-10.43434 C-5.73773"]
-    corners += ["X-9.92562 C6.57868", "X1.71171 C11.78419", "X10.7996 C5.01654"]
-    end = ["X10.62862 C-0.3393", "G40 X20.06308 C-0.64048"]
-    head = ["G21 G18 G8 G40 G90 G94 G61", "T1 M6", "S500", "G0 X60 Z5 C0", "G12.1"]
-    beside = {"G12": {"POLAR_TOOL_OFFSET": "-0.7"}}
-    lathe = "lathe_mm_kinematics"
-    assert found(*ramp, *corners, *end, head=head, machine=lathe, changed=beside) == []

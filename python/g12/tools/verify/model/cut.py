@@ -152,11 +152,14 @@ class Cut:
     def _circle(self, beside: float) -> tuple[float, float, bool]:
         """Return a circle's wall, its inner radius, whether it is a boss; 0 of what is no circle.
 
-        Without a cutter its words are those of the centre, and the loaded one is ``beside`` it.
+        Of a tapered thread they are the largest and the smallest. Without a cutter its words are
+        those of the centre, and the loaded one is ``beside`` it.
         """
         plan, mm = self.plan, self.mm
         if isinstance(plan, ThreadCut):
-            return plan.large * mm, plan.small * mm * plan.outside, plan.outside
+            grows = plan.taper * (plan.levels[0] - plan.top)
+            large, small = plan.large + max(grows, 0.0), plan.small + min(grows, 0.0)
+            return large * mm, small * mm * plan.outside, plan.outside
         if isinstance(plan, EventCut):
             return plan.wall * mm + beside, plan.boss * mm, plan.side > 0
         if isinstance(plan, PocketCut):

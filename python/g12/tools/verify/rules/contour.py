@@ -169,7 +169,8 @@ def not_open(site: Site) -> Values:
         boss = disc(cut.centre, OPEN_AROUND * cut.wall)
         region = disc(cut.centre, cut.wall + 2 * cut.radius).difference(boss)
     elif isinstance(plan, ThreadCut):
-        region = disc(cut.centre, OPEN_INSIDE * plan.small * cut.mm)
+        narrowest = plan.small + min(plan.taper * (plan.levels[0] - plan.top), 0.0)
+        region = disc(cut.centre, OPEN_INSIDE * narrowest * cut.mm)
     elif program.dialects.get(cut.code) == "bore":
         region = disc(cut.centre, OPEN_INSIDE * cut.report.words.get("K", 0.0) * cut.mm)
     else:
