@@ -11,7 +11,7 @@ import sys
 import pytest
 
 from g12.tools.commands.main import COMMANDS
-from g12.tools.demo.samples import SAMPLES
+from g12.tools.demo import SAMPLES
 from support.sim_machines import ROOT
 
 

@@ -5,9 +5,9 @@ import json
 
 import pytest
 
+from g12.tools import demo as samples_of_demo
 from g12.tools.commands import demo
 from g12.tools.commands.main import main
-from g12.tools.demo import samples as samples_of_demo
 from g12.tools.headless.errors import MachineError
 from support.sim_machines import SIM
 

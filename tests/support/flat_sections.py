@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 
 from g12.machine_ini import face_of
-from g12.tools.path.part import ROLES, Part
-from g12.tools.path.surface import Surface
+from g12.tools.path.part import ROLES, Part, Surface
 from g12.tools.path.track import feed_length, rate
 from g12.tools.preview.tracer import Tracer
 from support.contour_geometry import apart, distances

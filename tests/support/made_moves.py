@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.path.track import Limits
 from g12.tools.preview.moves import Modes, Move, ToolTable, Trace
 

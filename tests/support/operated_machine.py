@@ -16,7 +16,7 @@ from g12.tools.headless.errors import Timeout
 from g12.tools.headless.machine import Run
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.material.stock import StockText
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.preview.moves import Error, Message, modes
 from g12.tools.preview.tracer import start_block, write_program
 from support.judged_programs import Proof, prove

@@ -11,7 +11,7 @@ from g12.tools.install.config.findings import NOTE, PROBLEM
 from g12.tools.install.lathe import hal
 from g12.tools.install.lathe.spindle_c import Pins
 from g12.tools.install.rules import findings_of
-from g12.tools.preview.loading import python_error
+from g12.tools.preview.tracer import python_error
 from support.small_configs import (
     HAAS,
     LATHE,

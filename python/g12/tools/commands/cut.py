@@ -8,7 +8,7 @@ from g12.tools.commands.arguments import Parser, add_override, program_parser
 from g12.tools.headless.machine import run_program
 from g12.tools.machine.ini import Ini
 from g12.tools.material.stock import StockText
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import Trace
 from g12.tools.progress import working

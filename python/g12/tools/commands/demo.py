@@ -6,8 +6,7 @@ import os
 from pathlib import Path
 
 from g12.tools.commands.arguments import FAILURES, FINDING, GOOD, Parser, sentence_of
-from g12.tools.demo.report import show
-from g12.tools.demo.samples import PROGRAM_FOLDER, SAMPLES, runs
+from g12.tools.demo import PROGRAM_FOLDER, SAMPLES, runs, show
 from g12.tools.errors import UsageError
 from g12.tools.headless.namespaces import has_namespaces
 

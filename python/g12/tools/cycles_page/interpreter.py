@@ -15,8 +15,7 @@ from g12.tools.cycles_page.machine import MachineState
 from g12.tools.cycles_page.sketch import MESSAGE, READY, REFUSED, Sketch
 from g12.tools.forms.table import MILL, ROUND, Form
 from g12.tools.machine.ini import Ini, IniError, read_ini
-from g12.tools.path.part import Part, X, Z, last_zero
-from g12.tools.path.surface import Surface
+from g12.tools.path.part import Part, Surface, X, Z, last_zero
 from g12.tools.path.track import program_seconds
 from g12.tools.preview.moves import IS_LENGTH, Move, Trace
 from g12.tools.preview.tracer import Tracer

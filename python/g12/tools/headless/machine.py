@@ -25,7 +25,7 @@ from g12.tools.errors import ProgramError
 from g12.tools.headless.errors import SENT, MachineError, StartupError, Timeout
 from g12.tools.headless.namespaces import Isolated
 from g12.tools.machine.ini import Ini, Overrides, read_ini
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.preview.ended import explained_text
 from g12.tools.preview.moves import Error, Message, Modes, modes
 from g12.tools.preview.tracer import (

@@ -8,19 +8,43 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
 from g12.machine_ini import AXIS_LETTERS
-from g12.tools.path.nearest import on_segments, shares_along
-from g12.tools.path.part import Y, plane_axes
-from g12.tools.path.samples import Samples
+from g12.tools.path.part import Y, on_segments, plane_axes, shares_along
 from g12.tools.path.track import Track
 from g12.tools.preview.moves import IS_LENGTH, Move
 
 LOOK_AHEAD = 0.25  # mm: a run may be this far ahead on the path, where it cuts a corner
 SAME_RADIUS = 1e-6  # mm
+
+
+@dataclass(frozen=True)
+class Samples:
+    """The actual motion of a machine, recorded at the servo rate, numpy arrays of equal length.
+
+    ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
+    ``velocity`` is the speed along the path, machine units per second; ``line`` the program line in
+    motion; ``kind`` 0 for standstill, 1 rapid, 2 feed, 3 arc, 4 tool change, 5 probe, 6 rotary
+    unlock.
+    """
+
+    time: np.ndarray
+    axes: dict[str, np.ndarray]
+    velocity: np.ndarray
+    line: np.ndarray
+    kind: np.ndarray
+
+    def moving(self) -> np.ndarray:
+        return self.kind != 0
+
+    def only(self, chosen: np.ndarray) -> Self:
+        """Return the samples of a mask."""
+        axes = {letter: values[chosen] for letter, values in self.axes.items()}
+        velocity, line, kind = (each[chosen] for each in (self.velocity, self.line, self.kind))
+        return type(self)(self.time[chosen], axes, velocity, line, kind)
 
 
 @dataclass(frozen=True)

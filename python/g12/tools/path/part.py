@@ -33,6 +33,10 @@ STRETCH = 32  # chords whose swept area is computed at once
 X, Y, Z, C = 0, 1, 2, 5
 FLAT = 17  # the plane whose arcs keep their level
 INCHES = 1  # length_units of the interpreter
+ROUGH = 0.005  # coarser chord error, where the finer one gives too many points
+MOST_DISTANCES, BATCH = 3_000_000, 20_000
+LONGEST_SEGMENT, LEAST_SEGMENTS, MOST_SEGMENTS = 0.5, 4, 5000  # mm, of a move on a surface
+POINT_LENGTH_SQUARED = 1e-30  # squared length: a shorter segment is a point
 
 
 class Roles(NamedTuple):
@@ -111,6 +115,37 @@ class Part:
         positions = (move.start, move.end)
         start, end = (complex(position[X] - self.centre, position[Y]) for position in positions)
         return cmath.phase(end * start.conjugate()) if start.imag or end.imag else 0.0
+
+
+@dataclass(frozen=True)
+class Surface(Part):
+    """The unrolled surface of a cylinder of ``radius``, mm, for a tool that points at its axis.
+
+    The coordinates are the length around it, the length along its axis, and the height above the
+    axis. Seen from outside, with the axis upwards, the length around grows to the right. A move is
+    straight there; points between its ends are for measuring. ``sense`` is 1 where the
+    length around grows with the angle.
+    """
+
+    radius: float = 0.0
+    sense: float = 1.0
+
+    @property
+    def letters(self) -> str:
+        return "".join(AXIS_LETTERS[axis] for axis in self.roles[:3])
+
+    def points(self, positions: np.ndarray) -> np.ndarray:
+        turn, along, height, _ = self.roles
+        positions = np.atleast_2d(positions)
+        around = np.radians(positions[:, turn]) * self.radius * self.sense
+        return np.stack([around, positions[:, along], positions[:, height]], axis=1)
+
+    def _segments(self, move: Move, chord_error: float) -> int:
+        if move.kind == "arc":
+            return super()._segments(move, chord_error)
+        start, end = self.points(np.array([move.start, move.end]))
+        segments = math.ceil(np.linalg.norm(end - start) / LONGEST_SEGMENT)
+        return min(max(LEAST_SEGMENTS, segments), MOST_SEGMENTS)
 
 
 def part_of(ini: Ini) -> Part:
@@ -226,6 +261,60 @@ def paths(part: Part, moves: Iterable[Move], chord_error: float = CHORD_ERROR) -
         else:
             found.append([points])
     return [np.concatenate(segments) for segments in found]
+
+
+def on_segments(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the points of segments next to points.
+
+    The arguments are arrays (..., d) of points, segment starts and segment vectors; they are
+    broadcast.
+    """
+    return starts + shares_along(points, starts, along)[..., None] * along
+
+
+def shares_along(points: np.ndarray, starts: np.ndarray, along: np.ndarray) -> np.ndarray:
+    """Return the shares of segments, 0 to 1, at their nearest points; see ``on_segments``."""
+    squares = np.maximum(np.einsum("...i,...i->...", along, along), POINT_LENGTH_SQUARED)
+    return np.clip(np.einsum("...i,...i->...", points - starts, along) / squares, 0.0, 1.0)
+
+
+class Gap(NamedTuple):
+    """The point of one path that is farthest from another, and the nearest point there."""
+
+    size: float
+    point: np.ndarray
+    nearest: np.ndarray
+
+
+def gap_between(part: Part, moves: Sequence[Move], others: Sequence[Move]) -> Gap | None:
+    """Return the point where two paths are farthest apart.
+
+    None where the distance has no meaning, as for axes that the part does not know, or takes too
+    long.
+    """
+    known = [axis in ("XYZC" if part.turning else "XYZ") for axis in AXIS_LETTERS]
+    ends = np.array([(move.start, move.end) for move in [*moves, *others]])
+    beyond = (ends[:, 0] != ends[:, 1]) & np.logical_not(known)
+    for chord_error in (CHORD_ERROR, ROUGH) if not beyond.any() else ():
+        lines = [paths(part, some, chord_error) for some in (moves, others)]
+        counts = [sum(map(len, some)) for some in lines]
+        if counts[0] * counts[1] <= MOST_DISTANCES:
+            return max(_farthest(*lines), _farthest(*lines[::-1]), key=lambda gap: gap.size)
+    return None
+
+
+def _farthest(lines: Sequence[np.ndarray], others: Sequence[np.ndarray]) -> Gap:
+    """Return the point of polylines (n, 3) that is farthest from the others."""
+    starts = np.concatenate([line[:-1] for line in others])
+    along = np.concatenate([np.diff(line, axis=0) for line in others])
+    points, gaps = np.concatenate(lines), []
+    for batch in np.array_split(points, len(points) * len(starts) // BATCH + 1):
+        near = on_segments(batch[:, None], starts, along)
+        away = np.linalg.norm(batch[:, None] - near, axis=2)
+        worst = int(away.min(axis=1).argmax())
+        nearest = int(away[worst].argmin())
+        gaps.append(Gap(float(away[worst, nearest]), batch[worst], near[worst, nearest]))
+    return max(gaps, key=lambda gap: gap.size)
 
 
 def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:

@@ -19,8 +19,7 @@ import numpy as np
 from patiencediff import PatienceSequenceMatcher
 
 from g12.machine_ini import AXIS_LETTERS
-from g12.tools.path.farthest_apart import gap_between
-from g12.tools.path.part import Part, arc_points
+from g12.tools.path.part import Part, arc_points, gap_between
 from g12.tools.preview.moves import IS_LENGTH, Move
 from g12.tools.regress.recording_text import (
     Note,

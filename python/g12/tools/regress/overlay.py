@@ -12,8 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.farthest_apart import Gap, gap_between
-from g12.tools.path.part import Part, paths
+from g12.tools.path.part import Gap, Part, gap_between, paths
 from g12.tools.plot import style
 from g12.tools.preview.moves import Move
 from g12.tools.regress.differences import Difference

@@ -15,9 +15,8 @@ from g12.tools.errors import ProgramError, UsageError
 from g12.tools.machine.filter import opened_program
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import part_of
-from g12.tools.preview.loading import linuxcnc_version, python_error
 from g12.tools.preview.moves import Move
-from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.preview.tracer import TraceFailure, Tracer, linuxcnc_version, python_error
 from g12.tools.progress import Report, silent
 from g12.tools.regress.differences import TOLERANCE, Difference, Tolerance, differences
 from g12.tools.regress.recording_text import (

@@ -10,7 +10,7 @@ from g12.tools.machine.filter import OpenedProgram
 from g12.tools.machine.ini import Ini
 from g12.tools.machine.stored_positions import stored_values
 from g12.tools.material.stock import StockText, read_stock
-from g12.tools.path.samples import Samples
+from g12.tools.path.follow import Samples
 from g12.tools.preview.ended import ended, explained
 from g12.tools.preview.moves import Trace
 from g12.tools.preview.tracer import Parameters, Tools, Tracer
@@ -28,7 +28,6 @@ from g12.tools.verify.model.finding import (
 )
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.plain import judge_plain
 from g12.tools.verify.remains import judge_cuts
 from g12.tools.verify.rules import contour, spindle, tool, whole  # noqa: F401  # the table
 from g12.tools.verify.rules.table import judge_rules
@@ -117,7 +116,6 @@ def judge_trace(
     found += judge_rapids(program, solids)
     tell("looking for what remains")
     found += judge_cuts(program, solids)
-    found += judge_plain(program, solids)
     found += judge_in_part(program, solids)
     found += judge_deviations(deviations, program, tolerance)
     expected = [*expectations(program.file), *((code, EVERYWHERE) for code in accept)]

@@ -15,8 +15,13 @@ from g12.settings import Settings
 from g12.tools.install.config.features import feature_of
 from g12.tools.install.config.ini_edit import IniText
 from g12.tools.machine.ini import Ini, IniError, IniLine, Overrides
-from g12.tools.preview.loading import linuxcnc_version, load_failure, python_error
-from g12.tools.preview.tracer import TraceFailure, Tracer
+from g12.tools.preview.tracer import (
+    TraceFailure,
+    Tracer,
+    linuxcnc_version,
+    load_failure,
+    python_error,
+)
 from g12.tools.system import PROGRAM
 
 ANSWER = "G12 CONFIG "
