@@ -18,6 +18,7 @@ from g12.cylinder import (
 from g12.errors import Refusal
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
+from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock
 from g12.section.effects import codes_of_section
 from g12.section.line import BlockLocation
@@ -47,6 +48,20 @@ def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
     start = Start(z, math.radians(c), x)
     return Contour(math.radians(c) * RADIUS, z, x, plane=CYLINDER_WORDS.plane, start=start)
+
+
+def runs(contour):
+    """Return the runs of segments."""
+    return [step for step in section().plan(contour).steps if isinstance(step, Segments)]
+
+
+def test_a_little_z_and_depth_are_left_to_the_next_move_and_to_the_end():
+    contour = empty()
+    contour.straight(10.0, 0.0004, at=1, feed=100.0)
+    contour.straight(20.0, 0.0008, 21.9996, at=2, feed=100.0)
+    made = [(run.line, run.axes, run.segments[0][::2]) for run in runs(contour)]
+    ends = (1, "ZC", (0.0, 22.0)), (2, "ZCX", (0.0, 22.0)), (2, "ZX", (0.0008, 21.9996))
+    assert made == [*ends]
 
 
 @settings(max_examples=150)

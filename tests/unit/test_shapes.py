@@ -229,3 +229,29 @@ def test_rounds_without_number_are_refused(sides):
         f"polar_polygon: stock_diameter and depth_per_pass make {(most + 1) * moves} moves,"
         " the most is 100000"
     )
+
+
+# ---------------------------------------------------------------- holes
+
+
+def test_how_far_the_axes_go_to_holes():
+    assert planned("face_holes", first_angle=30).extent == ((15, 15), (-8, 5), (0, 330))
+    side = planned("side_holes", found=FOUND._replace(x=21.0), step_angle=-20)
+    assert side.locals["travel"] == 2
+    assert side.extent == ((12, 22), (-10, -10), (-60, 0))
+
+
+@pytest.mark.parametrize(
+    ("peck", "expected"),
+    [
+        (LEFT_OUT, (1, 8, 0, 0)),
+        (3, (3, 3, 1, 0.254)),
+        (-3, (3, 3, 0, 0.254)),
+        (8, (1, 8, 1, 0.254)),
+        (4, (2, 4, 1, 0.254)),
+        (0.2, (40, 0.2, 1, 0.1)),
+    ],
+)
+def test_pecks(peck, expected):
+    numbers = numbers_of("face_holes", peck=peck)
+    assert taken(numbers, "pecks", "step", "full", "clear") == pytest.approx(expected)
