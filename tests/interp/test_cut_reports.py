@@ -13,7 +13,6 @@ from g12.cut_report import CUT, END, CutElement, ProgramFrame, UsedCutter
 from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import TraceFailure, Tracer
 from support.clamped import with_clamp
-from support.faulty_machines import with_fault
 from support.sim_machines import SIM
 
 MILL = ["G21 G17 G90 G94 G40 G49", "T1 M6", "S1000 M3", "F300", "G0 X0 Y0 Z1"]
@@ -171,19 +170,21 @@ def test_another_preview_shows_nothing_of_them(tmp_path):
     assert CUT not in seen and END not in seen
 
 
-def test_no_record_is_made_where_nobody_asks(tmp_path):
-    made = tmp_path / "made"
-    body = f"open({str(made)!r}, 'a').write('made'); return original()"
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.host.messages.report_of", body, tmp_path)
-    for reports in (False, True):
-        with Tracer(ini, tools=TOOLS, reports=reports) as tracer:
-            tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])
-        assert made.exists() is reports
+OTHERWISE = f"""\
+import sys
+sys.path.insert(0, "{SIM.parents[1] / "python"}")
+import remap
+from g12 import cut_report
+def other(report, text_of=cut_report.report_text):
+    return text_of(report).replace('schema": 1', 'schema": 9')
+cut_report.report_text = other
+"""
 
 
 def test_a_machine_whose_package_reports_otherwise_is_named(tmp_path):
-    body = "return original().replace('schema\": 1', 'schema\": 9')"
-    ini = with_fault(read_ini(SIM / "mill_mm.ini"), "g12.cut_report.report_text", body, tmp_path)
+    (tmp_path / "toplevel.py").write_text(OTHERWISE)
+    overrides = {"PYTHON": {"TOPLEVEL": str(tmp_path / "toplevel.py")}}
     says = pytest.raises(TraceFailure, match="reports its cuts by schema 9, this one reads 1")
-    with Tracer(ini, tools=TOOLS, reports=True) as tracer, says:
+    options = {"tools": TOOLS, "reports": True, "overrides": overrides}
+    with Tracer(SIM / "mill_mm.ini", **options) as tracer, says:
         tracer.trace_text([*MILL, "G13 I6 Z-1 D1", "M2"])

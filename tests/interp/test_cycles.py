@@ -186,16 +186,6 @@ def test_one_message_for_each_tool_that_d_does_not_name(machine):
     assert max(radii) == pytest.approx(15.0)
 
 
-def test_a_d_that_still_counts_is_reported_with_the_next_tool():
-    lines = ["F300 T1 M6", "G12 I20 D1", "T2 M6", "G12 I20", "G12 I20", "M2"]
-    with Tracer(SIM / "mill_mm.ini", tools=CUTTERS) as mill:
-        traced = mill.trace_text(lines)
-        refused = mill.trace_text(["F300 T1 M6", "G12 I3 D2", "M2"])
-    text = "G12: the cycle uses the D last commanded, diameter 6; the loaded tool T2 has 10"
-    assert [tuple(message) for message in traced.messages] == [(4, text)]
-    assert refused.error and refused.messages == []
-
-
 # ---------------------------------------------------------------- Yasnac
 
 

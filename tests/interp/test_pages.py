@@ -191,6 +191,7 @@ MESSAGES = {
         LATHE,
         "o1 sub\nG12.1\nG1 X50 F200\no1 endsub\no1 call",
         "F0\nG12.1\nG1 X50\nG13.1",
+        "G0 X0\nG12.1\nG1 X50\nG13.1",
         "G12.1\nG1 X620\nG13.1",
         "G12.1\nG1 Z-1\nG0 X20\nG13.1",
     ),

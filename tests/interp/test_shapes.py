@@ -13,10 +13,9 @@ import pytest
 from g12.shapes import pockets, polygon
 from g12.shapes.entries import ShapeEntries, ShapeMachine
 from g12.state import Tool
-from g12.tools.preview.tracer import Tracer
 from support.planner_context import MM
 from support.polar_programs import FIRST, feed_moves, in_plane, tracer
-from support.sim_machines import SIM, kept_tracer
+from support.sim_machines import kept_tracer
 
 LEFT = -9999
 CUTTER = {1: 6.0, 2: 5.0, 3: 3.0}
@@ -164,13 +163,6 @@ def refused(lathe, text):
 def test_a_call_is_refused_by_name_where_it_cannot_be_cut(lathe, shape, entries, changed, rule):
     text = program(call(shape, **entries), **changed)
     assert refused(lathe, text) == f"{shape} line 5: {rule}"
-
-
-def test_a_cutter_of_the_table_has_its_unit_where_the_programs_is_another():
-    with Tracer(SIM / "lathe_inch.ini", tools={1: 0.25}) as inch:
-        text = program(call("polar_slot", width=0.25, length=1), tool=1)
-        rule = "width 0.25 must not be less than the cutter's 6.35 mm"
-        assert refused(inch, text) == f"polar_slot line 5: {rule}"
 
 
 @pytest.mark.parametrize("code", ["G12.4", "G13.4"])

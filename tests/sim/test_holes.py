@@ -141,15 +141,3 @@ def test_a_shape_is_cut_with_a_light_drag(lathe):
     cutting = (z < 0) & np.isin(samples.kind[-len(z) :], (FEED, ROUND))
     assert drag[cutting].all() and (z[cutting] < -0.9).any() and not closed[cutting].any()
     assert not drag[0] and not drag[-1]
-
-
-@in_segments
-def test_in_mdi(lathe):
-    lathe.reset()
-    for block in START:
-        lathe.mdi(block)
-    before = lathe.stat().modes
-    lathe.mdi(FACE)
-    assert not lathe.errors() and lathe.stat().modes == before
-    lathe.mdi("o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [0] [0] [7]")
-    assert [error.text for error in lathe.errors()] == ["face_holes: kind 7 must be at most 3"]

@@ -151,17 +151,6 @@ def test_m3_turns_nothing_while_it_is_c(lathe, word):
     assert lathe.get("axis.x.pos-cmd") == pytest.approx(30)
 
 
-def test_m3_in_mdi_turns_nothing_while_it_is_c(lathe):
-    as_c(lathe)
-    lathe.mdi("S300 M3", wait=False)
-    lathe.wait_for_error("M3 or M4 while the spindle is C: it does not turn. M5 and C off first")
-    assert abs(lathe.get("spindle-rps")) < 0.001 and lathe.is_c()
-    lathe.abort()
-    for block in ("M5", "G0 C90", "M255"):
-        lathe.mdi(block)
-    assert lathe.errors() == [] and not lathe.is_c()
-
-
 def test_a_spindle_that_cannot_become_c(tmp_path):
     paths = f"{tmp_path}:../../ngc:subs"
     slow = {
@@ -284,28 +273,6 @@ def test_installed_on_a_plain_lathe(tmp_path):
     assert main(["install", str(ini), *options]) == 0  # again: nothing
     assert main(["uninstall", str(ini)]) == 0
     assert ini.read_bytes() == before
-
-
-def test_a_pin_that_does_not_exist_is_named(tmp_path, capsys):
-    ini, pins, program = plain_lathe(tmp_path), tmp_path / "spindle.toml", tmp_path / "part.ngc"
-    before = ini.read_bytes()
-    pins.write_text(PINS.replace("drive-pid.command", "drive-pid.comand"))
-    program.write_text("M2\n")
-    assert main(["install", str(ini), "--with", "polar", "spindle-c", "--pins", str(pins)]) == 1
-    wrong = '[pins] position = "drive-pid.comand": there is no such pin: LinuxCNC would not start'
-    assert capsys.readouterr().err == (f"g12 install: {wrong}; cure: correct its name\n")
-    assert ini.read_bytes() == before
-    for line, says in (
-        ("HALCMD = unlinkp drive-pid.comand", "HAL: ERROR: pin 'drive-pid.comand' not found"),
-        ("HALCMD = net c-follows drive-pid.comand", "Pin 'drive-pid.comand' does not exist"),
-        ("HALFILE = wrong.hal", "wrong.hal:2: Pin 'drive-pid.comand' does not exist"),
-    ):
-        (ini.parent / "wrong.hal").write_text("# of ours\nnet c-follows drive-pid.comand\n")
-        ini.write_bytes(before.replace(b"plain.hal\n", f"plain.hal\n{line}\n".encode()))
-        assert main(["check", str(ini)]) == 1
-        assert "there is no pin drive-pid.comand" in capsys.readouterr().out
-        assert main(["run", str(program), "--ini", str(ini)]) == 2
-        assert says in capsys.readouterr().err.splitlines()[-1]
 
 
 @needs_kinematics

@@ -230,27 +230,6 @@ def test_guard_waits_until_the_joints_are_where_they_go(kinematics):
     assert types == [0] * 5 + [1] * 5
 
 
-def test_no_jog_on_the_face(kinematics):
-    kinematics.guard(request=1.0)
-    kinematics.face(20, 0, 0)
-    kinematics.guard(program=0)
-    assert kinematics.pins.jog_inhibit
-    kinematics.guard(program=1, request=0.0)
-    kinematics.guard()
-    assert not kinematics.pins.jog_inhibit
-
-
-@pytest.mark.parametrize(("override", "feed"), [(1.2, 1.0), (2.4, 0.5)])
-def test_an_override_beyond_the_most_is_taken_back(kinematics, override, feed):
-    kinematics.pins.unit = 25.4
-    kinematics.guard(request=1.0, speed=25.4, most_override=1.2)
-    kinematics.face(30.0, 0.0, 0.0)
-    for _ in range(9):  # LinuxCNC's feed goes down with the share of the cycle before
-        kinematics.pins.feed_upm = 60.0 * override * kinematics.pins.feed
-        kinematics.library.run_guard()
-    assert kinematics.pins.feed == pytest.approx(feed)
-
-
 @pytest.mark.parametrize(
     ("pins", "refused"),
     [

@@ -2,7 +2,8 @@
 """The stock, a bar or a block, from the user's text, and its position.
 
 A bar turns about the spindle's centre, its face is the program's Z0. A block's top is the
-program's Z0; the program's X0 Y0 is its middle, unless the text has its corner. Its sides are along
+program's Z0, and the program's X0 Y0 is its middle, unless the text has its corner: its least X and
+Y, or X, Y and Z. Its sides are along
 the program's X and Y. A bore is in the middle of every pocket. Lengths are millimetres in machine
 coordinates, except in texts.
 """
@@ -23,10 +24,12 @@ from g12.tools.units import UNITS, Unit
 
 NUMBER, SIGNED, UNIT_NAME = r"(\d+\.?\d*|\.\d+)", r"([-+]?(?:\d+\.?\d*|\.\d+))", r"\s*(mm|in)?"
 BAR = re.compile(rf"(?:bar\s*)?{NUMBER}{UNIT_NAME}")
-SIZES = rf"(?:block\s*)?{NUMBER}x{NUMBER}x{NUMBER}(?:@{SIGNED},{SIGNED})?"
+SIZES = rf"(?:block\s*)?{NUMBER}x{NUMBER}x{NUMBER}(?:@{SIGNED},{SIGNED}(?:,{SIGNED})?)?"
 BLOCK = re.compile(rf"(?:{SIZES})?\s*(?:bore\s*{NUMBER})?{UNIT_NAME}")
 BAR_FORMS = "a bar's diameter: 40, 40mm, 1.5in"
-BLOCK_FORMS = "100x80x20 (X, Y, Z), 100x80x20@-10,-10 (with its corner), bore 30, or both"
+BLOCK_FORMS = (
+    "100x80x20 (X, Y, Z), 100x80x20@-10,-10 or @-10,-10,0 (its least X, Y, Z), bore 30, or both"
+)
 Circle = tuple[Sequence[float], float]  # its centre, its radius
 UNITS_MM = {unit.name: unit.mm for unit in UNITS.values()}
 
@@ -35,7 +38,7 @@ class Stock(NamedTuple):
     """A bar by its ``diameter``, or a block by its ``size`` in X, Y and Z; 0 and None if it is not.
 
     ``corner`` is the block's least X and Y from the program's zero, None for a block in the middle;
-    ``bore`` the diameter of the holes in it.
+    ``top`` its top from there, ``bore`` the diameter of the holes in it.
     """
 
     text: str
@@ -43,6 +46,7 @@ class Stock(NamedTuple):
     size: tuple[float, ...] | None = None
     corner: tuple[float, ...] | None = None
     bore: float = 0.0
+    top: float = 0.0
 
     @property
     def is_whole(self) -> bool:
@@ -91,4 +95,5 @@ def read_stock(text: str, turning: bool, unit: Unit) -> Stock:
         return Stock(words, diameter=sizes[0])
     size = tuple(sizes[:3]) if sizes[0] else None
     corner = tuple(sizes[3:5]) if numbers[3] else None
-    return Stock(words, size=size, corner=corner, bore=sizes[5])
+    top = sizes[5] + sizes[2] if numbers[5] else 0.0
+    return Stock(words, size=size, corner=corner, bore=sizes[6], top=top)

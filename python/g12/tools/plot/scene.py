@@ -100,8 +100,8 @@ class Scene:
         """The moves at feed whose tool points at the axis: the face's picture shows their path."""
         if not self.path.part.turning or self.program.surface:
             return []
-        sideways = self.program.sideways
-        return [index for index in self.fed if sideways[index] == {True}]
+        sides = self.program.sides
+        return [index for index in self.fed if sides[index] and min(sides[index]) > 0]
 
     @cached_property
     def turned(self) -> list[int]:

@@ -11,14 +11,24 @@ from g12.tools.material.material import ALLOWED, Touch
 from g12.tools.path.part import C, X, Y, Z, disc
 from g12.tools.preview.moves import Event, Move
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
-from g12.tools.verify.model.program import TracedProgram, straight_down, turns_part
-from g12.tools.verify.model.solid import FACE, Solids
+from g12.tools.verify.model.program import (
+    RUNS,
+    Stretch,
+    TracedProgram,
+    straight_down,
+    turns_part,
+)
+from g12.tools.verify.model.solid import FACE, NEAR, Solids
 
 RAPID = kind(
     "rapid", FINDING, "a rapid goes {how} {area:mm2} of material, at {at:xyz}{to:to}{hint}"
 )
-BY_MACHINE = kind("rapid-by-machine", NOT_JUDGED, "low rapids by G53, G28 or G30")
-ROTARY = kind("rotary", NOT_JUDGED, "what follows: A or B has turned what was solid")
+BY_MACHINE = kind(
+    "rapid-by-machine",
+    NOT_JUDGED,
+    "rapids from below the top by G53, G28 or G30: their way depends on the work offset (--var)",
+)
+ROTARY = kind("rotary", NOT_JUDGED, "this and what follows: A or B turns what was solid")
 C_OUTSIDE = kind("c-outside", NOT_JUDGED, "what is cut where C turns at feed outside of a section")
 OTHER_TOOL = kind(
     "rapid-other-tool",
@@ -33,11 +43,12 @@ PER_TURN = 0.6  # mm: no tool plunges so fast
 CHANGE = kind("change-in-part", FINDING, "the tool is changed in the part")
 STOP = kind("stop-in-part", FINDING, "the spindle stops (M5) in the part")
 START = kind("start-in-part", WARNING, "the spindle starts ({code}) in the part")
+HELD = kind("start-in-cut", FINDING, "the spindle starts ({code}) with the cutter in the material")
 ROTARY_IN_PART = kind("rotary-in-part", FINDING, "A or B turns with the tool in the part")
 END = kind("ends-in-part", FINDING, "the program ends with the tool in the part")
 KINDS = {"tool": CHANGE, "M5": STOP, "M3": START, "M4": START}
 PLUNGE = kind(
-    "plunge", WARNING, "it plunges at {feed:feed} with its centre: can the tool cut there?"
+    "plunge", WARNING, "T{tool} mills, and plunges with its centre here: can it cut there?"
 )
 PLUNGE_FAST = kind(
     "plunge-fast", FINDING, "it plunges at {feed:feed}, {per_turn:fine} a revolution"
@@ -48,26 +59,27 @@ def judge_rapids(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Yield every rapid through solid material, and those that cannot be judged."""
     if program.turned_at is not None:
         yield program.found(ROTARY, program.turned_at)
-    for index, move in enumerate(program.moves):
-        if move.kind == "rapid" and program.is_known(index):
-            yield from _judge(index, program, solids)
-        elif move.kind == "feed" and _turns_in_bar(index, program, solids):
-            yield program.found(C_OUTSIDE, index)
+    for stretch in program.stretches:
+        if not stretch.is_rapid:
+            turning = (i for i in stretch.moves if _turns_in_bar(i, stretch.radius, solids))
+            yield from (program.found(C_OUTSIDE, index) for index in turning)
+        elif stretch.is_known:
+            yield from _judge(stretch, program, solids)
 
 
-def _turns_in_bar(index: int, program: TracedProgram, solids: Solids) -> bool:
+def _turns_in_bar(index: int, radius: float, solids: Solids) -> bool:
     """Return whether C turns at feed, outside of a section, with the tool in the bar."""
-    move = program.moves[index]
+    program, move = solids.program, solids.program.moves[index]
     if not program.turning or move.start[C] == move.end[C] or move.remap:
         return False
-    slide = min(move.start[X], move.end[X]) - program.zero[X] - program.cutter(index)
+    slide = min(move.start[X], move.end[X]) - program.zero[X] - radius
     return (not solids.bar or slide < solids.bar) and min(move.start[Z], move.end[Z]) < program.z0
 
 
-def _judge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
+def _judge(stretch: Stretch, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     """Judge a rapid on each side that its tool may be on: it is a finding if it is one on all."""
-    move, sides = program.moves[index], program.sides[index]
-    radius, below = program.cutter(index), {}
+    index, sides, radius = stretch.moves[0], stretch.sides, stretch.radius
+    move, below = program.moves[index], {}
     for side in sides or {FACE}:
         points = _known_tip(index, program, side)
         if points[:, 2].min(initial=np.inf) < solids.top(side) - LEAST:
@@ -75,7 +87,7 @@ def _judge(index: int, program: TracedProgram, solids: Solids) -> Iterator[Findi
     if move.by_machine and not program.is_placed:
         if below and not _is_upward(move, below):
             yield program.found(BY_MACHINE, index)
-    elif sides is None or radius <= ALLOWED:
+    elif not sides or radius <= ALLOWED:
         if len(below) == len(sides or {FACE}):
             yield program.found(OTHER_TOOL, index)
     else:
@@ -92,12 +104,11 @@ def _known_tip(index: int, program: TracedProgram, side: float) -> np.ndarray:
 
     One to a machine position is known where it begins.
     """
-    points = program.tip(index, side)
+    points, known = program.tip(index, side), program.known_after
+    before = index > 0 and known[index - 1]
     if program.moves[index].by_machine and not program.is_placed:
-        return points[:1] if program.known_before[index] else points[:0]
-    if not program.known_after[index]:
-        return points[:0]
-    return points if program.known_before[index] else points[-1:]
+        return points[:before]
+    return points[0 if before else -1 :] if known[index] else points[:0]
 
 
 def _is_upward(move: Move, sides: Container[float]) -> bool:
@@ -129,14 +140,15 @@ def _rapid(
 
 
 def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    last = len(program.moves) - 1
+    last, runs = len(program.moves) - 1, False
     for event in program.trace.events:
         code = event.text.split()[0]
         if code in KINDS and 0 < event.at <= last + (code != "M5"):
-            yield from _event(code, event, program, solids)
+            yield from _event(code, event, runs, program, solids)
+        runs = code in RUNS or (runs and code != "M5")
     if last >= 0:
         tips = in_part(last, program, solids, plain=True)
-        yield from (program.found(END, last, tip) for tip in tips)
+        yield from (Finding(END, program.end_line, {}, tip) for tip in tips)
     turned = program.turned_at
     if turned and turns_part(program.moves[turned]):
         tips = in_part(turned - 1, program, solids)
@@ -151,21 +163,35 @@ def in_part(
 
     ``plain``: also that of a lathe's tool that no code of the package moves, beyond the face.
     """
-    if not program.known_after[index] or not program.is_known(index):
+    stretch = program.stretch_at(index)
+    if not program.known_after[index] or not stretch.is_known:
         return
-    for side in program.sides[index] or ({FACE} if plain and program.turning else ()):
+    for side in stretch.sides or ({FACE} if plain and program.turning else ()):
         tip = program.tip(index, side)[-1]
-        if solids.surrounds(tip, index, side):
+        if solids.surrounds(tip, stretch.radius, side):
             yield tip
 
 
-def _event(code: str, event: Event, program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    """Yield a tool change, a start or a stop of the spindle with the tip in the part."""
+def _event(
+    code: str, event: Event, runs: bool, program: TracedProgram, solids: Solids
+) -> Iterator[Finding]:
+    """Yield a tool change, a stop of the spindle or a start with the tip in the part."""
     lifted = code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
     if lifted or (code == "M5" and _is_followed(event, program)):
         return
+    in_cycle = any(e.line == event.line and e.text == "M5" for e in program.trace.events)
+    starts = code in RUNS and not runs and not in_cycle
     for tip in in_part(event.at - 1, program, solids, plain=code == "tool"):
-        yield Finding(KINDS[code], event.line, {"code": code}, tip)
+        held = starts and _is_held(tip, event.at - 1, program, solids)
+        yield Finding(HELD if held else KINDS[code], event.line, {"code": code}, tip)
+
+
+def _is_held(tip: np.ndarray, index: int, program: TracedProgram, solids: Solids) -> bool:
+    """Return whether material stands beside a tool at the end of a move."""
+    stretch = program.stretch_at(index)
+    around = disc(tip[:2], stretch.radius + NEAR)
+    found = (solids.standing(around, tip[2], side, index + 1) for side in stretch.sides)
+    return any(each.area > 0.0 for each in found)
 
 
 def _is_followed(event: Event, program: TracedProgram) -> bool:
@@ -184,26 +210,28 @@ def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     if not program.turning:  # whose other tools turn the part
         tools |= {move.tool for move in program.moves}
     cutters = {program.moves[cut.at].tool for cut in made if not cut.places and solids.stock}
-    for index, move in enumerate(program.moves):
-        sides, own = program.sides[index] or set(), program.cut_at(index)
-        taps = own.is_tap if own else move.block in program.tapping
-        if move.kind != "feed" or taps or len(sides) != 1 or move.tool not in tools:
+    for stretch in program.stretches:
+        at_feed = not stretch.is_rapid and stretch.is_known and stretch.radius > 0
+        if not at_feed or len(stretch.sides) != 1:
             continue
-        (side,) = sides
-        speed = program.speed(index)
-        per_minute = move.feed * (speed if move.feed_mode == "G95" else 1)
-        values = {"feed": per_minute, "per_turn": per_minute / speed if speed else 0.0}
-        fast = values["per_turn"] > PER_TURN
-        if (fast or move.tool in cutters) and _plunges(index, side, solids):
-            place = program.tip(index, side)[-1]
-            yield program.found(PLUNGE_FAST if fast else PLUNGE, index, place, **values)
+        (side,) = stretch.sides
+        for index in stretch.moves:
+            move, speed = program.moves[index], program.speed(index)
+            taps = stretch.cut.is_tap if stretch.cut else move.block in program.tapping
+            per_minute = move.feed * (speed if move.feed_mode == "G95" else 1)
+            per_turn = per_minute / speed if speed else 0.0
+            fast = per_turn > PER_TURN
+            if move.kind != "feed" or taps or move.tool not in (tools if fast else cutters):
+                continue
+            tip = program.tip(index, side)
+            if _plunges(tip, CENTRE * stretch.radius, side, index, solids):
+                values = {"feed": per_minute, "per_turn": per_turn, "tool": move.tool}
+                yield program.found(PLUNGE_FAST if fast else PLUNGE, index, tip[-1], **values)
 
 
-def _plunges(index: int, side: float, solids: Solids) -> bool:
+def _plunges(tip: np.ndarray, radius: float, side: float, index: int, solids: Solids) -> bool:
     """Return whether a tool goes straight down into what stands below its centre."""
-    radius, tip = CENTRE * solids.program.cutter(index), solids.program.tip(index, side)
-    down = straight_down(tip) and tip[-1, 2] < min(tip[0, 2], solids.top(side) - LEAST)
-    if radius <= 0 or not down or not solids.program.is_known(index):
+    if not straight_down(tip) or tip[-1, 2] >= min(tip[0, 2], solids.top(side) - LEAST):
         return False
     standing = solids.standing(disc(tip[-1, :2], radius), tip[-1, 2], side, before=index)
     return standing.area > 0.5 * math.pi * radius**2

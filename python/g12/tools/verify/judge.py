@@ -28,7 +28,6 @@ from g12.tools.verify.model.finding import (
 )
 from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import Solids
-from g12.tools.verify.plain import judge_plain
 from g12.tools.verify.remains import judge_cuts
 from g12.tools.verify.rules import contour, spindle, tool, whole  # noqa: F401  # the table
 from g12.tools.verify.rules.table import judge_rules
@@ -117,7 +116,6 @@ def judge_trace(
     found += judge_rapids(program, solids)
     tell("looking for what remains")
     found += judge_cuts(program, solids)
-    found += judge_plain(program, solids)
     found += judge_in_part(program, solids)
     found += judge_deviations(deviations, program, tolerance)
     expected = [*expectations(program.file), *((code, EVERYWHERE) for code in accept)]

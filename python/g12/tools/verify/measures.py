@@ -83,8 +83,8 @@ def _circle(cut: Cut, program: TracedProgram) -> dict[str, Any]:
 
 
 def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
-    fed, diameters = program.fed(cut), program.diameters(cut.at)
-    lengths = [length for i in fed if (length := program.moves[i].length) > 0]
+    diameters = program.diameters(cut.at)
+    lengths = [length for i in cut.fed if (length := program.moves[i].length) > 0]
     sides = dict.fromkeys(each.side for each in cut.elements if each.side) or {0: None}
     turn, _, height, _ = cut.roles
     times, limit = times_of(cut, program.ini), program.limits.axes[turn]
@@ -96,7 +96,7 @@ def _section(cut: Cut, program: TracedProgram) -> dict[str, Any]:
         "x_words": "diameters" if diameters else "radii",
         "third": AXIS_LETTERS[height] if cut.surface else "Z",
         "lowest": 2 * lowest if cut.surface and height == X and diameters else lowest,
-        "segments": len(fed),
+        "segments": len(cut.fed),
         "shortest": min(lengths, default=0.0),
         "longest": max(lengths, default=0.0),
         "turn": AXIS_LETTERS[turn],

@@ -13,7 +13,7 @@ from shapely.geometry import LineString
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
-from g12.cut_report import PolygonCut, RoundPocketCut
+from g12.cut_report import PolygonCut, RoundPocketCut, ThreadCut
 from g12.tools.path.part import disc, swept
 from g12.tools.verify.model.cut import NOTHING, Cut
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING, Finding, kind
@@ -35,15 +35,14 @@ BOSS = kind("boss", FINDING, "nothing of its boss remains")
 WALL = kind("wall", FINDING, "its wall is cut {over:fine} too far, at {at:xyz}")
 LEVEL = 1e-3  # mm
 DEEPEST = 3.0  # times a cutter's radius: few pockets are milled so deep at once
-THROUGH = 2.0  # mm below the block: more is no through hole
 AIR = kind("air", FINDING, "it cuts nothing: it stays {above:length} above the part{hint}")
 BESIDE = kind("no-stock-met", FINDING, "it meets nothing of the stock")
-BEFORE = kind("cut-before", WARNING, "all of it was cut before: a spring pass, or the wrong place?")
+BEFORE = kind("cut-before", WARNING, "all of it was cut before: {why}?")
+SPRING, SIZE = "a spring pass, or the wrong place", "is its hole too large, its boss too small"
 UPRIGHT = kind("upright", NOT_JUDGED, "the material around a circle in another plane than G17")
 OUTSIDE = kind("outside", WARNING, "a portion of it lies outside of the stock")
 DEEP = kind("deep-pass", WARNING, "it cuts {deep:length} deep at once: cutter ⌀ {cutter:mm}")
-BELOW = kind("below-stock", FINDING, "it goes {below:length} below the block")
-MINUS = ": a lost minus sign?"
+MINUS, DOWN = ": a lost minus sign?", ": no move down to the depth before it?"
 NO_DEPTH = ("yasnac", "mitsubishi")  # whose blocks have no Z
 
 
@@ -53,7 +52,7 @@ def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
             continue
         if cut.upright:
             yield cut.found(UPRIGHT)
-        elif program.cutter(cut.at) > 0 and program.is_known(cut.at):
+        elif cut.radius > 0 and program.stretch_at(cut.at).is_known:
             yield from too_far(cut, solids)
             yield from remaining(cut, solids)
             yield from gone(cut, program, solids)
@@ -66,12 +65,12 @@ def judge_cuts(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
 
 def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield what should be gone and stands at the program's end."""
-    radius, level = solids.program.cutter(cut.at), cut.floor - cut.zero[2]
+    level = cut.floor - cut.zero[2]
     left = NOTHING
     core = left_of(cut.core, cut, solids)
     if cut.is_section:  # a contour round the inside is no pocket
         inside = (left_of(o.polygon, cut, solids, o.level) for o in cut.pockets)
-        core = unary_union([NOTHING, *(each.buffer(-radius / 2) for each in inside)])
+        core = unary_union([NOTHING, *(each.buffer(-cut.radius / 2) for each in inside)])
     elif not _is_cleared(cut, solids):
         left = left_of(cut.goes, cut, solids)
     if left.area > LEAST_GONE:
@@ -80,7 +79,7 @@ def remaining(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(UNCUT, (*middle, cut.floor), **values)
     if core.area > LEAST_GONE and not cut.is_ring:  # whose core is meant
         yield cut.found(CORE, area=core.area)
-    for region, floor in _beyond(cut, solids, radius):
+    for region, floor in _beyond(cut, solids):
         beyond = left_of(region, cut, solids, floor)
         if beyond.area > LEAST_LEFT:
             place = (*beyond.representative_point().coords[0], floor)
@@ -109,14 +108,14 @@ def left_of(
     return area.buffer(-SLACK, join_style=2).buffer(SLACK, join_style=2)
 
 
-def _beyond(cut: Cut, solids: Solids, radius: float) -> Iterator[tuple[BaseGeometry, float]]:
+def _beyond(cut: Cut, solids: Solids) -> Iterator[tuple[BaseGeometry, float]]:
     """Yield what of a given bar lies on the tool's side of a contour, and the contour's level.
 
     It reaches as far as a cutter. An open contour goes on straight at its ends.
     """
     if cut.surface or not solids.given_bar:
         return
-    bar = solids.of(cut.surface).shape
+    bar, radius = solids.of(cut.surface).shape, cut.radius
     whole = bar.buffer(3 * radius)
     if isinstance(cut.plan, PolygonCut):
         outside = bar.difference(cut.stays[0][0])
@@ -196,9 +195,8 @@ def _cut_away(
     loose = cut.loose_lines
     moves = [i for i in cut.moves if program.moves[i].line in loose]
     if cut.island.area:
-        moves += [
-            i for i, m in enumerate(program.moves) if m.kind != "rapid" and not program.cut_at(i)
-        ]
+        plain = (each for each in program.stretches if not each.is_rapid and not each.cut)
+        moves += [index for each in plain for index in each.moves]
     swept, first = solids.swept_in(region, moves, cut.surface)
     if swept.area > LEAST_GONE:  # less what the contour itself has taken, where it crosses itself
         kept_off = [i for i in cut.moves if program.moves[i].line not in loose]
@@ -210,7 +208,7 @@ def meeting(program: TracedProgram) -> Iterator[Finding]:
     """Yield pockets, bosses and holes of a plane that go into each other's walls."""
     first: dict[tuple, Cut] = {}  # of equal circles
     for cut in program.cuts:
-        for centre, wall in discs_of(cut, program):
+        for centre, wall in discs_of(cut):
             first.setdefault((centre, wall, cut.zero[2]), cut)
     centres = np.array([centre for centre, _, _ in first], complex)
     walls, heights = np.array([sizes for _, *sizes in first], float).reshape(-1, 2).T
@@ -227,7 +225,7 @@ def meeting(program: TracedProgram) -> Iterator[Finding]:
     yield from met.values()
 
 
-def discs_of(cut: Cut, program: TracedProgram) -> Iterator[tuple[complex, float]]:
+def discs_of(cut: Cut) -> Iterator[tuple[complex, float]]:
     """Yield the circles of a cut on the face or in XY: the centre and the wall's radius."""
     if cut.is_circle and not cut.upright:
         yield complex(*cut.centre), cut.wall
@@ -235,7 +233,7 @@ def discs_of(cut: Cut, program: TracedProgram) -> Iterator[tuple[complex, float]
         middle = cut.goes.centroid
         yield complex(middle.x, middle.y), cut.plan.diameter * cut.mm / 2
     elif cut.places and not cut.surface and cut.at < cut.end:
-        yield from ((at, program.cutter(cut.at)) for at in cut.places)
+        yield from ((at, cut.radius) for at in cut.places)
 
 
 # ------------------------------------------------------------ a cut in the air, or too deep
@@ -245,35 +243,32 @@ def in_air(cut: Cut, solids: Solids) -> Iterator[Finding]:
     program, material, top = solids.program, solids.of(cut.surface), solids.top(cut.surface)
     place = program.tip(cut.at, cut.surface)[0]
     if not material.sweeps_of(cut.moves):
-        tips = (program.tip(index, cut.surface) for index in program.fed(cut))
+        tips = (program.tip(index, cut.surface) for index in cut.fed)
         above = min((tip[:, 2].min() for tip in tips), default=math.inf) - top
-        by_word = program.dialects.get(cut.code) not in NO_DEPTH
-        yield cut.found(AIR, place, above=above, hint=MINUS if above > LEVEL and by_word else "")
+        hint = DOWN if program.dialects.get(cut.code) in NO_DEPTH else MINUS
+        yield cut.found(AIR, place, above=above, hint=hint if above > LEVEL else "")
     elif not material.removes(cut.moves):
         if not solids.is_met(cut):
             yield cut.found(BESIDE, place)
         elif not cut.is_tap:
-            yield cut.found(BEFORE, place)
-    elif solids.stock and material.beyond(_wanted(cut, solids)) > LEAST_GONE:
+            yield cut.found(BEFORE, place, why=SIZE if isinstance(cut.plan, ThreadCut) else SPRING)
+    elif solids.stock and material.beyond(_wanted(cut)) > LEAST_GONE:
         yield cut.found(OUTSIDE, place)
     if cut.levels and program.dialects.get(cut.code) != "bore":  # cuts by its helices
         yield from _deep(cut, solids)
-    if solids.bottom - cut.floor > THROUGH:
-        yield cut.found(BELOW, place, below=solids.bottom - cut.floor)
 
 
 def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
     """Yield a first level that is far below what stands, or a level far below the one before."""
-    program, top, levels = solids.program, solids.top(cut.surface), cut.levels
+    top, levels, radius = solids.top(cut.surface), cut.levels, cut.radius
     if cut.is_section:
         levels = [level for level in cut.steps_down if level < top] or levels
-    radius = program.cutter(cut.at)
     steps = [upper - lower for upper, lower in pairwise(levels)]
     high = levels[0] + DEEPEST * radius
     if high < top:
         wanted = cut.goes
         if wanted.is_empty and (cut.is_section or cut.is_shape):
-            tips = [program.tip(index, cut.surface) for index in program.fed(cut)]
+            tips = [solids.program.tip(index, cut.surface) for index in cut.fed]
             wanted = swept(
                 (part for tip in tips if tip[:, 2].max() < top for part in pieces(tip)), radius
             )
@@ -283,8 +278,7 @@ def _deep(cut: Cut, solids: Solids) -> Iterator[Finding]:
         yield cut.found(DEEP, deep=max(steps), cutter=2 * radius)
 
 
-def _wanted(cut: Cut, solids: Solids) -> BaseGeometry:
+def _wanted(cut: Cut) -> BaseGeometry:
     """Return what a pocket, a shape or holes are to remove."""
-    radius = solids.program.cutter(cut.at)
-    holes = [disc((at.real, at.imag), radius) for at in cut.places]
+    holes = [disc((at.real, at.imag), cut.radius) for at in cut.places]
     return unary_union([NOTHING if cut.is_section else cut.goes, *holes])

@@ -147,13 +147,13 @@ def _plain_measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
 def assumption(judgement: Judgement, unit: Unit) -> str:
     """Return what is solid before the first move, in words."""
     solids, program = judgement.solids, judgement.program
-    stock, top = solids.stock, f" (machine Z{unit.text(solids.z0)})" if program.is_placed else ""
+    stock, top = solids.stock, f" (machine Z{unit.text(solids.face)})" if program.is_placed else ""
     if program.is_round and not solids.stock:
         return "assumed: solid up to the radius of each section round it"
     if program.is_round:
         return f"stock: {stock.text}, about the axis of rotation"
     if stock and (stock.is_whole or program.turning):
-        return f"stock: {stock.text}, its top at Z0{top}"
+        return f"stock: {stock.text}, its top at Z{unit.text(stock.top)}{top}"
     bar = f", a bar of ⌀ {unit.text(2 * solids.bar)}" if program.turning and solids.bar else ""
     bores = f", {stock.text} in every pocket" if stock else ""
     return f"assumed: solid below Z0{top}{bar}{bores}; the tool starts clear of it"

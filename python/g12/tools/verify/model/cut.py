@@ -39,6 +39,7 @@ from g12.tools.verify.model.finding import Finding, Kind
 CLOSED = 0.01  # mm between the ends of a contour that is closed
 CHORD = 1e-3  # of arcs
 MOST_OF_A_TURN = math.radians(225)
+WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 LEAST_CORE = 0.05  # mm: the radius of a core that remains
 NOTHING = Polygon()
 NO_CUTTER = UsedCutter(0.0, "")
@@ -99,12 +100,13 @@ class Cut:
 
     ``line`` is in its ``file``, "" is the program; ``last_line`` of a section is the line that ends
     it. ``plan`` is the planner's record, whose kind says which fields it has. ``cutter`` is the
-    radius that its path is computed with, 0 if that is not the planner's. ``surface`` is that of
-    the cylinder on which it is, 0 on the face. ``wall`` is that of what a circle clears, ``inner``
-    that of what it leaves in its middle, which may be a boss.
+    radius that its path is computed with, 0 if that is not the planner's; ``radius`` is that of the
+    tool that cuts. ``surface`` is that of the cylinder on which it is, 0 on the face. ``wall`` is
+    that of what a circle clears, ``inner`` that of what it leaves in its middle, which may be a
+    boss. ``fed`` are its moves that are no rapids.
     """
 
-    def __init__(self, index: int, reported: ReportedCut, loaded: float) -> None:
+    def __init__(self, index: int, reported: ReportedCut, trace: Trace) -> None:
         report, frame = reported.report, reported.report.frame
         self.index, self.report, self.frame = index, report, frame
         self.at, self.end, self.moves = *reported[:2], range(*reported[:2])
@@ -125,6 +127,10 @@ class Cut:
         self.passes: Any = getattr(self.plan, "passes", self.plan)
         self.used: UsedCutter = getattr(self.passes, "cutter", NO_CUTTER)
         self.cutter = self.used.radius * mm
+        loaded = trace.radius(self.at) if self.at < len(trace.moves) else 0.0
+        worn = abs(self.cutter - loaded) <= WEAR * loaded
+        self.radius = self.cutter if worn or not loaded else loaded
+        self.fed = [index for index in self.moves if trace.moves[index].kind != "rapid"]
         self.wall, self.inner, self.is_boss = self._circle(0.0 if self.cutter else loaded)
         self.elements: Sequence[CutElement] = getattr(self.plan, "elements", ())
         self.roles = ROLES[getattr(self.plan, "turn", "C")]
@@ -344,8 +350,7 @@ def curve_points(element: CutElement, chord_error: float = CHORD) -> Iterator[co
 
 def cuts_of(trace: Trace) -> list[Cut]:
     """Return the reported cuts in the order of their moves."""
-    loaded = [trace.radius(each.at) if each.at < len(trace.moves) else 0.0 for each in trace.cuts]
-    return [Cut(n, each, radius) for n, (each, radius) in enumerate(zip(trace.cuts, loaded))]
+    return [Cut(index, each, trace) for index, each in enumerate(trace.cuts)]
 
 
 def _xy(points: np.ndarray) -> np.ndarray:

@@ -43,7 +43,7 @@ def judge_deviations(
 ) -> Iterator[Finding]:
     for cut, found in zip(program.cuts, found_of):
         allowed = allowed_off(cut, program, tolerance)
-        beside = _of_run(program.fed(cut), program)
+        beside = _of_run(cut.fed, program)
         if found.point is not None and found.size > allowed + LAST_DECIMAL:
             at = program.words(found.move, found.point, cut.surface)
             values = {"off": found.size, "at": at, "allowed": allowed, "surface": cut.surface}
@@ -80,7 +80,7 @@ def deviation_of(cut: Cut, program: TracedProgram) -> Deviation:
         return _of_section(cut, program)
     if cut.is_circle:
         return max(_of_wall(cut, program), off_circles(cut, program), key=lambda each: each.size)
-    return _of_shape(cut, program) if cut.is_shape else _of_run(program.fed(cut), program)
+    return _of_shape(cut, program) if cut.is_shape else _of_run(cut.fed, program)
 
 
 def _of_run(moves: Iterable[int], program: TracedProgram) -> Deviation:
@@ -95,7 +95,7 @@ def _of_run(moves: Iterable[int], program: TracedProgram) -> Deviation:
 
 def _sideways(cut: Cut, program: TracedProgram) -> Iterator[tuple[int, np.ndarray]]:
     """Yield the moves at feed across the tool's axis, with their points."""
-    for index in program.fed(cut):
+    for index in cut.fed:
         points = program.tip(index, cut.surface)
         if len(points) > 1 and np.ptp(points[:, :2], axis=0).max() > SAME:
             yield index, points

@@ -5,13 +5,13 @@ import cmath
 import math
 import re
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -36,7 +36,6 @@ from g12.tools.units import plain
 from g12.tools.verify.model.cut import Cut, cuts_of
 from g12.tools.verify.model.finding import Finding, Kind
 
-WEAR = 0.05  # of the loaded tool's radius: D may differ by that
 SIZE = 1e-3  # mm: lengths that differ by less are equal
 CHORD = 2e-3  # of the paths that are judged
 KEPT_TIPS = 16384  # moves
@@ -48,8 +47,24 @@ RUNS = ("M3", "M4")
 DIALECT = re.compile(r"prolog=g1[23]_(\w+)")
 MOTION = re.compile(r"G0*([0-3]|5(?:\.\d)?|33(?:\.1)?|38\.\d|7[346]|8\d)(?![.\d])")
 TAPS = {"33.1", "74", "84"}
+ENDS = re.compile(r"M0*(2|30)(?!\d)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
+
+
+class Stretch(NamedTuple):
+    """Successive moves at feed of one cut, or of none, with one tool and ``sides``; or one rapid.
+
+    ``sides`` are those of ``TracedProgram.sides``, none where that is None; ``radius`` is the
+    cutter's. ``is_known``: whether what is solid is known.
+    """
+
+    moves: range
+    is_rapid: bool
+    cut: Cut | None
+    sides: Collection[float]
+    radius: float
+    is_known: bool
 
 
 @dataclass(eq=False)
@@ -94,6 +109,13 @@ class TracedProgram:
         """The program's lines, without comments, in upper case."""
         text = self.file.read_text(encoding="utf-8", errors="replace")
         return [COMMENT.sub("", line).upper() for line in text.splitlines()]
+
+    @property
+    def end_line(self) -> int:
+        """The line that ends it after its last move, by M2 or M30; else that of the move."""
+        last = self.moves[-1].block
+        ends = (n for n, text in enumerate(self.texts, 1) if n > last and ENDS.search(text))
+        return next(ends, last)
 
     @cached_property
     def tapping(self) -> set[int]:
@@ -235,16 +257,6 @@ class TracedProgram:
         lines = [self.tip(index, radius) for index in moves] or [np.empty((0, 3))]
         return np.concatenate([lines[0], *(line[1:] for line in lines[1:])])
 
-    def fed(self, cut: Cut) -> list[int]:
-        """Return the moves of a cut that are no rapids."""
-        return [index for index in cut.moves if self.moves[index].kind != "rapid"]
-
-    def cutter(self, index: int) -> float:
-        """Return the radius of a move's cutter: the loaded tool's, D's if it differs by wear."""
-        radius, own = self.trace.radius(index), self.cut_at(index)
-        planned = own.cutter if own else 0.0
-        return planned if abs(planned - radius) <= WEAR * radius or not radius else radius
-
     def cut_at(self, index: int) -> Cut | None:
         """Return the cut that a move belongs to."""
         last = bisect_right(self._starts, index) - 1
@@ -317,24 +329,28 @@ class TracedProgram:
         across = cut.roles.across
         return any(abs(at[across] - cut.zero[across]) > SIZE for at in (move.start, move.end))
 
-    @property
-    def sideways(self) -> list[set[bool]]:
-        """Whether the tool of each move points at the axis; both where that is not known."""
-        return [{side > 0.0 for side in sides or ()} for sides in self.sides]
-
-    def runs(self) -> Iterator[tuple[bool, range]]:
-        """Yield stretches of moves with one tool and one side: whether by rapid, their indices."""
-        sides = self.sides
+    @cached_property
+    def stretches(self) -> list[Stretch]:
+        """The moves in stretches, in order."""
+        turned_at = len(self.moves) if self.turned_at is None else self.turned_at
 
         def kind(index: int) -> tuple:
-            move, cut = self.moves[index], self.cut_at(index)
+            move, cut, sides = self.moves[index], self.cut_at(index), self.sides[index]
             rapid = move.kind == "rapid"
             key = index if rapid else (cut.at if cut else -1)
-            return rapid, key, move.tool, sides[index], move.tool_offset
+            return key, rapid, cut, sides, index < turned_at, move.tool, move.tool_offset
 
-        for _, grouped in groupby(range(len(self.moves)), kind):
-            own = list(grouped)
-            yield self.moves[own[0]].kind == "rapid", range(own[0], own[-1] + 1)
+        found = []
+        for (_, rapid, cut, sides, known, *_), own in groupby(range(len(self.moves)), kind):
+            first, *more = own
+            radius = cut.radius if cut else self.trace.radius(first)
+            moves = range(first, first + len(more) + 1)
+            found.append(Stretch(moves, rapid, cut, sides or frozenset(), radius, known))
+        return found
+
+    def stretch_at(self, index: int) -> Stretch:
+        """Return the stretch of a move."""
+        return self.stretches[bisect_right(self.stretches, index, key=lambda s: s.moves[0]) - 1]
 
     @cached_property
     def known_after(self) -> list[bool]:
@@ -352,10 +368,6 @@ class TracedProgram:
         return found
 
     @cached_property
-    def known_before(self) -> list[bool]:
-        return [False, *self.known_after[:-1]]
-
-    @cached_property
     def turned_at(self) -> int | None:
         """The first move of A or B on a mill: what was solid is not known after it."""
         if self.turning or not {"A", "B"} & set(self.ini.axes):
@@ -371,10 +383,6 @@ class TracedProgram:
         if sides is None:
             return move.kind != "rapid"
         return 0.0 in sides and move.start[A : B + 1] != first.start[A : B + 1]
-
-    def is_known(self, index: int) -> bool:
-        """Return whether the material is known at a move."""
-        return self.turned_at is None or index < self.turned_at
 
     # ------------------------------------------------------------ its state
 

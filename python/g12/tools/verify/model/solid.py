@@ -36,13 +36,15 @@ FULL_TURN = 2 * math.pi - 1e-6
 class Solids:
     """The materials of a program by the side that a tool works on.
 
-    ``given_bar`` is the radius of the bar that is given, 0 without one.
+    ``given_bar`` is the radius of the bar that is given, 0 without one; ``face`` is the level of
+    the top.
     """
 
     def __init__(self, program: TracedProgram, stock: Stock | None) -> None:
         self.program, self.stock, self.z0 = program, stock, program.z0
         self.given_bar = stock.diameter / 2 if stock else 0.0
-        self.bottom = self.z0 - stock.size[2] if stock and stock.size else -math.inf
+        self.face = self.z0 + (stock.top if stock else 0.0)
+        self.bottom = self.face - stock.size[2] if stock and stock.size else -math.inf
         self._materials: dict[float, Material] = {}
         for side in {FACE, *(cut.surface for cut in program.cuts)}:
             shape = self._stock(side, stock)
@@ -52,13 +54,12 @@ class Solids:
     # ------------------------------------------------------------ the stock
 
     def top(self, side: float) -> float:
-        return (self.given_bar or side) if side else self.z0
+        return (self.given_bar or side) if side else self.face
 
     @cached_property
     def bar(self) -> float:
         """The radius of the bar: the given one, else the smallest that holds what is programmed."""
-        own = [cut for cut in self.program.cuts if cut.at < cut.end]
-        needed = (needed_bar(cut, self.program.cutter(cut.at)) for cut in own)
+        needed = (needed_bar(cut) for cut in self.program.cuts if cut.at < cut.end)
         return self.given_bar or max(needed, default=0.0)
 
     def _stock(self, side: float, stock: Stock | None) -> BaseGeometry:
@@ -82,11 +83,9 @@ class Solids:
 
     def _above_face(self, side: float) -> bool:
         """Return whether all that is cut on a cylinder is above Z0: that is not the part's face."""
-        program = self.program
-        cuts = [cut for cut in program.cuts if cut.surface == side and cut.at < cut.end]
-        own = [(program.tip(i, side)[:, 1].min(), i) for cut in cuts for i in program.fed(cut)]
-        low, first = min(own, default=(math.inf, 0))
-        return bool(low + program.cutter(first) + ALONG >= self.z0)
+        cuts = [cut for cut in self.program.cuts if cut.surface == side]
+        low = (self.program.tip(i, side)[:, 1].min() + cut.radius for cut in cuts for i in cut.fed)
+        return bool(min(low, default=math.inf) + ALONG >= self.z0)
 
     def of(self, side: float) -> Material:
         return self._materials[side]
@@ -96,8 +95,7 @@ class Solids:
     def _cut_all(self) -> None:
         """Remove what each stretch at feed sweeps, full circles one by one."""
         program = self.program
-        for rapid, run in program.runs():
-            sides, radius = program.sides[run[0]], program.cutter(run[0])
+        for run, rapid, _, sides, radius, _ in program.stretches:
             if rapid or not sides or radius <= 0:
                 continue
             side = max(sides)
@@ -128,12 +126,12 @@ class Solids:
     def is_met(self, cut: Cut) -> bool:
         """Return whether a cut is over the stock or in it."""
         material, program = self._materials[cut.surface], self.program
-        lines = (program.tip(i, cut.surface)[:, :2] for i in program.fed(cut))
-        return any(material.is_under(line, program.cutter(cut.at)) for line in lines)
+        lines = (program.tip(i, cut.surface)[:, :2] for i in cut.fed)
+        return any(material.is_under(line, cut.radius) for line in lines)
 
-    def surrounds(self, tip: np.ndarray, index: int, side: float) -> bool:
+    def surrounds(self, tip: np.ndarray, radius: float, side: float) -> bool:
         """Return whether a tool's tip is below the top, inside of what the stock was."""
-        around = disc(tip[:2], self.program.cutter(index) + NEAR)
+        around = disc(tip[:2], radius + NEAR)
         return self._materials[side].surrounds(around, float(tip[2]))
 
     def swept_in(
@@ -142,9 +140,10 @@ class Solids:
         """Return what of a region moves at feed sweep below the top, and the first one's index."""
         first, areas = None, []
         for index in moves if not region.is_empty else ():
-            if self.program.moves[index].kind == "rapid" or self.program.sides[index] != {side}:
+            stretch = self.program.stretch_at(index)
+            if stretch.is_rapid or stretch.sides != {side}:
                 continue
-            points, radius = self.program.tip(index, side), self.program.cutter(index)
+            points, radius = self.program.tip(index, side), stretch.radius
             low = np.minimum(points[1:, 2], points[:-1, 2]) < self.top(side) - JUST_ABOVE
             for at in np.flatnonzero(low) if radius > 0 else ():
                 area = swept([points[at : at + 2]], radius).intersection(region)
@@ -165,7 +164,7 @@ def pieces(points: np.ndarray) -> list[np.ndarray]:
     return [piece for piece in found if len(piece) > 1 or len(found) > 1 or len(points) == 1]
 
 
-def needed_bar(cut: Cut, cutter: float) -> float:
+def needed_bar(cut: Cut) -> float:
     """Return the radius of the smallest bar that can hold a cut on a face."""
     if cut.surface:
         return 0.0
@@ -174,7 +173,7 @@ def needed_bar(cut: Cut, cutter: float) -> float:
     if cut.is_shape:
         return max(map(abs, cut.goes.bounds))
     if cut.places:
-        return max(map(abs, cut.places)) + cutter + 1.0
+        return max(map(abs, cut.places)) + cut.radius + 1.0
     ends = [np.abs(outline.points) for outline in cut.outlines]
     reach = (at.max() if o.is_closed else min(at[0], at[-1]) for o, at in zip(cut.outlines, ends))
     return float(max(reach, default=cut.deep_reach))

@@ -13,7 +13,8 @@ from g12.tools.path.part import C, disc
 from g12.tools.verify.model.cut import Outline
 from g12.tools.verify.model.finding import FINDING, WARNING
 from g12.tools.verify.model.program import SIZE, SUB_BEGIN
-from g12.tools.verify.rules.table import Site, Values, rule
+from g12.tools.verify.model.solid import FACE, JUST_ABOVE
+from g12.tools.verify.rules.table import EACH, Site, Values, rule
 
 ROUND_ANGLE = 1e-3  # degrees: angles that are programmed are multiples of it
 SAME_ANGLE = 1e-2
@@ -25,6 +26,8 @@ CLOSED_SHARE = 0.05  # of that area: less may stand
 LEVELS_MEANT = 3  # L2 is a spring pass
 BY_MACHINE = re.compile(r"G(53|28|30)(?!\d)")
 FAR, WIDE = 3.0, 1.5  # times a bar
+THROUGH = 2.0  # mm below the block: more is no through hole
+POINT = 0.6  # of a drill's radius: how far its point goes below a hole
 
 
 @rule("c-zero", FINDING, "C is where line {line} left it, {angle:3}°: the zero line is turned")
@@ -110,14 +113,46 @@ def other_surface(site: Site) -> Values:
     return {"radius": radius, "bar": bar} if other else None
 
 
-@rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled")
+@rule("tap-undrilled", WARNING, "the tap goes deeper than what is drilled", plain=EACH)
 def undrilled(site: Site) -> Values:
-    cut = site.own
-    if not cut.is_tap:
+    cut, program = site.cut, site.program
+    if not (cut.is_tap if cut else site.radius and program.moves[site.at].block in program.tapping):
         return None
-    middles = (Point(at.real, at.imag).buffer(MIDDLE) for at in cut.places)
-    left = (site.solids.standing(each, cut.floor, cut.surface, before=cut.at) for each in middles)
+    if cut:
+        places, level, side = cut.places, cut.floor, cut.surface
+    else:
+        _, tip = site.lowest
+        places, level, side = [complex(*tip[:2])], tip[2], FACE
+    middles = (Point(at.real, at.imag).buffer(MIDDLE) for at in places)
+    left = (site.solids.standing(each, level, side, before=site.at) for each in middles)
     return {} if any(each.area > MIDDLE**2 for each in left) else None
+
+
+@rule("below-stock", FINDING, "it goes {below:length} below the block", plain=EACH)
+def below_stock(site: Site) -> Values:
+    bottom = site.solids.bottom
+    if site.cut:
+        below = bottom - site.cut.floor
+        return {"below": below} if below > THROUGH else None
+    index, tip = site.lowest
+    below = bottom - tip[2]
+    line = site.program.where(index)[0]
+    deep = below > THROUGH + POINT * site.radius
+    return {"below": below, "place": tip, "at_line": line} if deep else None
+
+
+@rule("beside-stock", WARNING, "it cuts beside the stock alone", plain=EACH)
+def beside_stock(site: Site) -> Values:
+    program, solids, stock = site.program, site.solids, site.solids.stock
+    if site.cut or not site.radius or not (stock and stock.is_whole):
+        return None
+    index, tip = site.lowest
+    if tip[2] > solids.top(FACE) - JUST_ABOVE:
+        return None
+    approach = program.cut_at(min(site.moves.stop, len(program.moves) - 1))
+    met = solids.of(FACE).is_under(program.tips(site.moves)[:, :2], site.radius)
+    line = program.where(index)[0]
+    return None if approach or met else {"place": tip, "at_line": line}
 
 
 @rule(
@@ -129,10 +164,10 @@ def undrilled(site: Site) -> Values:
 def not_open(site: Site) -> Values:
     """Look inside of a bore's K and of an inner thread, and around the boss of an outer one."""
     cut, program = site.own, site.program
-    plan, radius = cut.plan, program.cutter(site.at)
+    plan = cut.plan
     if isinstance(plan, ThreadCut) and plan.outside:
         boss = disc(cut.centre, OPEN_AROUND * cut.wall)
-        region = disc(cut.centre, cut.wall + 2 * radius).difference(boss)
+        region = disc(cut.centre, cut.wall + 2 * cut.radius).difference(boss)
     elif isinstance(plan, ThreadCut):
         region = disc(cut.centre, OPEN_INSIDE * plan.small * cut.mm)
     elif program.dialects.get(cut.code) == "bore":

@@ -13,7 +13,7 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C
 from g12.tools.verify.model.finding import FINDING, NOT_JUDGED, WARNING
 from g12.tools.verify.model.program import RUNS, SPINDLE, TracedProgram
-from g12.tools.verify.rules.table import Site, Values, rule
+from g12.tools.verify.rules.table import FIRST, Site, Values, rule
 
 C_WORD = re.compile(r"(?<![A-Z<])C[-+]?[\d.\[#]")
 NO_MOVE = re.compile(r"G0*(10|92|52|7\.1)(?![.\d])")
@@ -23,7 +23,7 @@ NAMED, BLOCK_WORD, JUMPS = re.compile(r"\$(-?\d+)"), re.compile(r"\s*O"), {"M98"
 MAIN, LIVE, EVERY = 0, 1, -1
 
 
-@rule("spindle", FINDING, "{which} does not turn: {missing} missing", plain=True)
+@rule("spindle", FINDING, "{which} does not turn: {missing} missing", plain=FIRST)
 def spindle_off(site: Site) -> Values:
     return _first_move(lambda index: _standing(index, site), site)
 
@@ -58,7 +58,7 @@ def _standing(index: int, site: Site) -> Values:
     return {"which": "the spindle", "missing": "M3 and S are"}
 
 
-@rule("spindle-m4", WARNING, "M4: right-hand tools cut with M3", plain=True)
+@rule("spindle-m4", WARNING, "M4: right-hand tools cut with M3", plain=FIRST)
 def spindle_reversed(site: Site) -> Values:
     if site.program.several_spindles or (site.cut and site.cut.is_tap):
         return None

@@ -2,11 +2,14 @@
 """The table of rules: a rule is a function with a decorator, which has its code and its sentence.
 
 A rule returns the values of its sentence, None where nothing is wrong; ``{}`` is "it applies". The
-value ``at_line`` is the line in place of the cut's, ``place`` a point of the part.
+value ``at_line`` is the line in place of the cut's, ``place`` a point of the part. A rule of the
+whole program may yield such values.
 """
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
+
+import numpy as np
 
 from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.finding import Finding, Kind, kind
@@ -14,6 +17,7 @@ from g12.tools.verify.model.program import TracedProgram
 from g12.tools.verify.model.solid import FACE, Solids
 
 Values = Mapping[str, Any] | None
+FIRST, EACH = "first", "each"  # which moves that belong to no cut: of a tool the first, or all
 
 
 class Site(NamedTuple):
@@ -22,7 +26,8 @@ class Site(NamedTuple):
     program: TracedProgram
     solids: Solids
     moves: range
-    cut: Cut | None
+    cut: Cut | None = None
+    radius: float = 0.0  # of a mill's plain moves, where what is solid is known
 
     @property
     def at(self) -> int:
@@ -38,6 +43,13 @@ class Site(NamedTuple):
         return self.program.trace.table_at(self.at).diameters.get(self.tool, 0.0)
 
     @property
+    def lowest(self) -> tuple[int, np.ndarray]:
+        """The move that goes deepest on the face, and the tip where it ends."""
+        tips = {index: self.program.tip(index, FACE) for index in self.moves}
+        index = min(tips, key=lambda index: tips[index][:, 2].min())
+        return index, tips[index][-1]
+
+    @property
     def own(self) -> Cut:
         """The cut, in a rule of cuts alone."""
         assert self.cut is not None
@@ -46,9 +58,9 @@ class Site(NamedTuple):
 
 class Rule(NamedTuple):
     kind: Kind
-    judge: Callable[[Any], Values]
+    judge: Callable[[Any], Any]
     once: bool
-    plain: bool
+    plain: str
 
 
 CUT_RULES: list[Rule] = []
@@ -61,16 +73,16 @@ def rule(
     sentence: str,
     *,
     once: bool = False,
-    plain: bool = False,
+    plain: str = "",
     program: bool = False,
-) -> Callable[[Callable[[Any], Values]], Callable[[Any], Values]]:
+) -> Callable[[Callable[[Any], Any]], Callable[[Any], Any]]:
     """Add a rule to the table: of each cut, or of the whole ``program``.
 
-    ``once``: only the first cut is reported. ``plain``: also of moves that belong to no cut;
-    the first of each tool is reported.
+    ``once``: only the first cut is reported. ``plain``: also of moves that belong to no cut, the
+    FIRST of each tool or EACH.
     """
 
-    def add(judge: Callable[[Any], Values]) -> Callable[[Any], Values]:
+    def add(judge: Callable[[Any], Any]) -> Callable[[Any], Any]:
         rules = PROGRAM_RULES if program else CUT_RULES
         rules.append(Rule(kind(code, severity, sentence), judge, once, plain))
         return judge
@@ -83,7 +95,7 @@ def judge_rules(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
     for site in sites(program, solids):
         for each in CUT_RULES if site.cut else filter(lambda rule: rule.plain, CUT_RULES):
             key = each.kind.code, 0 if each.once else site.tool
-            if key in reported and (each.once or not site.cut):
+            if key in reported and (each.once or (not site.cut and each.plain == FIRST)):
                 continue
             values = each.judge(site)
             if values is not None:
@@ -95,8 +107,8 @@ def judge_rules(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
                 yield found(each.kind, values, line, file)
     for each in PROGRAM_RULES:
         values = each.judge(program)
-        if values is not None:
-            yield found(each.kind, values, 0, "")
+        own = [values] if isinstance(values, Mapping) else values or ()
+        yield from (found(each.kind, one, 0, "") for one in own)
 
 
 def found(of: Kind, values: Mapping[str, Any], line: int, file: str) -> Finding:
@@ -107,9 +119,9 @@ def found(of: Kind, values: Mapping[str, Any], line: int, file: str) -> Finding:
 def sites(program: TracedProgram, solids: Solids) -> Iterator[Site]:
     """Yield the cuts, and the other stretches at feed below the top, in order."""
     every = [Site(program, solids, cut.moves, cut) for cut in program.cuts if cut.at < cut.end]
-    for rapid, run in program.runs():
-        if not rapid and not program.cut_at(run[0]):
-            levels = (program.tip(index, FACE)[:, 2].min() for index in run)
-            if min(levels) < solids.top(FACE):
-                every.append(Site(program, solids, run, None))
+    for stretch in program.stretches:
+        if not stretch.is_rapid and not stretch.cut:
+            solid = not program.turning and stretch.is_known and stretch.sides == {FACE}
+            if program.tips(stretch.moves)[:, 2].min() < solids.top(FACE):
+                every.append(Site(program, solids, stretch.moves, None, solid * stretch.radius))
     yield from sorted(every, key=lambda site: site.at)

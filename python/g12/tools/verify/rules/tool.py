@@ -5,16 +5,23 @@ LinuxCNC believes G43's H as the cycles believe D. A program that never commands
 touched off Z with its tool; any other works with the lengths of the table.
 """
 
+import re
+from collections.abc import Iterator
+
+import numpy as np
+
 from g12.cut_report import BY_D, BY_LAST_D, LOADED, NO_CUTTER, FrameCut, PocketCut, ThreadCut
 from g12.tools.path.part import X, Z
+from g12.tools.verify.model.cut import WEAR
 from g12.tools.verify.model.finding import FINDING, WARNING
-from g12.tools.verify.model.program import SIZE, WEAR
-from g12.tools.verify.rules.table import Site, Values, rule
+from g12.tools.verify.model.program import SIZE, TracedProgram
+from g12.tools.verify.rules.table import FIRST, Site, Values, rule
 
+SIDE = re.compile(r"G4[12](?![.\d]).*D(\d+)(?![.\d])|D(\d+)(?![.\d]).*G4[12](?![.\d])")
 MOST_PER_TURN = 3.0  # mm, of a feed
 
 
-@rule("no-tool", FINDING, "no tool is loaded: T and M6 are missing", once=True, plain=True)
+@rule("no-tool", FINDING, "no tool is loaded: T and M6 are missing", once=True, plain=FIRST)
 def no_tool(site: Site) -> Values:
     return {} if site.tool <= 0 else None
 
@@ -34,6 +41,24 @@ def wrong_cutter(site: Site) -> Values:
     if not by_d or not used or not loaded or abs(used - loaded) <= WEAR * loaded or d == site.tool:
         return None
     return {"tool": site.tool, "loaded": loaded, "used": used, "d": d}
+
+
+@rule("d-other", WARNING, "D{d} is ⌀ {used:mm}, T{tool} ⌀ {loaded:mm}: an allowance?", program=True)
+def other_d(program: TracedProgram) -> Iterator[Values]:
+    """Look for G41 and G42 outside of sections whose D is not the loaded tool's diameter."""
+    sections = [range(cut.line, cut.last_line + 1) for cut in program.cuts if cut.is_section]
+    blocks = np.array([move.block for move in program.moves])
+    for number, text in enumerate(program.texts, 1):
+        side = SIDE.search(text)
+        if not side or any(number in lines for lines in sections) or not (blocks >= number).any():
+            continue
+        after = int((blocks >= number).argmax())
+        table, d = program.trace.table_at(after).diameters, int(side[1] or side[2])
+        tool = program.moves[after].tool
+        used, loaded = table.get(d, 0.0), table.get(tool, 0.0)
+        if d != tool and used and loaded and abs(used - loaded) > WEAR * loaded:
+            values = {"d": d, "tool": tool, "used": used, "loaded": loaded}
+            yield {**values, "at_line": number}
 
 
 @rule(
@@ -64,7 +89,7 @@ def no_d(site: Site) -> Values:
     "length",
     FINDING,
     "it cuts {off:fine} deeper: the length in force is not T{tool}'s (G43 H{tool}?)",
-    plain=True,
+    plain=FIRST,
 )
 def length_deeper(site: Site) -> Values:
     off = _off_length(site)
@@ -76,7 +101,7 @@ def length_deeper(site: Site) -> Values:
     "length-higher",
     WARNING,
     "it cuts {off:fine} {how}: the length in force is not T{tool}'s",
-    plain=True,
+    plain=FIRST,
 )
 def length_higher(site: Site) -> Values:
     off, chosen = _off_length(site), site.program.chosen_length(site.at)
@@ -95,7 +120,7 @@ def _off_length(site: Site, axis: int = Z) -> float:
     WARNING,
     "T{tool}'s length of {off:fine} is not used (G43): was Z touched off with it?",
     once=True,
-    plain=True,
+    plain=FIRST,
 )
 def length_not_used(site: Site) -> Values:
     off = site.program.missing_length(site.at)
@@ -107,7 +132,7 @@ def length_not_used(site: Site) -> Values:
     "length-mixed",
     FINDING,
     "T{tool} is {off:fine} {how} than T{first}, without G43: one Z0 cannot fit both",
-    plain=True,
+    plain=FIRST,
 )
 def length_mixed(site: Site) -> Values:
     program, moves = site.program, site.program.moves
