@@ -8,7 +8,6 @@ import numpy as np
 
 from bench import Figure
 from bench.polar import (
-    SAMPLES,
     at_feed,
     contour_of,
     seconds_at,
@@ -20,7 +19,6 @@ from support.operated_machine import Machine
 from support.sim_machines import SIM
 
 FEEDS = {1000: 1.02, 2000: 1.03, 3000: 1.03}  # and the most of the ideal time
-ROUNDING = 1e-3
 NO_SLOWER = 1.04  # than segments at 1000 mm/s²: AXIS_X of the face has 707, in segments too
 THIRD = 2 * math.pi / 3  # C turns the other way in between
 CIRCLE = [  # r 10, 20 off the axis
@@ -47,11 +45,8 @@ def figures():
         for feed in FEEDS:
             yield circle(face, segments, feed)
             yield slot(face, segments, feed)
-        yield circle_after_plunge(face)
         yield deviation_on_face(face)
         yield switch(face)
-        for name in ("slot", "circles"):
-            yield from spindle_limits(face, name)
     with Machine(SIM / "lathe_slow_c_mm_kinematics.ini") as slow:
         yield from slow_spindle(slow)
 
@@ -73,15 +68,6 @@ def circle(face, segments, feed):
     )
     what = f"polar with kinematics: circle r 10, 20 off the axis, F{feed}, against least time"
     return Figure(what, ours, OF_LEAST[feed], f"with segments {others:.3f}")
-
-
-def circle_after_plunge(face):
-    """Compare the time of a circle between a plunge and a retract with the least."""
-    head = ["G21 G18 G8 G90 G94 G64", "G0 X30 Z2 C0", "G12.1", "G1 Z-1 F3000"]
-    run = face.run_text([*head, "G2 X30 C0 I-10 J0", "G1 Z2", "G13.1", "M2"])
-    ratio = seconds_in(run, (5,)) / least(CIRCLE, 3000)
-    what = "polar with kinematics: that circle between a plunge and a retract, F3000"
-    return Figure(what, ratio, OF_LEAST[3000], "against least time")
 
 
 def circle_at(feed):
@@ -145,15 +131,3 @@ def deviation_on_face(face):
     what = "polar with kinematics: real motion against the hexagon at F3000, G64 P0.002"
     how = "of the tool's centre, sampled at 1 kHz"
     return Figure(what, section.deviation, 0.002, how, " mm")
-
-
-def spindle_limits(face, name):
-    """Yield C's highest speed and acceleration in a program near the pole, as shares."""
-    samples = face.run(SAMPLES / f"{name}.ngc").samples
-    steps = np.diff(samples.axes["C"])[samples.kind[1:] != 0]
-    for what, most in (
-        ("speed", np.abs(steps).max() * 1e3 / 360),
-        ("acceleration", np.abs(np.diff(steps)).max() * 1e6 / 3600),
-    ):
-        title = f"polar with kinematics: C's {what} against its limit, {name}"
-        yield Figure(title, most, 1.0 + ROUNDING, f"{len(steps)} samples")

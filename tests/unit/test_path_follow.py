@@ -69,15 +69,6 @@ def test_a_path_that_crosses_and_repeats_itself_is_followed_in_order():
     assert spent.min() > 0.9 * spent.max()  # each of the three circles has its share
 
 
-def test_a_path_that_retraces_itself_is_followed_back():
-    hand = Hand().rapid(x=40)
-    for _ in range(3):
-        hand.line(z=-10).rapid(z=0)
-    real = run_of(hand.line(x=20).rapid(x=40), count=5000, shift=0.04)
-    assert set(real.move) == set(range(9))
-    assert np.allclose(real.deviation, 0.04, atol=1e-6)
-
-
 def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     hand = Hand().line(x=40).next_block().line(x=0, y=4)
     places = np.linspace(0, 3, 3001)

@@ -275,6 +275,10 @@ def test_rapids_from_nobody_knows_where_are_not_shown():
         assert plan_view.first_shown(scene(hand)) == first
 
 
+def test_all_that_turns_is_drawn_as_a_cut():
+    assert len(plan_view.fed_paths(scene(turned(), LATHE))[0]) == 1
+
+
 def test_holes_in_an_area_stay_holes():
     outline = style.outline_of(Point(0, 0).buffer(10).difference(Point(0, 0).buffer(5)))
     assert outline.contains_point((7, 0))

@@ -63,8 +63,3 @@ def test_an_arc_whose_radius_grows_ends_where_it_should():
     move = arc((1.0, 0.0, 0.0), (0.0, 1.001, 0.0), (0.0, 0.0, 0.0), 1)
     assert move.radius == near(1.0)
     assert arc_points(move, np.ones(1))[0, :3] == near((0.0, 1.001, 0.0))
-
-
-def test_a_straight_move_is_as_long_as_its_way_in_x_y_and_z():
-    ends = (0.0,) * 9, (3.0, 4.0, 12.0, 0.0, 0.0, 90.0, 0.0, 0.0, 0.0)
-    assert Move("feed", 1, 1, *ends, 100.0, "G94", 17, 1, (0.0,) * 9).length == near(13.0)

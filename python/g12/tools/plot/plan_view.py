@@ -265,8 +265,8 @@ def fed_paths(scene: Scene) -> tuple[list[np.ndarray], list]:
 
     def colour(index: int) -> object:
         lowest = scene.path.points[scene.path.vertices(index), 2].min()
-        across = index in sweeping and scene.across[index]
-        return shade_at(scene, lowest).line if across else style.MUTED
+        is_cut = scene.is_turned or (index in sweeping and scene.across[index])
+        return shade_at(scene, lowest).line if is_cut else style.MUTED
 
     lines: list[np.ndarray] = []
     colours: list[object] = []

@@ -194,9 +194,8 @@ class Trace:
     block that succeeded, M2 included. ``state`` has the interpreter's own variables in program
     units (motion_mode, plane, feed_rate …), after the refused block if there was one. ``printed``
     is the text of ``(print, …)`` and of Python, ``position`` the end of the last move, ``globals``
-    the global named parameters after the program. ``events`` include the messages. ``files`` are
-    those of subs outside the program that execute a remapped code with motion. ``tables`` are the
-    tool tables, each with the number of moves before it; the last is as the program leaves it.
+    the global named parameters after the program. ``events`` include the messages. ``tables`` are
+    the tool tables, each with the number of moves before it; the last is as the program leaves it.
     ``cuts`` are the package's, if they were asked for.
     """
 
@@ -209,7 +208,6 @@ class Trace:
     position: Position
     globals: dict[str, float]
     tables: Sequence[tuple[int, ToolTable]]
-    files: tuple[str, ...] = ()
     cuts: Sequence[ReportedCut] = ()
 
     @property

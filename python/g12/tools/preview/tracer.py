@@ -324,7 +324,6 @@ def _trace(answer: dict, mm: float) -> Trace:
         position=tuple(answer["position"]),
         **{key: answer[key] for key in ("state", "printed", "globals")},
         tables=[(at, _table_in_mm(each, mm)) for at, each in sizes],
-        files=tuple(answer["files"]),
         cuts=[_reported_cut(len(answer["moves"]), *cut) for cut in answer["cuts"]],
     )
 

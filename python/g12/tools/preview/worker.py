@@ -162,17 +162,6 @@ class Lines:
         level = sum(call == CALL_OF_REMAP for call in calls)
         return this.blocks[level].executing_remap.name.upper() if level else ""
 
-    def files(self) -> set[str]:
-        """Return the files of the subs that called the active remap, without the program itself."""
-        this = interpreter_object()
-        found = set()
-        for level in range(1, this.call_level):
-            frame = this.sub_context[level]
-            if frame.call_type == CALL_OF_REMAP:
-                break
-            found.add(os.path.abspath(frame.filename or self._program))
-        return found - {self._program}
-
     def _of_remap(self, this) -> int:
         return bisect.bisect_left(self._ends, this.blocks[1].offset) + 1
 
@@ -201,7 +190,6 @@ class Canon:
         self.refused: tuple[str, int] | None = None  # what cannot be traced, and the line
         self.moves: list[tuple] = []
         self.events: list[tuple] = []
-        self.files: set[str] = set()
         self.in_force: tuple = ()
         self.reports = machine.get("reports")
         self.cuts: list[list] = []  # first move, end, line, last line, C before, comments
@@ -463,8 +451,6 @@ class Canon:
         if self.reports and not self.open_cuts:
             self._note_c(start[5], self.position[5])
         self.moves.append((*path, feed, mode, *state, centre, turns, self.rotation, remap, *how))
-        if remap:
-            self.files |= self.lines.files()
 
     def _read_position(self) -> None:
         """Copy the interpreter's position, which a switch of kinematics changes without a move."""
@@ -593,7 +579,6 @@ def interpret(machine: dict, tools: list[tuple], request: dict) -> dict:
         "events": canon.events,
         "error": error,
         "cuts": canon.cuts,
-        "files": sorted(canon.files),
         "tool_sizes": tool_sizes(len(tools)),
         "tables": canon.tables,
         "position": canon.position,

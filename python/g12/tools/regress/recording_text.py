@@ -137,32 +137,25 @@ def feed_unit(move: Move, unit: float) -> float:
     return unit if is_linear else 1.0
 
 
-class RecordingWriter:
-    """Writes steps as lines; ``unit`` is the machine unit in mm."""
-
-    def __init__(self, unit: float) -> None:
-        self._unit = unit
-        self._at = position_words(STILL, unit)
-        self._feed, self._mode = "", "G94"
-
-    def line(self, step: RecordedStep) -> str:
-        return f"  * {step.text}" if isinstance(step, Note) else f"  {' '.join(self._move(step))}"
-
-    def _move(self, move: Move) -> Iterator[str]:
-        before, self._at = self._at, position_words(move.end, self._unit)
-        yield move.kind
-        yield from _changed(before, self._at)
-        if move.kind == "arc":
-            centre = _changed(before, position_words(move.centre, self._unit))
-            yield from ("centre", *centre, "turns", str(move.turns))
-            if move.plane != 17:
-                yield f"G{move.plane}"
-                yield from ("rotation", number_text(move.rotation)) if move.rotation else ()
-        if move.kind != "rapid":
-            before = [self._feed, self._mode]
-            self._feed = f"F{number_text(move.feed / feed_unit(move, self._unit))}"
-            self._mode = move.feed_mode or "G94"
-            yield from _changed(before, [self._feed, self._mode])
+def step_lines(steps: Sequence[RecordedStep], unit: float) -> Iterator[str]:
+    """Yield steps as lines, of a move what changes; ``unit`` is the machine unit in mm."""
+    at, fed = position_words(STILL, unit), ["", "G94"]
+    for step in steps:
+        if isinstance(step, Note):
+            yield f"  * {step.text}"
+            continue
+        before, at = at, position_words(step.end, unit)
+        words = [step.kind, *_changed(before, at)]
+        if step.kind == "arc":
+            centre = _changed(before, position_words(step.centre, unit))
+            words += ["centre", *centre, f"turns {step.turns}"]
+            turned = f" rotation {number_text(step.rotation)}" if step.rotation else ""
+            words += [f"G{step.plane}{turned}"] if step.plane != 17 else []
+        if step.kind != "rapid":
+            feed = f"F{number_text(step.feed / feed_unit(step, unit))}"
+            known, fed = fed, [feed, step.feed_mode or "G94"]
+            words += _changed(known, fed)
+        yield f"  {' '.join(words)}"
 
 
 def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
@@ -171,12 +164,13 @@ def _changed(before: Sequence[str], after: Sequence[str]) -> list[str]:
 
 def text_of(recording: Recording) -> str:
     lines = [HEAD, *(f"{key} {recording.facts[key]}" for key in FACTS)]
-    writer, block, error = RecordingWriter(recording.unit.mm), None, recording.error
-    for step in recording.steps:
+    block, error = None, recording.error
+    written = step_lines(recording.steps, recording.unit.mm)
+    for step, line in zip(recording.steps, written):
         if step.block != block:
             block = step.block
             lines += _block_lines(recording, block)
-        lines.append(writer.line(step))
+        lines.append(line)
     if error and error.line != block and error.line in recording.blocks:
         lines += _block_lines(recording, error.line)
     last = f"error at {error.line}: {error.text}" if error else f"end: {recording.end}"

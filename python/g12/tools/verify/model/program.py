@@ -290,7 +290,7 @@ class TracedProgram:
         """Whether the program calls a sub in a file of its own."""
         text = "\n".join(self.texts)
         called = {*SUB_CALL.findall(text)} - {*SUB_BEGIN.findall(text)}
-        return bool(called or self.trace.files)
+        return bool(called or any(cut.file for cut in self.cuts))
 
     @cached_property
     def sides(self) -> list[set[float] | None]:
