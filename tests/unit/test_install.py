@@ -286,14 +286,6 @@ def test_a_damaged_copy_is_mended_but_not_by_itself(tmp_path, ini, monkeypatch):
     assert content_of(tmp_path) == whole
 
 
-def test_a_list_of_the_copy_names_no_file_elsewhere(tmp_path, ini):
-    (tmp_path / "precious.ngc").write_text("(mine)\n")
-    with (tmp_path / "g12" / package_copy.MANIFEST).open("a") as manifest:
-        manifest.write(f"{package_copy.digest(b'(mine)')}  ../precious.ngc\n\xff\n")
-    take_out(ini)
-    assert (tmp_path / "precious.ngc").exists() and not (tmp_path / "g12").exists()
-
-
 def test_the_copy_stays_while_the_users_lines_need_it(tmp_path, ini):
     text = ini.read_text()
     remap = next(line for line in text.splitlines() if line.startswith("REMAP"))
