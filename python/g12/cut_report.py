@@ -54,7 +54,7 @@ class UsedCutter(NamedTuple):
 class PocketCut(NamedTuple):
     """A block of G12 or G13: circles about ``centre`` in ``plane``, at ``levels`` across it.
 
-    ``wall`` is the radius of what the finished circle clears, ``first`` that of the first circle,
+    ``wall`` is the radius of what this block clears, ``first`` that of the first circle,
     ``step`` the growth from there, 0 with a single circle. ``inner`` is the radius of what stays in
     the middle, below 0 if nothing. With a cutter of radius 0 all are the tool centre's.
     """

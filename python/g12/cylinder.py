@@ -94,7 +94,7 @@ class Cylinder(SectionKind):
         self.surface = word * (0.5 if self.machine.settings.cylinder_word == "diameter" else 1.0)
 
     def check_machine(self, start: SectionStart) -> None:
-        check_entry(start, self.machine.letters, "XZC", ())
+        check_entry(start, self.machine, "XZC")
 
     @property
     def per_radian(self) -> float:
@@ -128,17 +128,14 @@ class CylinderOnMill(Cylinder):
     sense: ClassVar[float] = -1.0
 
     def check_machine(self, start: SectionStart) -> None:
-        across = self.across
-        there = start.state.position(across)
-        rule = (
-            f"needs {across}0: the tool must stand on the axis of rotation, not at"
-            f" {across}{number(there)}"
+        check_entry(
+            start,
+            self.machine,
+            "".join(self.words.axes),
+            centred="Z",
+            across=self.across,
+            centre="the axis of rotation",
         )
-        on_axis = abs(there) <= start.state.rounding
-        needed = "".join(self.words.axes)
-        rules = [(on_axis, rule)]
-        centre = "the axis of rotation"
-        check_entry(start, self.machine.letters, needed, rules, (across, "Z"), centre)
 
     @property
     def per_radian(self) -> float:

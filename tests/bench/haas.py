@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""G12/G13, dialect haas: interpreting time, path length and smoothness."""
+"""G12/G13, dialect haas: interpreting time."""
 
-import math
 import os
 import statistics
 import tempfile
@@ -20,23 +19,14 @@ TOOLS = {1: 0.25}
 MM_PER_INCH = 25.4
 POCKETS, PAIRS = 1000, 9
 FIRST = "G20 G17 G40 G54 G64 G90 G91.1 G94 F10"
-SAMPLE = "G13 I.3 K1.5 Q.3 Z-.5 D1"
 TEN_RINGS = "G13 I.3 K2.1 Q.2 Z-.5 D1"
 
 
 def figures():
-    """Yield the G12 rows of the promised figures."""
-    yield interpreting()
-    with Tracer(INI, tools=TOOLS) as tracer:
-        yield length_ratio(tracer)
-        yield direction_jump(tracer)
-
-
-def interpreting():
     """Compare 1,000 pockets with the same moves as plain G-code."""
     what = "G12: interpreting 1,000 pockets of 10 rings, against the same moves as plain G-code"
     cycle, plain = [FIRST, *starts(TEN_RINGS), "M2"], [FIRST, *expanded(), "M2"]
-    return against_plain(what, 3.0, INI, "T1 P1 D0.25", cycle, plain)
+    yield against_plain(what, 3.0, INI, "T1 P1 D0.25", cycle, plain)
 
 
 def against_plain(what, limit, ini, tool, lines, plain):
@@ -91,23 +81,3 @@ def plain_block(move, axes="XYZ", unit=1.0, shift=(0.0, 0.0)):
         return f"{'G0' if move.kind == 'rapid' else 'G1'} {end}"
     i, j = ((move.centre[axis] - move.start[axis]) / unit for axis in (0, 1))
     return f"{'G3' if move.turns > 0 else 'G2'} {end} I{i:.6f} J{j:.6f} P{abs(move.turns)}"
-
-
-def length_ratio(tracer):
-    """Compare the path with its circles, lead-in and lead-out."""
-    moves = tracer.trace_text([FIRST, "G0 Z.1", SAMPLE]).moves
-    sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
-    rings = cut_geometry.radii(moves)
-    ideal = sum(2 * math.pi * radius for radius in rings) + math.pi / 2 * (rings[0] + rings[-1])
-    length = cut_geometry.path_length(sideways)
-    what = "G12: path length against the circles, lead-in and lead-out, I.3 K1.5 Q.3, cutter .25"
-    return Figure(what, length / ideal, 1.25, f"{length:.1f} mm against {ideal:.1f} mm")
-
-
-def direction_jump(tracer):
-    """Find the largest change of direction between plunge and retract."""
-    moves = tracer.trace_text([FIRST, "G0 Z.1", f"{SAMPLE} L3"]).moves
-    sideways = cut_geometry.in_plane(cut_geometry.cutting(moves))
-    what = "G12: direction jump anywhere between the plunge and the retract"
-    how = "three spring passes of I.3 K1.5 Q.3, cutter .25"
-    return Figure(what, cut_geometry.largest_jump(sideways), 1.0, how, " degrees")

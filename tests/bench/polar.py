@@ -10,9 +10,9 @@ from bench import Figure
 from bench.haas import against_plain
 from g12.geometry.curve import Arc, Line
 from g12.tools.preview.tracer import Tracer
-from support.contour_geometry import FROM_COLUMNS, Round, distance, shape_of, spaced
+from support.contour_geometry import Round, shape_of
 from support.operated_machine import Machine
-from support.polar_programs import INCHES, MILLIMETRES, Cut, feed_moves
+from support.polar_programs import INCHES, MILLIMETRES, feed_moves
 from support.sim_machines import PROGRAMS, SIM
 
 MM_PER_INCH = 25.4
@@ -20,7 +20,6 @@ SAMPLES = PROGRAMS / "polar"
 MANUAL_TOOLS = {1: 0.5, 8: 0.0}
 TOLERANCE = 0.005  # mm
 LINES = 10000
-START = 19.5 + 12j  # of the hexagon's contour
 LONGEST = 600  # s that a trace may take on a busy computer
 BLOCKS = {"hexagon": range(10, 16), "manual_b": (14, 15, 16), "slot": (7,)}  # of the contour
 
@@ -32,7 +31,6 @@ def figures():
         for name in MILLIMETRES:
             yield real_deviation("polar", name, proof_of(lathe, SAMPLES / f"{name}.ngc"), TOLERANCE)
         yield against_ideal(lathe, "hexagon", 250)
-        yield against_equal_angles(lathe)
         for program in sorted((PROGRAMS / "cylinder").glob("*.ngc")):
             yield from on_cylinder(lathe, program)
     with Machine(SIM / "lathe_inch.ini", tools=MANUAL_TOOLS) as lathe:
@@ -74,23 +72,6 @@ def against_ideal(lathe, name, feed):
     return Figure(what, seconds / (length / 250 * 60), 1.05, f"{seconds:.2f} s for {length:.1f} mm")
 
 
-def against_equal_angles(lathe):
-    """Compare the hexagon at F1000 with the coarsest equal angles of the same tolerance."""
-    ours = seconds_at(lathe, "hexagon", 1000)
-    segments = contour_of("hexagon", lathe.ini)
-    points = np.concatenate([equal_angles(segment) for segment in segments])
-    lathe.mdi("G21 G90 G94 G8 G0 Z5")
-    theirs = lathe.run_text(blocks_of(points, 1000))
-    seconds = seconds_in(theirs, range(5, 5 + len(points)))
-    return Figure(
-        "polar: section time against equal angles of the same tolerance, F1000, hexagon",
-        ours / seconds,
-        1.0,
-        f"{ours:.2f} s against {seconds:.2f} s for {len(points)} equal angles "
-        f"(which leave the contour by {distance_of(theirs, segments):.4f} mm)",
-    )
-
-
 def contour_of(name, ini):
     """Return the toolpath of a sample's contour: parallels of its elements, arcs about corners."""
     with Tracer(ini, reports=True) as lathe:
@@ -107,43 +88,6 @@ def contour_of(name, ini):
                 path.append(Round(path[-1].end, start, turn))
             path.append(own)
     return path
-
-
-def distance_of(run, segments):
-    """Return how far a run leaves a contour."""
-    return distance(Cut(run).points @ FROM_COLUMNS, segments).max()
-
-
-def equal_angles(segment, tolerance=TOLERANCE):
-    """Return the fewest points on a segment, at equal C angles, whose X-C moves stay near it."""
-    fine = spaced(segment, 0.002)
-    radii, angles = abs(fine), np.unwrap(np.angle(fine))
-    if angles[-1] < angles[0]:
-        radii, angles = radii[::-1], angles[::-1]
-    for count in range(1, 10000):
-        at = np.linspace(angles[0], angles[-1], count + 1)
-        straight = np.interp(angles, at, np.interp(at, angles, radii))
-        if segment.distance(straight * np.exp(1j * angles)).max() <= tolerance:
-            break
-    x = np.interp(at, angles, radii)
-    if (segment.start * np.exp(-1j * at[0])).real < x[0] - 1e-6:
-        x, at = x[::-1], at[::-1]
-    return np.column_stack([x[1:], at[1:]])
-
-
-def blocks_of(points, feed):
-    """Return a program of straight X-C moves, each with the F that makes ``feed`` on the part."""
-    before, blocks = (abs(START), np.degrees(np.angle(START))), []
-    for x, c in zip(points[:, 0], np.degrees(np.unwrap(points[:, 1]))):
-        here, there = (radius * np.exp(1j * np.radians(a)) for radius, a in (before, (x, c)))
-        minutes = abs(there - here) / feed
-        dx = abs(x - before[0])
-        x = x if dx > 0.001 else before[0]
-        rate = (dx if dx > 0.001 else abs(c - before[1])) / minutes
-        blocks.append(f"G1 X{x:.6f} C{c:.6f} F{rate:.6f}")
-        before = x, c
-    place = f"G0 X{abs(START):.6f} C{np.degrees(np.angle(START)):.6f}"
-    return ["G21 G18 G8 G90 G94 G64 P0.0025", place, "Z2", "(cut)", *blocks, "M2"]
 
 
 def interpreting():

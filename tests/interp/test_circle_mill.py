@@ -17,7 +17,6 @@ BEFORE = [FIRST, "F20", "T1 M6", "G0 X-1 Y-1 Z1"]
 
 
 inch = kept_tracer("mill_inch", tools=TOOLS)
-metric = kept_tracer("mill_mm", tools={tool: d * INCH for tool, d in TOOLS.items()})
 
 
 def cut(tracer, *blocks, **options):
@@ -101,23 +100,6 @@ def test_a_program_that_runs_again_returns_at_the_same_heights(inch):
     for body, before in ((events, []), (["o<events> call"], sub)):
         traced = cut(inch, *before, "o1 repeat [2]", *body, "o1 endrepeat")
         assert returns(traced) == [0.2, 0.15, 0.2, 0.15]
-
-
-def test_planes_follow_the_units(inch, metric):
-    for tracer in (inch, metric):
-        traced = cut(tracer, "G13.2 X0 Y0 Z-.1 I.1 R.5 H2", "G21", "F500", "G13.2 X0Y0 Z-2 R12 H2")
-        assert traced.moves[-1].end[2] == pytest.approx(2.54)
-        metric_first = ["G21", "F500", "G13.2 X0 Y0 Z-2 I2.54 R12 H2"]
-        back = cut(tracer, *metric_first, "G20", "F20", "G13.2X0Y0Z-.1R.5H2")
-        assert back.moves[-1].end[2] == pytest.approx(2.54)
-
-
-def test_a_tool_below_w_is_raised_before_it_goes_sideways(inch):
-    traced = cut(inch, "G0 Z0", "G13.2 X1 Y2 Z-.5 I.1 R1.5 H2")
-    moves = cut_geometry.moving(traced.moves)[2:5]
-    assert [move.kind for move in moves] == ["rapid", "rapid", "feed"]
-    ends = [[value / INCH for value in move.end[:3]] for move in moves]
-    assert ends == [pytest.approx(end) for end in ((-1, -1, 0.1), (1, 2, 0.1), (1, 2, -0.5))]
 
 
 # ---------------------------------------------------------------- refusals

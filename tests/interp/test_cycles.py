@@ -113,7 +113,6 @@ def test_all_modes_make_the_same_machine_path(mill, dialect, block):
 # ---------------------------------------------------------------- refusals
 
 AT = [IN_INCHES, "G1 X1 Y1 Z.1"]
-MOVED = [FIRST, "G91 G0 X3 Z5"]
 AFTER_G40 = ["G41", "G1 X30", "Y30", "G40"]
 OFFSET = "needs a move after G40: the tool is still beside the programmed point"
 PLACE = "X1 Y2 Z-.5 I.1 R1.5"
@@ -208,17 +207,6 @@ def test_an_approach_however_short_is_made_and_taken_back(mill):
     *_, last = traced.moves
     assert last.start[0] - last.end[0] == pytest.approx(approach * INCH, rel=1e-3)
     assert last.end[:2] == pytest.approx((1 * INCH, 2 * INCH), abs=1e-9)
-
-
-def test_fast_moves_at_the_traverse_feed_under_g95_too():
-    settings_ = {"G12": {"YASNAC_TRAVERSE": 1500}}
-    before = [FIRST, "S1000 M3", "G95 F0.2"]
-    with Tracer(SIM / "mill_yasnac_mm.ini", tools=METRIC_TOOLS, overrides=settings_) as traversing:
-        found, traced = (traversing.trace_text([*before, *b]) for b in ([], ["G12 I50 R40 D10"]))
-    kinds = [(move.kind, round(move.feed, 9), move.feed_mode) for move in traced.moves]
-    fast, cutting = ("feed", 1500, "G94"), ("arc", 0.2, "G95")
-    assert kinds == [fast, *[cutting] * 3, fast]
-    mode_matrix.check_modes(found, traced)
 
 
 def test_the_last_d_commanded_is_left_alone(mill):

@@ -159,18 +159,13 @@ def test_a_refused_form_is_not_added_however_quick_the_operator(page):
     assert made.steps == []
 
 
-def test_the_last_values_are_kept(page):
-    first = page("mill_mm")
-    first.show("haas", tool="5", i="7.5", q="8")
-    first.add()
-    assert page("mill_mm").texts["i"] == "7.5"
-
-
-@pytest.mark.parametrize("left", ["\xff" * 99, "o<form_haas_mm> call [1]"])
-def test_what_a_stranger_left_in_the_kept_values_is_no_value(page, tmp_path, left):
-    (tmp_path / "g12").mkdir()
-    (tmp_path / "g12/cycles-page.ngc").write_text(left, encoding="latin-1")
-    assert page("mill_mm").texts["k"] == "30"
+def test_a_form_has_the_values_that_it_was_added_with(page):
+    made = page("mill_mm")
+    made.show("haas", tool="5", i="7.5", q="8")
+    made.add()
+    made.select(made.forms[1])
+    made.select(made.forms[0])
+    assert made.texts["i"] == "7.5"
 
 
 def test_the_drawing_fills_its_place(page):

@@ -66,11 +66,6 @@ def test_position_parameters_show_the_programmed_position(lathe):
     assert ends(traced) == ends(lathe.trace_text(section(*plain, start="G0 X22 Z0 C33")))
 
 
-def test_codes_and_words_behind_the_section_mean_what_they_meant(lathe):
-    traced = lathe.trace_text(section("G1 Z-5", "G91 G99 F.1", after=["G94 F100", "C5", "Z1"]))
-    assert ends(traced)[-2:] == [(22, -5, 5), (22, -4, 5)]
-
-
 def test_rapids_as_feeds_where_they_are_allowed():
     with tracer(POLAR_G0="feed", POLAR_G0_FEED="4000") as lathe:
         moves = feed_moves(lathe.trace_text(section("G0 C90", "G1 C0")))
@@ -83,11 +78,8 @@ def test_rapids_as_feeds_where_they_are_allowed():
 
 
 INSIDE = [  # those of one planner are in unit/test_cylinder.py
-    ("G0 X12", "G0 is refused: a rapid leaves the contour. Is the section's end missing above? "
-     "Else use G1 with a high F, or set [G12] POLAR_G0 = feed"),
     ("G12.1", "G12.1 is refused: only G1, G2 and G3 move inside the section"),
     ("G7.1 C30", "the section is already on: G7.1 C0 ends it"),
-    ("G7.1 C0 Z5", "G7.1 C0 must be alone in its block"),
     ("G18 G7.1 C30", "G7.1 must be alone in its block"),
     ("G1 X5 Z3", "X needs a block of its own, or [G12] CYLINDER_X = allow"),
     ("G1 Z501", "the Z axis would go to 501 mm, beyond its limit 500 mm"),

@@ -3,6 +3,7 @@
 
 import pytest
 
+from g12.tools.machine.ini import read_ini
 from g12.tools.preview.tracer import Tracer
 from support.sim_machines import SIM
 
@@ -36,11 +37,11 @@ PROGRAMS = {  # of the half whose codes they use
 SHORT = "from g12.host import section_run\nsection_run.MOST_SECTION_LINES = 99\n"
 
 
-def tracer_of(folder, machine, toplevel, **values):
+def tracer_of(folder, machine, toplevel, module="", **overrides):
     """Return a Tracer of a machine whose Python starts with a text of its own."""
     path = folder / "toplevel.py"
-    path.write_text(toplevel.format(python=SIM.parents[1] / "python", **values))
-    overrides = {"PYTHON": {"TOPLEVEL": str(path)}}
+    path.write_text(toplevel.format(python=SIM.parents[1] / "python", module=module))
+    overrides["PYTHON"] = {"TOPLEVEL": str(path)}
     return Tracer(SIM / f"{machine}.ini", overrides=overrides, tools={1: 6.0})
 
 
@@ -92,6 +93,38 @@ def test_a_half_that_does_not_load_leaves_the_other(tmp_path, broken, used):
     else:
         assert traced.error is None
         assert len(traced.moves) > 1
+
+
+ACTING = """\
+import sys
+sys.path.insert(0, "{python}")
+import remap
+from interpreter import INTERP_EXECUTE_FINISH, INTERP_OK
+def moves(self, **_):
+    self.execute("G0 X5")
+    return INTERP_OK
+def waits(self, **_):
+    yield INTERP_EXECUTE_FINISH
+remap.moves, remap.waits = moves, waits
+"""
+
+
+@pytest.mark.parametrize(
+    ("handler", "rule"),
+    [
+        ("moves", "M411 moves the machine: not inside a section"),
+        ("waits", "M411 waits for the machine"),
+    ],
+)
+def test_an_m_code_of_python_that_moves_or_waits_is_refused_in_a_section(tmp_path, handler, rule):
+    program = [*SECTION[:4], "M411", "X10", *SECTION[4:]]
+    remaps = (
+        *read_ini(SIM / "lathe_mm.ini").all("RS274NGC", "REMAP"),
+        f"M411 modalgroup=10 python={handler}",
+    )
+    with tracer_of(tmp_path, "lathe_mm", ACTING, RS274NGC={"REMAP": remaps}) as tracer:
+        error = tracer.trace_text(program).error
+    assert error.text.startswith(f"G12.1 line 5: {rule}")
 
 
 def test_an_axis_that_cannot_be_leaves_the_cycles():

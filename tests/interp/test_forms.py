@@ -4,7 +4,6 @@
 import re
 
 import pytest
-from matplotlib.image import imread
 
 from g12.tools.machine.ini import read_ini
 from g12.tools.material.stock import StockText
@@ -17,7 +16,6 @@ from support.sim_machines import SIM
 FORMS = sorted(path.stem for path in NGC.glob("form_*_mm.ngc"))
 INCH = 25.4
 UNITS = {"mm": ("G21", 1.0), "inch": ("G20", INCH)}
-WIDEST, HIGHEST = 319, 239  # dots of a picture that ngcgui does not halve
 LONGEST = 18  # letters beside an entry, for two columns on a screen 1024 dots wide
 TOOLS = {1: 10.0, 2: 4.0}  # mm; on inch machines the same in inches
 MILLS = {"haas": "mill_mm", "circle_mill": "mill_mm", "yasnac": "mill_yasnac_mm",
@@ -73,19 +71,14 @@ def test_every_entry_has_words_and_a_default_and_every_form_a_picture(form):
     for field in found:
         float(field.default)
         assert 0 < len(field.words) <= LONGEST, field
-    for unit in UNITS:
-        height, width = imread(NGC / f"{form.replace('_mm', f'_{unit}')}.png").shape[:2]
-        assert width <= WIDEST and height <= HIGHEST
+    assert all((NGC / f"{form.replace('_mm', f'_{unit}')}.png").is_file() for unit in UNITS)
 
 
 POCKETS = [  # a form filled in; its pocket, X, Y, floor, radius; its levels, circles, turn, moves
     ("haas", dict(x=12, y=-7, retract=20, top=3, z=-6, levels=3, i=8, k=25, q=6, feed=500,
                   code=12), (12, -7, -6, 25), ([0, -3, -6], [3, 9, 15, 20] * 3, -1, 36)),
-    ("haas", dict(z=-2, levels=1, i=9, k=0, retract=12), (0, 0, -2, 9), ([-2], [4], 1, 3)),
     ("yasnac", dict(x=4, y=5, retract=15, top=1, z=-8, code=12, i=50, r=30, k=0, q=0, circles=2,
                     feed=600), (4, 5, -8, 50), ([-8], [45] * 2, -1, 4)),
-    ("yasnac", dict(z=-3, i=-40, r=0, k=-9, q=6, circles=1, retract=9), (0, 0, -3, 40),
-     ([-3], [35], 1, 15)),
     ("mitsubishi", dict(x=-3, y=2, retract=15, top=1, z=-8, code=13, i=30), (-3, 2, -8, 30),
      ([-8], [25], 1, 3)),
     ("circle_mill", dict(event=7, x=5, y=6, z=-4, w=2, o=12, r=30, d=1, c=1, k=3, j=7, l=0.5,
@@ -167,9 +160,7 @@ def test_the_tool_goes_up_before_it_goes_sideways_and_never_first_down(cut):
     assert places == [[(9, 9, 15), (1, 2, 15)], [(1, 2, 40), (1, 2, 15)]]
 
 
-NO_TOOL = "form: T needs a number; 0 is the loaded tool, and none is loaded"
 REFUSED = [
-    ("haas", {"tool": 0}, NO_TOOL),
     ("haas", {"speed": 0}, "form: the spindle speed must be above zero, not 0"),
     ("haas", {"coolant": 3}, "form: coolant must be 7, 8 or 9, not 3"),
     ("haas", {"retract": -1}, "form: the retract height -1.000000 must be above 0.000000"),
@@ -180,7 +171,6 @@ REFUSED = [
     ("circle_mill", {"event": 1}, "form: G must be 0 or 7, not 1"),
     ("circle_mill", {"o": 1}, "form: the retract height 1.000000 must be above 2.000000"),
     ("bore", {"code": 13}, "form: G must be 12.5 or 13.5, not 13"),
-    ("polygon", {"tool": 0}, NO_TOOL),
     ("polygon", {"speed": 0}, "form: the tool's speed must be above zero, not 0"),
     ("polygon", {"coolant": 1}, "form: coolant must be 7, 8 or 9, not 1"),
     ("polygon", {"retract": 0}, "form: the retract height 0.000000 must be above the face at Z0"),
@@ -234,13 +224,6 @@ SHOWN = {
 }
 
 
-def test_every_machine_with_a_screen_shows_forms_of_its_own_unit():
-    for ini, forms in SHOWN.items():
-        assert bool(forms) != ini.stem.endswith("_headless"), ini
-        unit = "inch" if "inch" in ini.stem else "mm"
-        assert all(form.endswith(f"_{unit}") for form in forms), ini
-
-
 @pytest.mark.parametrize("ini", [ini for ini in SHOWN if SHOWN[ini]], ids=lambda ini: ini.stem)
 def test_the_defaults_are_right_for_the_machines_that_show_a_form(ini, tmp_path):
     with Tracer(ini, tools={1: 0.25 if "inch" in ini.stem else 6.0}) as running:
@@ -263,16 +246,3 @@ def test_tool_0_is_the_loaded_one(cut, form):
     assert cut(name, "mm", tool=0).error.text == f"form: {LOADED}"
     loaded = cut(name, "mm", before="G21 G8 T2 M6", tool=0)
     assert {move.tool for move in loaded.moves} == {2}
-
-
-@pytest.mark.parametrize(
-    ("form", "rule"),
-    [
-        ("bore", "D2 has no diameter: it sets the path"),
-        ("circle_mill", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
-        ("slot", "T2 in the spindle needs a diameter above 0 in the tool table, not 0"),
-    ],
-)
-def test_a_loaded_tool_without_a_diameter_is_refused(cut, form, rule):
-    traced = cut(form, "mm", before="G10 L1 P2 R0\nG21 G8 T2 M6", tool=0)
-    assert traced.error.text.endswith(rule)

@@ -27,22 +27,6 @@ def cut(tracer, *blocks):
 # ---------------------------------------------------------------- codes in the block
 
 
-@pytest.mark.parametrize(
-    ("before", "code", "kept"),
-    [("G1 X0", "G12", "G1"), ("G2 I.1", "G12", "G2"), ("G80", "G12", "G80"),
-     ("G90", "G12 G91", "G91")],
-)  # fmt: skip
-def test_the_modes_are_those_of_the_program(inch, before, code, kept):
-    assert kept in cut(inch, before, f"{code} I.3 Z-.1 D1").modes.gcodes
-
-
-def test_g7_in_the_block_reads_x_as_a_diameter_and_nothing_else(inch):
-    plain = cut(inch, "G12 X1 Y.5 I.3 K.6 Q.2 Z-.1 D1")
-    traced = cut(inch, "G7 G12 X2 Y.5 I.3 K.6 Q.2 Z-.1 D1")
-    assert [move.end for move in plain.moves] == [move.end for move in traced.moves]
-    assert "G7" in traced.modes.gcodes
-
-
 @pytest.mark.parametrize("codes", ["M8 M3 S100 M48 T2", "M9 S200"])
 def test_spindle_coolant_and_tool_preparation_may_stand_in_the_block(inch, codes):
     traced = cut(inch, "G0 Z.1", f"G12 I.5 Z-.1 D1 {codes}")

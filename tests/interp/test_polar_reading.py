@@ -146,6 +146,11 @@ SUBS = {  # lines of a sub in front, of a section that calls it, and where the b
         ["o<s> sub", "M73", "G91 G1 U1 F50", "X1", "o<s> endsub"], ["G1 X12", "o<s> call", "X9"],
         [(12, 0), (13, 0), (14, 0), (9, 0)],
     ),
+    "modes restored at the end of the sub that saved them alone": (
+        ["o<s> sub", "M73", "G91", "o<s> endsub", "o<t> sub", "G91 G1 U1", "o<t> endsub"],
+        ["G1 X12", "o<s> call", "o<t> call", "X2"],
+        [(12, 0), (13, 0), (15, 0)],
+    ),
     "value returned": (
         ["o<next> sub", "o<next> endsub [#1 + 1]"],
         ["o<next> call [11]", "o<next> call [#<_value>]", "G1 X#<_value>"],
@@ -183,7 +188,8 @@ def test_labels_are_those_of_the_program_around(lathe):
 
 
 def test_fanuc_subs_with_repeats(lathe):
-    program = [*section("M98 P100 L2", "U1"), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
+    body = ["M98 P100 L0", "M98 P100 L2", "M98 P100 L0", "U1"]
+    program = [*section(*body), "O100", "G1 U-2", "G91 C1", "G90", "M99"]
     assert ends(lathe.trace_text(program)) == [(18, 0), (18, 1), (16, 1), (16, 2), (17, 2)]
 
 
@@ -191,6 +197,13 @@ def test_a_section_in_a_sub_of_another_file(subs):
     traced = subs.trace_text([FIRST, START, "F100", "o<round> call", "C0", "M2"])
     assert ends(traced)[:2] == [(11, 0), (11, 4)]
     assert traced.moves[-1].line == 5
+
+
+def test_beyond_the_travel_in_another_file_nothing_is_read_of_the_line_of_that_number(subs):
+    """C is on the section's own second line, X alone on the sub's."""
+    error = subs.trace_text(section("o<flat> call [400] [0]")).error
+    rule = "the X axis would go to 400 mm, beyond its limit 300 mm"
+    assert error.text == f"G12.1 line 2 of flat.ngc: {rule}"
 
 
 @pytest.mark.parametrize(

@@ -66,14 +66,6 @@ def test_wrapped_rotary_turns_on_inside_and_takes_the_short_way_after():
     assert turned == pytest.approx([-400, -370, -370, -350])
 
 
-def test_inches_on_a_mill_in_mm(mill_a):
-    inches = section("G1 X1 A-45 F10", first="G20 G17 G90 G94", start="G0 X0 Y0 Z.9 A0",
-                     on="G7.1 A.8")  # fmt: skip
-    (move,) = polar_programs.feed_moves(mill_a.trace_text(inches))
-    assert move.end[0] == pytest.approx(25.4) and move.end[3] == -45
-    assert move.feed == pytest.approx(254 * 1 / math.hypot(1, math.pi / 4 * 0.8))
-
-
 CYLINDER = "G7.1 modalgroup=1 python=cylinder_mode"
 
 
@@ -117,15 +109,6 @@ def test_refused_inside(mill_a, block, why):
 def test_refused_to_begin(mill_a):
     text, _ = polar_programs.refused(mill_a, section("G1 X5", start="G0 X5 Y0.5 Z22"))
     assert text.endswith("needs Y0: the tool must stand on the axis of rotation, not at Y0.5")
-
-
-@pytest.mark.parametrize("name", ["mill_a_mm", "mill_a_inch"])
-def test_the_sample_of_the_simulated_mill_runs(name):
-    with Tracer(SIM / f"{name}.ini") as mill:
-        trace = mill.trace(SIM / "samples" / f"{name}.ngc")
-    assert trace.error is None and trace.messages == []
-    assert {move.end[1] for move in trace.moves} == {0.0}
-    assert min(move.end[3] for move in trace.moves) == -360
 
 
 # ---------------------------------------------------------------- as AXIS draws it

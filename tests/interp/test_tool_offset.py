@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from g12.tools.machine.ini import Ini, read_ini
-from g12.tools.plot.face import history_of
+from g12.tools.plot.history import history_of
 from g12.tools.plot.scene import scene_of_judgement
 from support.judged_programs import prove
 from support.polar_programs import lines, section, tracer

@@ -351,11 +351,3 @@ def test_a_crash_of_the_interpreter_is_no_word_about_the_program(ini, tmp_path):
         with pytest.raises(TraceFailure, match="died"):
             tracer.trace_text("G1 X1 F1")
         assert ends(tracer.trace_text("G1 X1 F1")) == [near((1.0, 0.0, 0.0))]
-
-
-@pytest.mark.parametrize("code", ["G17.1", "G18.1", "G19.1"])
-def test_a_plane_of_u_v_and_w_is_refused_by_its_line(code, mill):
-    error = mill.trace_text(f"G21\nG0 X1\n{code}\nM2").error
-    assert error.line == 3
-    assert error.text.startswith(f"{code}: ")
-    assert mill.trace_text("G17\nG1 X1 F1\nM2").error is None

@@ -73,15 +73,11 @@ CONSTRUCTS = [
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nM98 P5\nG40 X4.\nM30\nO5\nX2.\nY3.\nM99",
      "T1 M6\nG1 Z.5\nG41 D1 X2\nY3\nG40 X4"),
     ("haas-mill", "T1 M6\nG41 D1\nG1 Z.5\nG40 Z.4\nX2.", "T1 M6\nG1 Z.5\nZ.4\nX2"),
-    # G41 that is on already
-    ("haas-mill", "T1 M6\nG41 D1 G1 X2.\nY3.\nG41 X3.\nG40 X4.",
-     "T1 M6\nG41 D1 G1 X2\nY3\nX3\nG40 X4"),
     # what needs nothing done, with the words that are its own
     ("fanuc-lathe", "G22 X90. Z90. I-9. K-9.\nG26\nG1 X45.", "G1 X45"),
     # cutter compensation and lengths
     ("haas-mill", "T2 M6\nD2\nG41 G1 X2.\nY3.\nG40 X4.",
      "T2 M6\nG41 D2 G1 X2\nY3\nG40 X4"),
-    ("haas-mill", "T2 M6\nG41 D0 G1 X2.\nY3.\nG40 X4.", "T2 M6\nG1 X2\nY3\nX4"),
     ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 H0", "T1 M6\nG43 H2 Z2\nG49"),
     ("haas-mill", "T1 M6\nG43 H2 Z2.\nG43 Z1.5", "T1 M6\nG43 H2 Z2\nG43 H2 Z1.5"),
     # dwell, offsets
@@ -92,7 +88,6 @@ CONSTRUCTS = [
      "X1.5 Y1\nX2\nG10 L2 P1 X0"),
     # subprograms, macros
     ("haas-mill", "G65 P5 X2. Z.5\nX2.\nM30\nO5\nG1 X#24 Z#26\nM99", "G1 X2 Z.5\nX2"),
-    ("haas-mill", "#1=[-5.5 MOD 3]\n#2=[5.5 MOD 3]\nX#1 Y#2", "X-2.5 Y2.5"),
     # the last D is a pocket's, wherever it stood; a T is no tool before its M6
     ("haas-mill", "T2 M6\nG43 H2 D1 Z.5\nG12 I1. F9.\nD0\nG13 I1.", "T2 M6\nG43 H2 Z.5\n"
      "G12 I1 D1 F9\nG13 I1 D0"),
@@ -155,15 +150,3 @@ def test_a_construct_moves_the_same_and_leaves_the_same_modes(tracers, control, 
     assert_same_part(traced, expected)
     assert traced.modes.gcodes == expected.modes.gcodes
     assert traced.modes.feed == pytest.approx(expected.modes.feed)
-
-
-def test_alarms_and_stops_with_a_message(tracers):
-    blocks = [
-        "#101=3", "#3006=1 (LOOK AT IT)", "IF[#101EQ3]THEN #3006=1 (TURN IT)", "X2.",
-        "IF[#101EQ4]THEN #3000=5 (WRONG TOOL)", "X3.", "IF[#101EQ3]THEN #3000=5 (TOO DEEP)", "X4.",
-    ]  # fmt: skip
-    text = translated_part("haas-mill", "\n".join(blocks))
-    traced = tracers("haas-mill").trace_text(text, alone=True)
-    assert [message.text.strip() for message in traced.messages] == ["LOOK AT IT", "TURN IT"]
-    assert traced.error.text.strip() == "TOO DEEP"
-    assert traced.moves[-1].end[0] == pytest.approx(3 * 25.4)

@@ -138,18 +138,12 @@ def test_holes_in_the_side(tracer, control, text, top):
         ("fanuc-lathe", "G83 X40. R-5. F50.", "a drilling cycle needs Z, where the hole ends"),
         ("fanuc-lathe", "G83 X40. Z2. R-9. F50.", "R lies beyond Z2., where the hole ends"),
         ("fanuc-lathe", "G83 X40. Z2. B3.", "B3. in G83 is not translated: write each hole with"),
-        ("fanuc-lathe", "G83 X40. Z-5. K5", "K5 in G83 is not translated"),
-        ("fanuc-lathe", "G84 X0 Z-5. F1.", "G84: a tap: write each as G0 and LinuxCNC's G33.1"),
-        ("fanuc-lathe", "G83 X40. H5. Z-5.", "H5. in G83 is not translated"),
         ("fanuc-lathe", "G83 X40. Z-5. Q1", "15000 pecks in one cycle: at most 5000"),
         ("fanuc-lathe", "G87 Z-4. U-9. F500.", "a drilling cycle needs X, where the hole ends"),
         ("fanuc-lathe", "G83 X40. Z-5. M31", "M31 in the block of a drilling cycle"),
-        ("fanuc-lathe", "T0101\nG83 X40. Z-5.", "this begins at the tool's position"),
         ("fanuc-lathe", "G12.1\nG1 X39. F9.\nG83 X40. Z-5.", "a drilling cycle in a section"),
         ("fanuc-lathe", "G83 Z-5. F9.\nG28 H0\nC9.", "a drilling cycle may be on"),
-        ("fanuc-lathe", "G81 X4. Z-5.", "G81: not a drilling cycle of this control: G83 is"),
         ("fanuc-lathe-b", "G91 G83 X4. Z-5.", "a drilling cycle of a lathe is translated under"),
-        ("okuma-lathe", "G83 Z-5. K1. F9.", "G83: a contour cycle of OSP"),
     ],
 )
 def test_what_is_not_sure_is_refused(control, text, start):

@@ -15,16 +15,11 @@ MANUALS = {"manual_a": "lathe_inch", "manual_b": "lathe_inch", "manual_sample": 
 TOOLS = {"manual_sample": {8: 0.0}, "O60131": {1: 0.5}, "O60121": {1: 0.25}}
 WRONG = {
     "haas/O60121": ["uncut", "uncut"],  # Q is wider than its cutter
-    "fanuc-lathe/cylinder": ["side"],  # the tool crosses the contour on its way in
     "polar/manual_sample": ["no-diameter"],  # its contour is the tool centre's
     "mitsubishi/planes": ["air"],
     # holes that are bored before, --stock would say
     "yasnac/example": ["rapid", "rapid"],
     "samples/mill_yasnac_mm": ["rapid"],
-    "yasnac-mill/hundredths": ["rapid", "rapid"],
-    # words without a part
-    "haas-mill/homes": ["length", "rapid", "rapid"],
-    "haas-mill/tool_offsets": ["length"],
 }
 BEFORE = {"flange": "T2 M6\nG0 Z1\n"}
 SUBS = ("clamp", "subs")

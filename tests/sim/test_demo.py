@@ -51,7 +51,7 @@ def test_the_demo_tells_and_draws_every_program(tmp_path, monkeypatch, capsys):
     assert main(["demo", "--output", str(tmp_path / "new" / "demo")]) == 0
     out = capsys.readouterr().out
     assert "[1 of 2]" in out and "[2 of 2]" in out
-    assert "tool-centre rings" in out and "off contour" in out
+    assert "(yasnac)  ⌀ " in out and "on the contour, to Z" in out
     assert out.endswith("every circle and contour came out right\n")
     drawn = sorted(path.name for path in (tmp_path / "new" / "demo").iterdir())
     assert drawn == ["polar_slot.png", "yasnac_example.png"]

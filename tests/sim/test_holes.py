@@ -20,6 +20,7 @@ AS_FLOATS = ["loadrt mux2 count=2"]  # a sample has no bits
 for number, pin in enumerate((CLOSED, DRAG)):
     AS_FLOATS += [f"net clamp-{number} {pin} => mux2.{number}.sel", f"setp mux2.{number}.in1 1"]
     AS_FLOATS += [f"addf mux2.{number} servo-thread"]
+SLOT = "o<polar_slot> call [6] [30] [1] [-9999] [-9999] [6000] [-9999] [0]"
 FACE = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [1200] [1.5] [0.1] [0]"
 SIDE = "o<side_holes> call [2] [-10] [30] [270] [40] [5] [3] [1200] [-2] [0] [0]"
 SAME = 0.002  # mm, degrees: within the servo's sampling
@@ -118,23 +119,19 @@ def test_the_clamp_is_closed_in_holes_and_open_while_c_turns(lathe):
 
 def test_aborts_in_every_phase_leave_the_clamp_open(lathe):
     chance = random.Random(28)
-    for k in range(4):
+    ways = [(FACE, Z, chance.uniform(-4, 8)), (SIDE, X, chance.uniform(14.5, 26.5))] * 2
+    for call, axis, least in (*ways, (SLOT, Z, 0.5), (SLOT, Z, -0.9)):
         lathe.reset()
-        depth = chance.uniform(-4, 8)
-        lathe.open_text([*START, FACE if k % 2 else SIDE, "M2"])
+        lathe.open_text([*START, call, "M2"])
         lathe.start()
-        axis, least = (Z, depth) if k % 2 else (X, 18.5 + depth)
         lathe.wait_for(lambda status: status.actual[axis] < least or status.idle)  # noqa: B023
         lathe.abort()
         lathe.errors()
-        lathe.wait_for(lambda _: not lathe.get(CLOSED))
+        lathe.wait_for(lambda _: not lathe.get(CLOSED) and not lathe.get(DRAG))
         lathe.mdi("G90 G0 X50 Z20")
         assert lathe.stat().position[X] == pytest.approx(50) and not lathe.errors()
     run = lathe.run_text([*START, FACE, "M2"])
     assert run.error is None and len(bottoms(run.samples, "Z", -4)) == 3
-
-
-SLOT = "o<polar_slot> call [6] [30] [1] [-9999] [-9999] [6000] [-9999] [0]"
 
 
 def test_a_shape_is_cut_with_a_light_drag(lathe):
@@ -144,20 +141,6 @@ def test_a_shape_is_cut_with_a_light_drag(lathe):
     cutting = (z < 0) & np.isin(samples.kind[-len(z) :], (FEED, ROUND))
     assert drag[cutting].all() and (z[cutting] < -0.9).any() and not closed[cutting].any()
     assert not drag[0] and not drag[-1]
-
-
-def test_an_abort_takes_the_drag_back(lathe):
-    for depth in (0.5, -0.9):
-        lathe.reset()
-        lathe.open_text([*START, SLOT, "M2"])
-        lathe.start()
-        lathe.wait_for(lambda status: status.actual[Z] < depth)  # noqa: B023
-        lathe.abort()
-        lathe.errors()
-        lathe.wait_for(lambda _: not lathe.get(DRAG) and not lathe.get(CLOSED))
-        lathe.mdi("G90 G0 Z20")
-    run = lathe.run_text([*START, SLOT, "M2"])
-    assert run.error is None
 
 
 @in_segments

@@ -4,6 +4,7 @@
 import random
 import time
 
+import numpy as np
 import pytest
 
 from g12.tools.machine.ini import read_ini
@@ -114,6 +115,23 @@ def test_without_a_handler_g13_1_in_mdi_restores_all(lathe):
         set(before.gcodes) - {"G0", "G1"}, before.mcodes, before.feed,
     )  # fmt: skip
     assert lathe.errors() == []
+
+
+def test_without_a_handler_g13_1_in_mdi_restores_the_path_control_of_motion():
+    """The interpreter had read past the section: it shows G61 all the time."""
+    without = {"RS274NGC": {"ON_ABORT_COMMAND": None}}
+    with Machine(SIM / "lathe_mm.ini", overrides=without) as machine:
+        for block in ("G21 G18 G8 G90 G94 G61 F1000", "G0 Z20", "G0 X30 C0"):
+            machine.mdi(block)
+        machine.open_text(["%", *SECTION, "%"])
+        machine.start()
+        machine.wait_for(lambda _: machine.get("axis.c.pos-cmd") > 5)
+        machine.abort()
+        machine.mdi("G13.1")
+        machine.mdi("G0 X30 Z20")
+        run = machine.run_text(["%", "G1 X36 F1500", "Z14", "%"])
+        axes = run.samples.axes
+        assert np.hypot(axes["X"] - 36, axes["Z"] - 20).min() < 1e-4
 
 
 @needs_kinematics

@@ -8,7 +8,6 @@ import time
 import numpy as np
 import pytest
 
-from g12.tools.preview.tracer import Tracer
 from support.kinematics import keeps_its_limits, needs_kinematics, on_the_face, place
 from support.operated_machine import Machine, kept_machine
 from support.polar_programs import (
@@ -160,28 +159,6 @@ def test_g12_1_with_offsets_inches_and_diameters(lathe):
     assert off == pytest.approx([0] * 4, abs=0.02)
 
 
-@pytest.mark.parametrize(
-    "modes", ["G17 G90 G94 F500 G64 P0.01", "G18 G91 G95 F1 G61 G90.1 S500 M3"]
-)
-def test_modes_behind_g13_1_are_those_of_a_section_in_segments(modes):
-    section = ("G12.1", "G1 C20", "X-5", "M8", "G3 I0 J-5", "G13.1")
-    names = (
-        "motion_mode plane ijk_absolute_mode incremental feed units_per_rev coolant_flood x y z c"
-    )
-    reported = f"(DEBUG, #5399 {' '.join(f'#<_{name}>' for name in names.split())})"
-    ways = []
-    for kinematics in "01":
-        overrides = {"G12": {"POLAR_KINEMATICS": kinematics}}
-        with Tracer(SIM / "lathe_mm_kinematics.ini", overrides=overrides) as tracer:
-            ways.append(tracer.trace_text([*START, modes, *section, reported, "M2"]))
-    assert [way.error for way in ways] == [None, None]
-    assert [any(move.end[Y] for move in way.moves) for way in ways] == [False, True]
-    assert [message.text for message in ways[0].messages] == [
-        message.text for message in ways[1].messages
-    ]
-    assert ways[0].modes == ways[1].modes
-
-
 CORNERS = np.array([40 + 30j, -40 + 30j, -40 - 30j, 40 - 30j])
 SQUARE = ["G1 X40 C30 F6000", "X-40", "C-30", "X40", "C0"]
 ROUGHLY = ["G21 G18 G8 G90 G94 G64 P0.05 Q0", "G0 X45 Z2 C0", "G12.1"]
@@ -293,42 +270,26 @@ def face_accelerations(machine):
     return [machine.get(f"ini.{axis}.max_acceleration") for axis in "xy"]
 
 
-@pytest.mark.parametrize(
-    ("interrupt", "own"),
-    [("abort", "M52 P1"), ("abort_mdi", "M52 P0"), ("estop", "M52 P1"), ("jog_mode", "M52 P0")],
-)
-def test_an_interrupted_program_leaves_the_face_and_what_belongs_to_it(lathe, interrupt, own):
-    chance = random.Random(interrupt)
-    for section in (SECTION, CIRCLE_NEAR):
-        program = (own, *section)
-        lathe.sample()
-        start_on_the_face(lathe, program)
-        if section is CIRCLE_NEAR:  # round it the slide needs some of its acceleration
-            lathe.wait_for(lambda _: face_accelerations(lathe) < [707, 707])
-        time.sleep(chance.uniform(0, 1))
-        if interrupt == "estop":
-            lathe.estop()
-            lathe.enable()
-        else:
-            lathe.abort(interrupt != "abort_mdi")
-        if interrupt == "abort_mdi":
-            lathe.mdi_mode()
-        lathe.wait_for(lambda _: not on_the_face(lathe))
-        if interrupt == "jog_mode":
-            lathe.manual()
-            lathe.mdi("G4 P0")
-        lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707])
-        if interrupt not in ("estop", "abort_mdi"):
-            adaptive = own == "M52 P1"
-            lathe.wait_for(lambda now: ("M52" in now.modes.mcodes) is adaptive)  # noqa: B023
-        lathe.mdi("M52 P0")
-        lathe.mdi("G0 X22 C10")
-        assert place(lathe) == (22, 0, 10)
-        keeps_its_limits(lathe.samples())
-        assert lathe.errors() == []
-    lathe.motion_of(program)
-    assert not on_the_face(lathe)
+@pytest.mark.parametrize("mode", ["mdi_mode", "manual"])
+def test_an_abort_leaves_the_face_and_what_belongs_to_it(lathe, mode):
+    """Also where the operator changes the mode at once, which drops what the abort has queued."""
+    lathe.sample()
+    start_on_the_face(lathe, ("M52 P1", *CIRCLE_NEAR))
+    # round the circle the slide needs some of its acceleration
+    lathe.wait_for(lambda _: face_accelerations(lathe) < [707, 707])
+    lathe.abort(mode == "manual")
+    getattr(lathe, mode)()
+    lathe.wait_for(lambda _: not on_the_face(lathe))
+    lathe.mdi("G4 P0")
+    lathe.wait_for(lambda _: face_accelerations(lathe) == [707, 707])
+    if mode == "manual":
+        lathe.wait_for(lambda now: "M52" in now.modes.mcodes)
     lathe.mdi("M52 P0")
+    lathe.mdi("G0 X22 C10")
+    assert place(lathe) == (22, 0, 10)
+    keeps_its_limits(lathe.samples())
+    lathe.motion_of(CIRCLE_NEAR)
+    assert not on_the_face(lathe)
 
 
 def test_a_section_that_fails_leaves_the_acceleration_of_the_ini(lathe):

@@ -181,16 +181,6 @@ def test_waiting_for_an_input(lathe):
     assert Cut(lathe.samples()).points[-1] == pytest.approx((10, 5), abs=1e-4)
 
 
-@pytest.mark.parametrize(("on", "x"), [(True, 12), (False, 9)])
-def test_block_delete_is_the_operators_inside_too(lathe, on, x):
-    lathe.block_delete(on)
-    lathe.motion_of(
-        section("G1 X12", "/X9", "o1 if [1]", "/ G1 C1", "o1 endif", "C0", feed="F3000")
-    )
-    lathe.block_delete(False)
-    assert lathe.stat().position[0] == pytest.approx(x)
-
-
 def test_program_stops_inside(lathe):
     lathe.open_text(section("G1 X12", "M0", "C3", feed="F3000"))
     lathe.start()

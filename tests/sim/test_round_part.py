@@ -6,11 +6,12 @@ import re
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString, Point, box
+from shapely.geometry import LineString, Point
 
 from support.foreign_programs import FOREIGN, translation
 from support.operated_machine import kept_machine
 from support.polar_programs import FEED, ROUND
+from support.shape_geometry import polygon
 from support.valid_programs import valid_program
 
 LIMIT = 0.005 + 0.001  # POLAR_TOLERANCE, and what sampling may add
@@ -38,29 +39,23 @@ def test_random_contours_are_cut_at_the_programmed_feed(mill):
     assert abs(proof.program.samples.axes["Y"]).max() == 0.0
 
 
-PLATE = box(-37, -22, 37, 22).buffer(8, 256)  # of the job: 90 by 60, its corners round
-SLOT = LineString([(-15, 0), (15, 0)]).buffer(8, 256)  # 3 deep
-HOLES = [(-33, -19), (-33, 19), (33, -19), (33, 19)]
-CUTTER, OWN_ERROR = (
-    2.5,
-    0.022,
-)  # mm, the radius; FreeCAD's own arcs leave the slot's wall by so much
+HEXAGON = polygon(6, 28, angle=30)  # of the job: 4 deep, with a pocket of radius 6, 3 deep
+HOLES = [(-5.5, -9.526), (-5.5, 9.526), (11, 0)]
+CUTTER, OWN_ERROR = 2.5, 0.01  # mm, the radius; FreeCAD's arcs have three decimals
 
 
 def test_a_job_of_freecads_is_cut_round_the_part(mill):
     """Posted by its own post for LinuxCNC; eight times its feeds, for the test's time."""
-    job = FOREIGN / "freecad" / "plate.nc"
+    job = FOREIGN / "freecad" / "bar.nc"
     text = translation(job, "mill-round-part", "--diameter", "100", "--ini", str(mill.ini.path))
     faster = re.sub(r"F([\d.]+)", lambda feed: f"F{8 * float(feed[1]):g}", text)
     mill.reset()
     samples = mill.motion_of(["G21 G90 G0 Z80", *faster.splitlines()])
-    outline, slot, drilled = (on_surface(samples, depth, 50) for depth in (6, 3, 6.5))
-    outside = [at for at in map(Point, outline[::5]) if not PLATE.contains(at)]
-    from_edge = [PLATE.exterior.distance(at) for at in outside]
+    outline, pocket, drilled = (on_surface(samples, depth, 50) for depth in (4, 3, 6))
+    outside = [at for at in map(Point, outline[::5]) if not HEXAGON.contains(at)]
+    from_edge = [HEXAGON.exterior.distance(at) for at in outside]
     assert (min(from_edge), max(from_edge)) == pytest.approx((CUTTER, CUTTER), abs=LIMIT)
-    wanted, made = PLATE.buffer(CUTTER, 256).exterior, LineString(outline)
+    wanted, made = HEXAGON.buffer(CUTTER, 256).exterior, LineString(outline)
     assert max(made.distance(wanted.interpolate(at)) for at in range(int(wanted.length))) < LIMIT
-    inside = [at for at in map(Point, slot[::5]) if SLOT.contains(at)]
-    wall = min(map(SLOT.exterior.distance, inside))
-    assert CUTTER - OWN_ERROR - LIMIT < wall < CUTTER + LIMIT
+    assert np.hypot(*pocket.T).max() == pytest.approx(6 - CUTTER, abs=OWN_ERROR + LIMIT)
     assert sorted({tuple(at) for at in drilled.round(3)}) == HOLES

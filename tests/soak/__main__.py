@@ -78,7 +78,7 @@ def run(name, seed, folder, count):
         said, _ = process.communicate(timeout=max(left, 0))
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
+        process.wait()  # not for its output: a machine of its own session may still hold the pipe
         return ""
     if "soak_" not in name and not process.returncode:
         with open(f"{folder}/tried", "a", encoding="utf-8") as file:

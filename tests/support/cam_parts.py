@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Ten parts as a CAM system sees them: where the tool's centre goes over the face of a bar of 40.
+"""Parts as a CAM system sees them: where the tool's centre goes over the face of a bar of 40.
 
 X, Y and Z in mm, X as a radius, the face at Z0. A path is a list of moves: ``("rapid", x, y, z)``,
 ``("line", x, y, z)`` and ``("arc", x, y, z, i, j, turns)`` with the centre from the arc's start and
@@ -59,22 +59,12 @@ def helix(radius, top, bottom, parts):
 
 
 HEX = polygon(6, 16.5, math.radians(30))
-ROUNDED = [
-    ("line", 12, 5, -2), ("line", 12, -5, -2), ("arc", 5, -12, -2, -7, 0, -1),
-    ("line", -5, -12, -2), ("arc", -12, -5, -2, 0, 7, -1), ("line", -12, 5, -2),
-    ("arc", -5, 12, -2, 7, 0, -1), ("line", 5, 12, -2), ("arc", 12, 5, -2, 0, -7, -1),
-]  # fmt: skip
-WAVE = [(round(4 + 8 * t, 4), round(6 * math.sin(4 * t), 4)) for t in np.linspace(0, 1, 41)]
 PARTS = {
     "hexagon": CamPart(1, 400, (
         ("rapid", 34, 0, 5), ("rapid", 34, 0, 2), ("line", 34, 0, -3),
         *lines([(14.2894, 14), *HEX[1:], (19.4856, 5.25)], -3), ("line", 34, 5.25, -3),
         ("rapid", 34, 5.25, 5),
     ), 41, 3),
-    "square": CamPart(1, 300, (
-        ("rapid", 30, 5, 5), ("line", 30, 5, -2), *ROUNDED, ("line", 12, 0, -2),
-        ("line", 30, 0, -2), ("rapid", 30, 0, 5),
-    )),
     "pocket": CamPart(3, 250, (
         ("rapid", 4, 0, 5), ("rapid", 4, 0, 1), ("line", 4, 0, 0), *helix(4, 0, -3, 6),
         *ring(4, -3, 1), ("line", 7, 0, -3), *ring(7, -3, 1), ("line", 6, 0, -2.5),
@@ -90,9 +80,6 @@ PARTS = {
         *lines([(-12, 4), (-6, -2)], -0.4), ("rapid", -6, -2, 4), ("rapid", -3, -12, 4),
         ("line", -3, -12, -0.4), ("line", 8, -10, -0.4), ("rapid", 8, -10, 4),
     )),
-    "wave": CamPart(3, 350, (
-        ("rapid", 4, 0, 3), ("line", 4, 0, -1), *lines(WAVE[1:], -1), ("rapid", *WAVE[-1], 3),
-    )),
     "levels": CamPart(2, 400, (
         ("rapid", 25, 0, 5), ("line", 25, 0, -1), ("line", 15, 0, -1), *ring(15, -1),
         ("line", 15, 0, -2.5), *ring(15, -2.5), ("line", 25, 0, -2.5), ("rapid", 25, 0, 5),
@@ -100,13 +87,6 @@ PARTS = {
     "ramp": CamPart(3, 250, (
         ("rapid", 14, -8, 3), ("line", 14, -8, 0), ("line", 14, 8, -1.5), ("line", 6, 10, -3),
         ("arc", 6, -10, -3, 0, -10, 1), ("line", 14, -8, -1.5), ("rapid", 14, -8, 6),
-    )),
-    "dome": CamPart(3, 500, (
-        ("rapid", 16, 0, 4), *(
-            ("line", *at(r, a), round(-r * r / 100, 4))
-            for k, a in enumerate(np.linspace(0, 2, 5))
-            for r in np.linspace(16, 6, 6)[:: 1 - k % 2 * 2]
-        ), ("rapid", *at(6, 2), 4),
     )),
     "inside": CamPart(3, 200, (
         ("rapid", 4, 2, 5), ("rapid", 4, 2, 1), ("line", 4, 2, -2), ("line", 11, 0, -2),

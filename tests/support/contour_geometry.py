@@ -71,11 +71,6 @@ def arc(centre, radius, start, sweep):
     return Round(middle + cmath.rect(radius, math.radians(start)), middle, math.radians(sweep))
 
 
-def spaced(shape, step):
-    """Return points of a shape, at most ``step`` apart."""
-    return shape.points(max(2, math.ceil(shape.length / step)))
-
-
 def distance(points, shapes):
     """Return the distance of points from the nearest of the shapes."""
     return np.min([shape.distance(points) for shape in shapes], axis=0)

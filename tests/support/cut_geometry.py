@@ -63,17 +63,3 @@ def tangent(move, fraction):
 def in_plane(moves):
     """Return the moves that go sideways (not the plunge)."""
     return [move for move in moves if math.hypot(*tangent(move, 0.5)[:2]) > 0.5]
-
-
-def largest_jump(moves):
-    """Return the largest change of direction between consecutive moves, in degrees."""
-    jumps = [
-        math.degrees(math.acos(np.clip(np.dot(tangent(before, 1.0), tangent(after, 0.0)), -1, 1)))
-        for before, after in zip(moves, moves[1:])
-    ]
-    return max(jumps, default=0.0)
-
-
-def path_length(moves):
-    """Return the length of the path."""
-    return sum(move.length for move in moves)

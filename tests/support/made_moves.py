@@ -89,4 +89,4 @@ def samples_of(path, count=2000, shift=0.0, axes="XYZ"):
     }
     found["Y" if "Y" in axes else "X"] += shift
     ones = np.ones(count)
-    return Samples(times, found, ones, ones, ones.astype(int), 2 * ones.astype(int))
+    return Samples(times, found, ones, ones.astype(int), 2 * ones.astype(int))

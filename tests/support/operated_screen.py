@@ -94,10 +94,6 @@ class OperatedPanel(Panel):
             self.wait_idle(PATIENCE)
             self.settle()
 
-    def block_delete(self, on):
-        """Let blocks that begin with / be skipped."""
-        self._do(self._command.set_block_delete, on)
-
     def wait_idle(self, timeout):
         self.wait(self.is_idle, timeout, "end of motion")
 

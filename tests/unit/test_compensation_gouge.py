@@ -190,16 +190,6 @@ def test_the_end_of_an_open_contour_may_be_cut_from_its_far_side_alone():
         assert "cuts into the other" in cut(shapes, side, 3.0)[0]
 
 
-def test_a_contour_that_crosses_itself_is_refused_whatever_the_angle():
-    for angle in (5, 10, 30, 60, 90, 120):
-        over = cmath.rect(40.0, math.radians(angle))
-        loop = lines(-40 + 0j, 0j, 60 + 0j, 60 - 30j, -over, over, over + 20j, over - 60 + 20j)
-        for side in (LEFT, RIGHT):
-            assert cut(loop, side, 1.0)[0], (angle, side)
-    sliver = lines((13.28, 9.154), (13.809, 10.3136), (14.0905, 9.9972), (8.608, 15.3087))
-    assert "cuts into the other" in cut(sliver, LEFT, 1.0)[0]  # hardly, after a corner
-
-
 # Where a contour closes beside its leads.
 
 NEAR = 0.02

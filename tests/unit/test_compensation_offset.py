@@ -3,24 +3,18 @@
 
 import random
 
-import numpy as np
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
 
 from g12.compensation.centre_path import tool_path
 from g12.compensation.contour import Contour
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.section.effects import Action
-from support.contour_geometry import distance, shape_of
 from support.random_contours import (
     TOLERANCE,
     as_shapely,
     contour_of,
     drawn,
-    open_path,
     outline,
-    points_of,
     stands,
 )
 
@@ -54,33 +48,6 @@ def test_the_tools_centre_runs_on_the_boundary_of_the_grown_or_shrunk_part(side,
     assert count > 70
 
 
-@settings(max_examples=150)
-@given(st.randoms(use_true_random=False))
-def test_any_contour_is_cut_at_the_tools_radius_or_refused(draw):
-    part = open_path(draw)
-    assume(part)
-    contour = contour_of(part)
-    try:
-        made = along_part(contour)
-    except Refusal as refusal:
-        assert refusal.message.startswith("G12.1 line ")
-        return
-    for move in made:
-        own = part.shapes[move.line - 3 : move.line - 1]  # nearly straight ones are cut as one
-        off = [abs(shape.distance(points_of(move)) - part.radius) for shape in own]
-        at_radius = np.min(off, axis=0).max() <= TOLERANCE
-        assert at_radius or is_cut_deeper_elsewhere(own, move, made, part.radius)
-
-
-def is_cut_deeper_elsewhere(walls, move, made, radius):
-    """Tell whether each point that a move gouges is cut deeper by another portion: a spiral."""
-    others = [shape_of(each.curve) for each in made if abs(each.line - move.line) > 1]
-    points = np.concatenate([points_of(wall) for wall in walls])
-    away = shape_of(move.curve).distance(points)
-    gouged = away < radius - TOLERANCE
-    return gouged.any() and others and (distance(points, others) < away)[gouged].all()
-
-
 # Joints, one at a time: lines in, coordinates of the tool's centre out.
 
 
@@ -104,26 +71,6 @@ def to(x, c):
 
 def mark(contour, line):
     contour.mark(Action(line, "M8", None))
-
-
-@pytest.mark.parametrize("beside", [0.0, 0.001])
-def test_a_ramp_square_to_the_contour_and_as_long_as_the_radius_is_no_way_at_all(beside):
-    """Its Z remains; where it is hardly square a short move remains as well."""
-    contour = Contour(12.0, 0.0, 0.0)
-    contour.straight(second=5.0 + beside, at=1, feed=100.0)
-    contour.compensate(LEFT, 2.0, at=2)
-    contour.straight(10.0, 5.0, -1.0, at=2, feed=100.0)
-    contour.straight(second=-5.0, at=3, feed=100.0)
-    contour.compensate(40, 0.0, at=4)
-    contour.straight(12.0, -5.0 - beside, 0.0, at=4, feed=100.0)
-    path = tool_path(contour, contour.elements, TOLERANCE)
-    assert [(move.line, move.h0, move.h1) for move in path] == [
-        (1, 0.0, 0.0), (2, 0.0, -1.0), (3, -1.0, -1.0), (4, -1.0, 0.0),
-    ]  # fmt: skip
-    moves = [move for move in path if hasattr(move, "curve")]
-    assert [move.line for move in moves] == ([1, 2, 3, 4] if beside else [1, 3])
-    ends = {1: 12 + 5j + beside * 1j, 2: 12 + 5j, 3: 12 - 5j, 4: 12 - 5j - beside * 1j}
-    assert [move.end for move in moves] == pytest.approx([ends[move.line] for move in moves])
 
 
 # What the tool cannot reach.

@@ -65,20 +65,6 @@ def test_fine_points_with_few_decimals_are_cut(side, radius, chord):
     assert abs(made - expected).max() < 0.005 + 0.0008
 
 
-def test_all_that_a_contour_was_moved_by_is_bounded_and_told():
-    """A step of 0.0005 in a corner, and the points of a half circle, rounded to 0.001."""
-    arc = [15 * cmath.exp(-1j * math.pi * k / 900) for k in range(901)]
-    points = [(round(z.real, 3), round(z.imag, 3)) for z in arc]
-    step = [(-15.0, 5.0), (-15.0005, 5.0)]
-    ends = [(-15.0, 40.0), (-9.5, 40.0)]
-    moved = [
-        centre_path(programmed(*way, *ends, side=42, radius=5.0, start=(9.5, 0.0)), 0.005)[1]
-        for way in (points, [*points, *step])
-    ]
-    assert 0.0014 < moved[0] < moved[1] <= 0.0015  # three tenths of the tolerance, all in all
-    assert centre_path(programmed((30, 0), (30, 9), (40, 9)), 0.005)[1] == 0.0
-
-
 size = st.floats(0.0001, 1.6).map(lambda value: round(value, 4))
 angle = st.floats(0.0, 2 * math.pi)
 

@@ -18,7 +18,6 @@ from g12.cylinder import (
 from g12.errors import Refusal
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
-from g12.moves.steps import Segments
 from g12.section.block_rules import SectionBlock
 from g12.section.effects import codes_of_section
 from g12.section.line import BlockLocation
@@ -48,55 +47,6 @@ def empty(c=0.0, z=0.0, x=22.0):
     """Return the contour of a section that begins at C in degrees, Z and X."""
     start = Start(z, math.radians(c), x)
     return Contour(math.radians(c) * RADIUS, z, x, plane=CYLINDER_WORDS.plane, start=start)
-
-
-def runs(contour, tolerance=0.005, **accelerations):
-    """Return the runs of segments on a machine all of whose axes are equally quick."""
-    even = {"X": 1000.0, "Z": 1000.0, "C": 3600.0, **accelerations}
-    axes = {letter: AXES[letter]._replace(acceleration=most) for letter, most in even.items()}
-    made = section(axes=axes)
-    made.tolerance = tolerance
-    return [step for step in made.plan(contour).steps if isinstance(step, Segments)]
-
-
-def test_a_little_z_and_depth_are_left_to_the_next_move_and_to_the_end():
-    contour = empty()
-    contour.straight(10.0, 0.0004, at=1, feed=100.0)
-    contour.straight(20.0, 0.0008, 21.9996, at=2, feed=100.0)
-    made = [(run.line, run.axes, run.segments[0][::2]) for run in runs(contour)]
-    ends = (1, "ZC", (0.0, 22.0)), (2, "ZCX", (0.0, 22.0)), (2, "ZX", (0.0008, 21.9996))
-    assert made == [*ends]
-
-
-def test_depth_is_a_move_of_x_alone_and_stops_where_the_corner_would_be_cut():
-    contour = empty()
-    contour.straight(height=18.0, at=1, feed=100.0)
-    contour.straight(10.0, at=2, feed=100.0)
-    contour.straight(10.0, 9.0, at=3, feed=9000.0)
-    made = [(run.axes, run.stop) for run in runs(contour)]
-    assert made[0] == ("X", False) and made[-1] == ("ZC", True)
-    assert runs(contour)[0].segments == [(0.0, 0.0, 18.0, 100.0)]
-    contour.elements[1] = contour.elements[1]._replace(feed=9000.0)
-    assert [run.stop for run in runs(contour)] == [True, True, True]
-
-
-@pytest.mark.parametrize(
-    ("ends", "slow"),
-    [
-        ([dict(height=12.0), dict(first=10.0)], "X"),
-        ([dict(second=10.0), dict(first=10.0)], "Z"),
-        ([dict(first=10.0), dict(second=10.0)], "C"),
-    ],
-)
-def test_the_slower_axis_decides_where_the_tool_stops(ends, slow):
-    """A right angle at F600, 1000 per second squared, that stops after it is rounded by 0.07."""
-    corner = empty()
-    for line, end in enumerate(ends, 1):
-        corner.straight(**end, at=line, feed=600.0)
-    even = {"X": 1000.0, "Z": 1000.0, "C": math.degrees(1000.0 / RADIUS)}
-    assert [run.stop for run in runs(corner, 0.16, **even)] == [False, True]
-    slower = {**even, slow: 0.4 * even[slow]}
-    assert [run.stop for run in runs(corner, 0.16, **slower)] == [True, True]
 
 
 @settings(max_examples=150)
@@ -131,7 +81,8 @@ def test_the_segments_of_any_arc_keep_to_it(size, centre, sweep, turn, surface, 
 
 
 def section(letters="XZC", axes=AXES, **found):
-    return Cylinder(with_found(START, **found), SectionMachine(letters, Settings(), axes))
+    machine = SectionMachine(frozenset(letters), Settings(), axes)
+    return Cylinder(with_found(START, **found), machine)
 
 
 def test_one_code_switches_on_and_off():
@@ -160,26 +111,7 @@ AT_AXIS = {"A": dict(x=30.0, z=22.0, c=0.0), "B": dict(x=0.0, y=30.0, z=22.0)}
 
 def on_mill(letter, settings=Settings(), letters="XYZAB", **found):  # noqa: B008 - it is frozen
     start = with_found(START, **{"words": {letter: RADIUS}, **AT_AXIS[letter], **found})
-    return CYLINDERS[letter](start, SectionMachine(letters, settings, ON_MILL))
-
-
-@pytest.mark.parametrize(
-    ("letter", "sense", "per_radian"),
-    [("A", "standard", -20), ("A", "reversed", 20), ("B", "standard", 20), ("B", "reversed", -20)],
-)
-def test_to_the_right_and_upwards_as_the_tool_sees_the_part(letter, sense, per_radian):
-    """Positive A leads to Y-, positive B to X+: LinuxCNC turns by the right-hand rule."""
-    made = on_mill(letter, Settings(rotary_sense=sense))
-    assert made.per_radian == per_radian
-    assert made.rules.turn_scale == pytest.approx(math.radians(per_radian))
-
-
-@pytest.mark.parametrize(("letter", "slide", "along"), [("A", 900.0, 1.0), ("B", 1000.0, 1j)])
-def test_the_slide_is_along_the_axis_of_rotation_and_z_is_square_to_it(letter, slide, along):
-    steps = CylinderSteps(empty(), on_mill(letter))
-    assert steps.slide_at(7.0 * along) == 7.0
-    assert steps.acceleration((along.real, along.imag, 0.0), 0j) == pytest.approx(slide)
-    assert steps.acceleration((0.0, 0.0, -1.0), 0j) == pytest.approx(1100.0)
+    return CYLINDERS[letter](start, SectionMachine(frozenset(letters), settings, ON_MILL))
 
 
 @pytest.mark.parametrize(

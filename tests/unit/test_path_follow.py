@@ -8,7 +8,6 @@ import pytest
 
 from g12.tools.path.follow import follow, windows_of, worst_of
 from g12.tools.path.part import Part
-from g12.tools.path.slowest import pace_of
 from g12.tools.path.track import Track, duration
 from support.made_moves import HOME, LIMITS, Hand, samples_of
 
@@ -135,20 +134,6 @@ def test_the_largest_deviation_is_looked_for_in_cuts_only():
     assert worst.deviation == pytest.approx(0.01)
     assert worst.move is hand.moves[1]
     assert worst.point[0] > 150
-
-
-def test_the_lowest_real_feed_leaves_out_starting_and_stopping():
-    path = Track(MILL, Hand(feed=600).line(x=100).moves, LIMITS)
-    samples = samples_of(path, 10001)  # of 1 ms
-    speed = np.full(10001, 10.0)  # mm/s
-    speed[:200] = np.linspace(0, 10, 200)
-    speed[-200:] = np.linspace(10, 0, 200)
-    speed[5000:5100] = 4.0
-    samples.axes["X"] = np.concatenate([[0.0], np.cumsum(speed[:-1]) * 1e-3])
-    pace = pace_of([0], [0], path, follow(path, samples, 1.0))
-    assert pace.lowest == pytest.approx(240, rel=0.01)
-    assert 45 < pace.point[0] < 55
-    assert pace.expected == pytest.approx(10)
 
 
 def test_a_sample_may_be_on_its_lines_moves_or_in_a_corner_with_the_neighbours():

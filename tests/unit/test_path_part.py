@@ -3,6 +3,7 @@
 
 import cmath
 import math
+import random
 
 import numpy as np
 import pytest
@@ -11,19 +12,10 @@ from hypothesis import strategies as st
 
 from g12.tools.path import part
 from g12.tools.path.part import Part
-from g12.tools.units import UNITS
+from support.growth import growth
 from support.made_moves import Hand
 
 MILL, FACE = Part(turning=False), Part(turning=True)
-
-
-@pytest.mark.parametrize(
-    ("centre", "unit", "place"), [(12.7, UNITS["mm"], "X12.7"), (-12.7, UNITS["inch"], "X−0.5")]
-)
-def test_where_x0_lies(centre, unit, place):
-    shifted = Part(turning=True, centre=centre)
-    assert part.x0_text(shifted, unit) == f"X0, the spindle's axis, is at machine {place}"
-    assert part.x0_text(FACE, unit) == ""
 
 
 @given(radius=st.floats(0.01, 500), sweep=st.floats(0.01, 2 * math.pi), error=st.floats(1e-5, 0.1))
@@ -83,6 +75,15 @@ def ring(radius):
 )
 def test_what_a_cutter_sweeps(line, radius, area):
     assert part.swept([np.array(line, float)], radius).area == pytest.approx(area, rel=1e-3)
+
+
+def test_the_area_of_lines_that_cross_takes_as_long_as_there_are_lines():
+    def crossing(count):
+        chance = random.Random(3)
+        line = np.array([[chance.uniform(0, 300), chance.uniform(0, 300), 0] for _ in range(count)])
+        return lambda: part.swept([line], 3.0)
+
+    assert growth(crossing, 100) < 10
 
 
 def test_c_stands_where_the_face_is_left_beside_the_centre_for_it():

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The geometry that pictures show, and that a picture of every kind comes out in every format."""
 
-import re
-import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,12 +16,10 @@ from g12.tools.machine.ini import Ini
 from g12.tools.path.follow import worst_of
 from g12.tools.plot import plan_view, style
 from g12.tools.plot.deviation import clearest_axes, window_lines
-from g12.tools.plot.face import history_of
-from g12.tools.plot.marks import Marks
-from g12.tools.plot.mill import cut_through, removed_to
+from g12.tools.plot.history import history_of
 from g12.tools.plot.picture import picture_of
 from g12.tools.plot.scene import scene_of
-from g12.tools.plot.unrolled import unrolled
+from g12.tools.plot.side_view import cut_through, removed_to
 from g12.tools.preview.moves import Event
 from g12.tools.units import MM, UNITS, clock, plain
 from g12.tools.verify.in_part import RAPID
@@ -65,7 +61,7 @@ def floors_of(hand, ini=MILL):
 
 
 def on_surface(shown):
-    return replace(shown, marks=Marks(surface=20.0))
+    return replace(shown, program=shown.program.on_surface(20.0))
 
 
 def turned():
@@ -210,7 +206,7 @@ def test_a_rapid_that_is_seen_end_on_has_a_mark(units):
         (rapid_through([0, 0, 5], [0.1, 0, 5]), [through]),
         (rapid_through([9, 0, 5], [9, 0, 2]), [down, through]),  # a line in the side view
     ):
-        shown = replace(scene(pocket(), units=units), marks=Marks((hit,)))
+        shown = replace(scene(pocket(), units=units), findings=[hit])
         assert warned(shown) == said and drawn_in_red(shown) == (True, down in said)
 
 
@@ -218,15 +214,15 @@ def test_a_rapid_that_is_seen_end_on_has_a_mark(units):
 def test_a_plunge_by_rapid_is_marked_on_the_unrolled_surface(surface, shown_at):
     """The path may be unrolled on a bar's radius."""
     hit = rapid_through([5.5, 0, 24], [5.5, 0, 18], surface=surface)
-    shown = unrolled(replace(scene(groove(), LATHE), marks=Marks((hit,), surface=20.0)))
+    shown = replace(on_surface(scene(groove(), LATHE)), findings=[hit])
     assert warned(shown) == ["rapid straight down into material"]
     assert drawn_in_red(shown) == (1, 1)
-    assert [each.values["path"][0][0] for each in shown.marks.rapids] == [pytest.approx(shown_at)]
+    assert [path[0][0] for path in shown.hits] == [pytest.approx(shown_at)]
 
 
 def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_view():
     found = Finding(WALL, 3, {"size": 0.1, "at": (60.0, 0, -4)}, (60.0, 0.0, -4.0))
-    shown = replace(scene(pocket()), marks=Marks((uncut((50.0, 0.0)), found)))
+    shown = replace(scene(pocket()), findings=[uncut((50.0, 0.0)), found])
     assert warned(shown) == ["uncut material", "finding in line 3"]
     low, high = plan_view.bounds_of(shown, [])
     assert low[0] < 20 and high[0] > 80 and low[1] < -30
@@ -235,7 +231,7 @@ def test_uncut_material_and_a_finding_with_a_place_are_in_the_legend_and_the_vie
 @pytest.mark.parametrize(("hand", "ini", "at"), [(pocket, MILL, (2, 0)), (turned, LATHE, (-1, 2))])
 def test_a_sign_is_where_its_finding_is(hand, ini, at):
     found = Finding(WALL, 3, {"size": 0.1}, (50.8, 0.0, -25.4))
-    shown = replace(scene(hand(), ini, units="inch"), marks=Marks((found,)))
+    shown = replace(scene(hand(), ini, units="inch"), findings=[found])
     lines = picture_of(shown).axes[0].lines
     signs = [line.get_xydata()[0] for line in lines if line.get_marker() == style.SIGN["marker"]]
     assert signs == [pytest.approx(at)]
@@ -252,7 +248,8 @@ def test_a_boss_and_uncut_material_are_cut_through_their_middle_in_the_side_view
 def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
     shown = scene(pocket())
     assert plan_view.top_of(shown) == 0.0
-    assert plan_view.top_of(replace(shown, marks=Marks(z0=-1.5))) == -1.5
+    shown.program.z0 = -1.5
+    assert plan_view.top_of(shown) == -1.5
     assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
 
 
@@ -285,22 +282,6 @@ def test_holes_in_an_area_stay_holes():
     assert style.outline_of(Point(0, 0).buffer(0)) is None
 
 
-# ---------------------------------------------------------------- layout
-
-
-def test_every_text_of_a_wide_picture_is_on_the_page(tmp_path):
-    """Of the detail of a deviation, too: below the views."""
-    hand = Hand().rapid(z=5).pocket([5, 10], depth=-21.7351).rapid(z=5).rapid(x=200)
-    shown = with_real_motion(hand.pocket([5, 10], depth=-22.1239), MILL, {"Y": 0.01})
-    path = tmp_path / "picture.svg"
-    style.save(picture_of(shown), path)
-    page = ET.parse(path).getroot()
-    height = float(page.get("height").removesuffix("pt"))
-    (last,) = (each for each in page.iter() if (each.text or "").startswith("the window is"))
-    across, down = map(float, re.findall(r"[-.\d]+", last.get("transform"))[:2])
-    assert across > 0 and 0 < down < height
-
-
 # ---------------------------------------------------------------- deviations
 
 
@@ -328,7 +309,7 @@ def test_the_largest_deviation_is_reported_with_its_line_in_the_axes_that_show_i
 
 
 def test_a_cylinder_is_drawn_unrolled_with_the_motion_of_a_run():
-    flat = unrolled(on_surface(with_real_motion(groove(), LATHE, {"Z": 0.0123})))
+    flat = on_surface(with_real_motion(groove(), LATHE, {"Z": 0.0123}))
     (level,) = plan_view.floors_of(flat)
     along_c = 20 * np.radians(270)
     assert level.z == pytest.approx(18)
@@ -369,6 +350,16 @@ def test_every_kind_of_picture_is_drawn_the_same_every_time(make, suffix, start,
         style.save(picture_of(make()), path)
     one, other = (path.read_bytes() for path in paths)
     assert one.startswith(start) and one == other
+
+
+@pytest.mark.parametrize(
+    ("x", "units", "place"), [(12.7, "mm", "X12.7"), (-12.7, "inch", "X−0.5"), (0.0, "mm", "")]
+)
+def test_the_place_of_a_lathes_x0_is_said_where_it_is_not_the_machines(x, units, place):
+    shown = scene(flats(), LATHE, units=units)
+    shown.program.zero = (x, 0.0, 0.0)
+    assert shown.x0_text == (place and f"X0, the spindle's axis, is at machine {place}")
+    assert scene(pocket()).x0_text == ""
 
 
 def test_other_suffixes_are_refused_by_name(tmp_path):

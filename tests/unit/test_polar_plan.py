@@ -2,19 +2,16 @@
 """Polar planning, whole sections: the contour is cut, at its feed, in as few segments as can be."""
 
 import math
-from math import radians
 
 import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from g12.compensation.contour import Contour
 from g12.errors import Refusal
-from g12.machine_ini import Axis, FaceAxes
+from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
-from g12.polar.face import FaceLimits
 from g12.polar.polar_section import Polar
 from g12.settings import Settings
 from support.contour_geometry import Round, Straight, distance, distance_from_path
@@ -94,13 +91,6 @@ def test_stays_within_any_tolerance_of_the_contour_both_ways_and_keeps_x(shapes,
     assert length == pytest.approx(expected, rel=5e-3, abs=0.05)  # no turn too many
 
 
-@pytest.mark.parametrize(("feed", "segments"), [(60.0, 27), (250.0, 21), (1000.0, 21)])
-def test_an_even_feed_is_held_where_the_machine_is_quick_enough(feed, segments):
-    """X has 1000 mm/s²: at F250 it takes 8 ms to speed up, and the segments near X0 are short."""
-    run = polar().plan(programmed([Straight(1 + 0j, 20 + 20j)], feed=feed)).steps[0]
-    assert len(run.segments) == segments
-
-
 # At its feed.
 
 
@@ -140,41 +130,15 @@ def test_a_path_through_the_pole_is_refused_on_demand(shape):
     assert careful.plan(programmed([Straight(9 + 0j, -9 + 0.2j)])).steps
 
 
-# What is left over at the end.
-
-
-def test_what_the_segments_leave_over_of_both_slides_comes_last():
-    contour = Contour(10.0, 0.0, 0.0)
-    end = Round(10 + 0j, 0.0004 + 0j, math.pi / 2).end
-    contour.arc(1, end.real, end.imag, 0.0003, i=-9.9996, at=2, feed=250.0)
-    *_, rest = runs(polar().plan(contour))
-    assert (rest.axes, rest.stop) == ("XZ", True)
-    assert (rest.segments[0][0], rest.segments[0][2]) == (abs(end), 0.0003)
-    contour = Contour(10.0, 0.0, 0.0)
-    contour.arc(1, 0.0, 10.0, 0.0003, i=-10.0, at=2, feed=250.0)
-    assert runs(polar().plan(contour))[-1].axes == "Z"
-
-
-def test_segments_that_keep_x_stay_within_the_tolerance():
-    """Two circles, one after the other: without a stop segments are as far off as they may be."""
-    centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
-    contour = Contour(25.4718, 0.0, 0.0)
-    for line in (1, 2):
-        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, at=line, feed=300.0)
-    made = cuts(contour, polar().plan(contour))
-    assert any(cut.radius[0] == cut.radius[1] for cut in made)
-    assert abs(abs(path(made) - centre) - size).max() < TOLERANCE
-
-
 # Where it begins, from the settings and the machine's axes.
 
-INCH = 25.4
 LIMITS = {letter: Axis(-100.0, 100.0, 50.0, 1000.0) for letter in "XZC"}
 
 
 def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found):  # noqa: B008
     """Return a section that begins with what is found."""
-    return Polar(with_found(START, **found), SectionMachine(letters, settings, axes, face))
+    machine = SectionMachine(frozenset(letters), settings, axes, face)
+    return Polar(with_found(START, **found), machine)
 
 
 @pytest.mark.parametrize(
@@ -197,6 +161,10 @@ def section(settings=Settings(), letters="XZC", axes=LIMITS, face=None, **found)
             " cancel it with G92.1 (an X offset of G54 may stay)",
         ),
         ({"x": 0.0}, "needs the tool at X above zero, not at 0 (radius)"),
+        (
+            {"letters": "XYZC", "y": 10.0},
+            "needs Y0: the tool must stand on the spindle's axis, not at Y10",
+        ),
     ],
 )
 def test_where_no_section_begins(found, rule):
@@ -205,62 +173,6 @@ def test_where_no_section_begins(found, rule):
     assert str(refused.value) == f"G12.1 line 7: {rule}"
 
 
-@pytest.mark.parametrize(
-    ("machine_mm", "inch", "tolerance"),
-    [
-        (1.0, False, 0.005),
-        (INCH, True, 0.0002),
-        (1 / 0.0393700787, False, 0.0002 / 0.0393700787),  # LINEAR_UNITS = 0.0393700787
-    ],
-)
-def test_lengths_are_in_program_units(machine_mm, inch, tolerance):
-    made = section(machine_mm=machine_mm, inch=inch)
-    millimetre = 1 / INCH if inch else 1.0
-    machine_unit = machine_mm * millimetre
-    assert made.rules.radius_tolerance == pytest.approx(0.0005 * INCH * millimetre)
-    assert made.tolerance == pytest.approx(tolerance)
-    assert made.least == pytest.approx(0.001 * millimetre)
-    assert made.in_program(LIMITS["X"]) == pytest.approx(1000.0 * machine_unit)
-
-
-def test_what_settings_make_of_words():
-    settings = Settings(polar_z="allow", polar_g0="feed", polar_g0_feed=500.0)
-    rules = section(settings, machine_mm=INCH).rules
-    assert (rules.height_with_others, rules.rapid_feed) == (True, pytest.approx(12700.0))
-    assert (section().rules.height_with_others, section().rules.rapid_feed) == (False, None)
-
-
 def test_kinematics_are_refused_on_a_machine_without_them():
     with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
         section(Settings(polar_kinematics=True))
-
-
-@pytest.mark.parametrize(("override", "kept"), [(1.5, 1.5), (0.5, 1.0)])
-def test_what_the_axes_of_the_face_allow(override, kept):
-    x, y, slide = (Axis(-1.0, 1.0, 9.0, acceleration) for acceleration in (30.0, 40.0, 20.0))
-    axes = {**LIMITS, "C": Axis(-9.0, 9.0, 50.0, 700.0)}
-    kinematics = Settings(polar_kinematics=True)
-    face = FaceAxes(x, y, slide, override)
-    made = section(kinematics, axes=axes, face=face, machine_mm=INCH)
-    assert made.face == FaceLimits(
-        acceleration=pytest.approx(50.0 * INCH),
-        round_acceleration=pytest.approx(30.0 * INCH),
-        slide_acceleration=pytest.approx(20.0 * INCH),
-        c_acceleration=radians(700.0),
-        c_speed=radians(50.0),
-        override=kept,
-        segments_speed=pytest.approx(17.988, abs=0.001),
-    )
-    assert section(face=face).face is None
-
-
-def test_a_tool_beside_x_s_line_is_so_everywhere_and_the_slide_has_its_own_speed():
-    slide = Axis(-1.0, 1.0, 9.0, 20.0)
-    beside = Settings(polar_kinematics=True, polar_tool_offset=-2.0)
-    face = FaceAxes(slide, slide, slide, 1.0)
-    made = section(beside, face=face, machine_mm=INCH)
-    assert made.rules.beside == made.face.beside == -2.0 * INCH
-    assert made.face.slide_speed == pytest.approx(9.0 * INCH)
-    assert section().rules.beside == 0.0
-    assert section(Settings(polar_pole="refuse")).pole_refused
-    assert not section().pole_refused

@@ -11,7 +11,6 @@ from g12.geometry.curve import Arc, Line
 from g12.tools.machine.ini import read_machine_ini
 from g12.tools.path.section_times import (
     Leg,
-    axis_derivatives,
     lathe_axes,
     least_seconds,
     section_times,
@@ -89,25 +88,6 @@ def test_no_way_is_quicker_than_the_limits(away, lathe):
         for feed in (200, 1000, 5000):
             segments, face, least = times_of(path, feed, lathe)
             assert 0 < least <= 1.01 * face and face <= segments
-
-
-@pytest.mark.parametrize("bend", [1 / 30, 0.0])
-def test_the_derivatives_are_those_of_radius_and_angle(bend):
-    """Against finite differences, on an arc round (10, 0) and on a line."""
-    step = 1e-3
-
-    def path(at):
-        return 10 + 30 * np.exp(1j * at / 30) if bend else 7 + at * cmath.rect(1, 0.4)
-
-    at = np.linspace(-20.0, 30.0, 40)
-    before, points, after = (path(at + shift) for shift in (-step, 0.0, step))
-    polar = (after - before) / (2 * step) * points.conj() / abs(points)
-    found = axis_derivatives(abs(points), polar.real, polar.imag, bend)
-    places = [abs(before), abs(points), abs(after)]
-    angles = list(np.unwrap(np.angle([before, points, after]), axis=0))
-    for (first, second), (one, two, three) in zip(found, (places, angles)):
-        assert (three - one) / (2 * step) == pytest.approx(first, abs=1e-6)
-        assert (three - 2 * two + one) / step**2 == pytest.approx(second, abs=1e-5)
 
 
 ALONG_A_RADIUS = np.linspace(10.0, 50.0, 2001) + 0j

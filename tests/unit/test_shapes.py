@@ -3,9 +3,7 @@
 
 import math
 from functools import partial
-from math import sqrt
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -155,73 +153,9 @@ def test_a_bad_call_is_refused_by_name(name, wrong, rule):
 # ---------------------------------------------------------------- slots and pockets
 
 
-def half_turns_of(numbers):
-    """Count the half turns as the sub makes them: down, flat, rings, back, the finish."""
-    turns = numbers["first_turns"] + (numbers["levels"] - 1) * numbers["next_turns"]
-    further = numbers["further"]
-    turns += numbers["levels"] * (2 + 3 * further + (further > 0))
-    return turns + numbers["finish"] * (3 if further else 4)
-
-
-@pytest.mark.parametrize(
-    ("shape", "entries", "x", "back", "on"),
-    [
-        ("polar_slot", dict(angle=30, depth_per_pass=2), (2.7, 12.5 + 7), 0, None),
-        ("polar_slot", dict(angle=0, width=6, length=30), (0, 12), 180, None),  # to and fro
-        ("polar_slot", dict(angle=0, width=20, length=21), (0.5, 7.5), 0, None),
-        ("polar_pocket", dict(x=10, c=0), (5, 15), 90, 90),  # C swings
-        ("polar_pocket", dict(x=0, c=20), (15, 25), 90, 90),
-        ("polar_pocket", dict(x=5, c=0), (0, 10), 180, None),  # round the centre
-    ],
-)
-def test_how_far_the_axes_go(shape, entries, x, back, on):
-    """From where a shape begins C goes back and on; with each half turn on by half a turn."""
-    made = planned(shape, **entries)
-    turned = 180 * (half_turns_of(made.locals) + 1)
-    assert (made.extent.x, made.extent.z) == (pytest.approx(x), (-4.0, 5.0))
-    start = made.locals["start_angle"]
-    assert made.extent.c == pytest.approx((start - back, start + (turned if on is None else on)))
-
-
 def rough_radii(numbers):
     first, step = numbers["first_ring"], numbers["ring_step"]
     return [first + index * step for index in range(numbers["further"] + 1)]
-
-
-CLEARED = [
-    (shape, tool, {name: size}, allowance)
-    for shape, name in (("polar_slot", "width"), ("polar_pocket", "diameter"))
-    for tool in (2.0, 6.0)
-    for size in (tool + 0.5, 11.3, 30.0)
-    for allowance in (LEFT_OUT, 0.2)
-]
-
-
-@pytest.mark.parametrize(("shape", "tool", "size", "allowance"), CLEARED)
-def test_rings_lead_to_the_wall_without_a_core_and_the_ramp_is_the_steepest(
-    shape, tool, size, allowance
-):
-    found = FOUND._replace(spindle_tool=Tool(3, tool / 2))
-    numbers = numbers_of(shape, LATHE, found, allowance=allowance, depth_per_pass=1.5, **size)
-    (expected,), left, widest = size.values(), max(allowance, 0), 0.75 * tool
-    rough = rough_radii(numbers)
-    assert rough[-1] == pytest.approx((expected - tool) / 2 - left)
-    assert 0 < rough[0] <= 0.9 * tool / 2
-    assert np.all(np.diff(rough) > 0) and np.all(np.diff(rough) <= widest)
-    assert len(rough) - 1 < 1 + (rough[-1] - rough[0]) / widest  # no more than needed
-    assert numbers["finish"] == (left > 0)
-    assert not left or numbers["finish_ring"] == pytest.approx((expected - tool) / 2)
-
-    line = 45 - expected if shape == "polar_slot" else 0.0
-    half_turn = line + math.pi * rough[0]
-    steepest = half_turn * math.tan(math.radians(LATHE.entry_angle))
-    down = numbers["step_down"]
-    for height, which in ((numbers["near_z"] + down, "first"), (down, "next")):
-        turns, fall = taken(numbers, f"{which}_turns", f"{which}_fall")
-        assert turns * fall == pytest.approx(height)
-        assert fall <= steepest * (1 + 1e-9)
-        assert (turns - 1) * steepest < height
-    assert numbers["line_share"] == pytest.approx(line / half_turn)
 
 
 def test_a_cutter_as_wide_as_the_slot_goes_along_its_line():
@@ -295,77 +229,3 @@ def test_rounds_without_number_are_refused(sides):
         f"polar_polygon: stock_diameter and depth_per_pass make {(most + 1) * moves} moves,"
         " the most is 100000"
     )
-
-
-@pytest.mark.parametrize(
-    ("entries", "outside"),
-    [
-        (dict(sides=3, across_flats=30, stock_diameter=44), 22 + 3 + 1),
-        (dict(sides=2, across_flats=20, stock_diameter=30), 15 + 3 + 1),
-        (dict(corner_radius=2), 20 + 3 + 1),
-        # the first round of a small triangle in a large bar is 4.25 less deep than the stock
-        (dict(sides=3, across_flats=16, stock_diameter=50), 16 + (25 + 3 - 4.25) - 8),
-    ],
-)
-def test_rounds_begin_clear_of_the_stock_and_of_every_corner(entries, outside):
-    """Corners that would lie beyond the stock are not there."""
-    made = planned("polar_polygon", **entries)
-    assert made.locals["outside"] == made.extent.x[1] == pytest.approx(outside)
-
-
-# ---------------------------------------------------------------- holes
-
-
-@pytest.mark.parametrize(
-    ("c", "first", "step", "first_turn", "turn"),
-    [
-        (0, LEFT_OUT, LEFT_OUT, 0, 60),
-        (350, 20, 60, 30, 60),
-        (-720, 90, 270, 90, -90),
-        (100, -100, -20, 160, -20),
-        (0, 180, 180, 180, 180),
-        (0, -180, -180, -180, -180),
-    ],
-)
-def test_first_and_further_turns(c, first, step, first_turn, turn):
-    machine = LIVE._replace(c=c)
-    numbers = numbers_of("face_holes", machine, first_angle=first, step_angle=step)
-    assert taken(numbers, "first_turn", "turn") == pytest.approx((first_turn, turn))
-    assert taken(numbers, "count", "x") == (6, 15)
-
-
-@pytest.mark.parametrize(
-    ("name", "machine", "entries", "x", "turn"),
-    [
-        ("face_hole_at", LIVE, {}, sqrt(125), 26.565051),
-        ("face_hole_at", LIVE, dict(x=LEFT_OUT, c=LEFT_OUT), 0, 0),
-        ("face_hole_at", LIVE._replace(diameters=False), dict(c=0), 20, 0),
-        ("face_holes", LIVE._replace(beside=9.0), {}, 12, -36.869898),  # the tool stands nearer
-    ],
-)
-def test_where_the_first_hole_is(name, machine, entries, x, turn):
-    numbers = numbers_of(name, machine, **entries)
-    assert taken(numbers, "x", "first_turn") == pytest.approx((x, turn))
-
-
-def test_how_far_the_axes_go_to_holes():
-    assert planned("face_holes", first_angle=30).extent == ((15, 15), (-8, 5), (0, 330))
-    side = planned("side_holes", found=FOUND._replace(x=21.0), step_angle=-20)
-    assert side.locals["travel"] == 2
-    assert side.extent == ((12, 22), (-10, -10), (-60, 0))
-
-
-@pytest.mark.parametrize(
-    ("peck", "expected"),
-    [
-        (LEFT_OUT, (1, 8, 0, 0)),
-        (3, (3, 3, 1, 0.254)),
-        (-3, (3, 3, 0, 0.254)),
-        (8, (1, 8, 1, 0.254)),
-        (4, (2, 4, 1, 0.254)),
-        (0.2, (40, 0.2, 1, 0.1)),
-    ],
-)
-def test_pecks(peck, expected):
-    numbers = numbers_of("face_holes", peck=peck)
-    assert taken(numbers, "pecks", "step", "full", "clear") == pytest.approx(expected)

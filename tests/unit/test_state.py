@@ -8,8 +8,6 @@ from g12.moves.setup import SectionMachine
 from g12.moves.steps import Segments
 from g12.polar.polar_section import Polar
 from g12.settings import Settings
-from g12.state import beyond_travel
-from support.planner_context import MM
 from support.section_starts import START, with_found
 
 AXES = {"X": Axis(-10, 300, 1, 1), "C": Axis(-360, 720, 1, 1), "Z": Axis(-200, 20, 1, 1)}
@@ -38,24 +36,6 @@ def test_every_axis_has_its_ends_and_may_stand_on_them(place, axis, text):
     line, beyond = leaving([within, Segments(4, "XCZ", [*ends, (*place, 1)], False), after])
     assert (line, beyond.axis) == (4, axis)
     assert beyond.rule == f"the {axis} axis would go to {text}"
-
-
-@pytest.mark.parametrize(
-    ("state", "axis", "text"),
-    [
-        (MM._replace(inch=True), "X",
-         "X axis would go to 301 mm (radius), beyond its limit 300 mm (G20 is active)"),
-        (MM._replace(machine_mm=25.4), "Z",
-         "Z axis would go to 301 in, beyond its limit 300 in (G21 is active)"),
-        (MM._replace(inch=True), "C",
-         "C axis would go to 301 degrees, beyond its limit 300 degrees"),
-    ],
-)  # fmt: skip
-def test_a_machine_shows_the_radius_of_x_in_its_own_unit(state, axis, text):
-    for diameters, rule in ((True, text), (False, text.replace(" (radius)", ""))):
-        ranges = [(axis, 0.0, 301.0)]
-        beyond = beyond_travel(state, {axis: (0.0, 300.0)}, ranges, diameters=diameters)
-        assert beyond.rule == f"the {rule}"
 
 
 @pytest.mark.parametrize(

@@ -243,11 +243,12 @@ def settle_interrupted(interp: Interp) -> str:
 
 
 def restore_left(interp: Interp) -> None:
-    """Restore all that an interrupted borrower left."""
+    """Restore all that an interrupted borrower left, in the planner too."""
     stack = _stack(interp)
     if stack:
         _restore_interrupted(interp, stack[0])
         stack.clear()
+    _command_dropped(interp)
 
 
 def _restore_interrupted(interp: Interp, saved: Saved) -> None:
@@ -257,12 +258,7 @@ def _restore_interrupted(interp: Interp, saved: Saved) -> None:
 
 
 def after_abort(interp: Interp, now: float) -> None:
-    """Restore all that the aborted borrower changed, in the planner too; ``now`` in seconds.
-
-    The interpreter may be ahead, and LinuxCNC has dropped the blocks that it had queued: path
-    control, F and adaptive feed may be in force in the interpreter already, but not in the planner.
-    So they are commanded anyway.
-    """
+    """Restore all that the aborted borrower changed, in the planner too; ``now`` in seconds."""
     borrowed = kept(interp, Borrowed)
     if borrowed.stack:
         borrowed.aborted = now, borrowed.stack[0]
@@ -270,6 +266,15 @@ def after_abort(interp: Interp, now: float) -> None:
     at, saved = borrowed.aborted
     if saved and now - at < ABORTED_AGAIN:
         _restore_interrupted(interp, saved)
+    _command_dropped(interp)
+
+
+def _command_dropped(interp: Interp) -> None:
+    """Command path control and F in force, even if the interpreter has them.
+
+    It may have been ahead of the abort, past the end of a section, with nothing left to restore.
+    But LinuxCNC has dropped the blocks that it had queued: the planner may never have had them.
+    """
     if not interp.cutter_comp_side:  # under compensation LinuxCNC refuses it, and no code borrows
         interp.execute(modes_in_force(interp).path_block)
     if interp.feed_rate:

@@ -116,22 +116,25 @@ class SectionKind(ABC):
 
 def check_entry(
     start: SectionStart,
-    letters: Iterable[str],
+    machine: SectionMachine,
     needed: str,
-    rules: Iterable[tuple[bool, str]],
-    centred: Iterable[str] = "X",
+    rules: Iterable[tuple[bool, str]] = (),
+    *,
+    centred: str = "X",
+    across: str = "Y",
     centre: str = "the spindle's axis",
 ) -> None:
     """Refuse to begin a section in modes that none allows, or against its own ``rules``.
 
-    ``letters`` are the machine's axes, ``needed`` those of the section. ``centred`` are those whose
-    0 is ``centre``.
+    ``needed`` are its axes. ``centred`` are those whose 0 is ``centre``, and ``across``, on which
+    the tool has to stand there if the machine has that axis. (The Y of a face is another one.)
     """
     *others, last = tuple(needed)
     state = start.state
+    stands = across if across in machine.letters and not machine.face else ""
     for holds, rule in (
         (
-            set(needed) <= set(letters),
+            set(needed) <= machine.letters,
             f"needs a machine with an {', '.join(others)} and a {last} axis",
         ),
         (start.alone, "must be alone in its block"),
@@ -142,7 +145,15 @@ def check_entry(
         (not (refused := refused_mode(state)), refused),
         (not state.surface_speed, "needs G97: with G96 the speed would change with X"),
         (not state.rotation, "needs an unrotated work offset (G10 L2 R0)"),
-        *(_unshifted(start, letter, centre) for letter in centred),
+        *(_unshifted(start, letter, centre) for letter in (*centred, *stands)),
+        *(
+            (
+                abs(state.position(letter)) <= state.rounding,
+                f"needs {letter}0: the tool must stand on {centre}, not at"
+                f" {letter}{number(state.position(letter))}",
+            )
+            for letter in stands
+        ),
         *rules,
     ):
         if not holds:

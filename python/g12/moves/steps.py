@@ -244,11 +244,11 @@ def segments_with_feed(
         if turned < LEAST_TURN:
             to_turn, turned = turn, 0.0
         to_height = move.h0 + rise * length if rise else height
-        if abs(to_slide - slide) < least and turned:
-            to_slide = slide
-        if hypot(to_slide - slide, to_height - height) < least and turned:
-            to_height = height
-        distance = hypot(to_slide - slide, to_height - height) or turned
+        distance = hypot(to_slide - slide, to_height - height)
+        if turned and abs(to_slide - slide) < least:
+            to_slide, distance = slide, abs(to_height - height)
+            if distance < least:
+                to_height, distance = height, turned
         if distance:
             segments.append((to_slide, to_turn, to_height, feed * distance / (length - done)))
             slide, turn, height, done = to_slide, to_turn, to_height, length

@@ -63,7 +63,7 @@ class Polar(SectionKind):
         x, machine = start.state.x, self.machine
         above = f"needs the tool at X above zero, not at {number(x)} (radius)"
         own = ((start.state.plane != YZ, "needs G18 or G17, not G19"), (x > 0, above))
-        check_entry(start, machine.letters, "XC", own)
+        check_entry(start, machine, "XC", own)
         if machine.settings.polar_kinematics and not machine.face:
             raise start.location.refuse(
                 "needs [KINS] KINEMATICS = polar_xzc for [G12] POLAR_KINEMATICS = 1"
@@ -87,7 +87,7 @@ class Polar(SectionKind):
         return self.machine.settings.polar_pole == "refuse"
 
     @property
-    def face(self) -> FaceLimits | None:
+    def face_limits(self) -> FaceLimits | None:
         """The limits on the face, None where sections are made of segments alone."""
         face = self.machine.face
         if not (face and self.machine.settings.polar_kinematics):
@@ -179,7 +179,7 @@ class PolarSteps(StepMaker):
             self.run(move.line, "XC", [segment], True)
 
     def make_all(self, path: Sequence[PathElement], stopping: Sequence[bool]) -> None:
-        limits = self._kind.face
+        limits = self._kind.face_limits
         if not limits:
             super().make_all(path, stopping)
             return

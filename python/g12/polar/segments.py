@@ -28,7 +28,7 @@ from g12.moves.steps import BULGE, Density, Split, spaced
 RADIAL = 1e-9  # program units: a line that close to the pole is a radius
 FEWEST = 0.5  # segments along a whole move, as a density: it is one segment
 SHORT = 0.1  # of the distance from the pole: the density along such a move is even, and
-WHOLE = 0.55  # segments are one: two ends on the path lose twice `LOSS`
+WHOLE = 0.7  # segments by the bulge are one: with both ends on the path it is 3/4 of the deviation
 
 Seen = Callable[[float], complex]  # a path as `_seen_from_pole` returns it
 
@@ -57,20 +57,24 @@ def split_move(curve: Curve, law: Law, beside: float = 0.0) -> Split:
     if isinstance(curve, Line) and not beside and abs(start.imag) <= RADIAL:
         return _radius(curve)
     apsides = _apsides(curve, start)
-    deviation = min(law.deviation, *[0.5 * abs(seen(at)) for at in (0.0, length, *apsides)])
+    nearest = min(map(abs, [start, seen(length), *map(seen, apsides)]))
+    deviation = min(law.deviation, 0.5 * nearest)
     density = _density(seen, length, curve.curvature, deviation, law, beside)
     if _is_one_segment(curve, start, deviation, density, beside):
         lengths, shares = [0.0, length], [0.0, 0.0]
     else:
         lengths, shares = spaced(length, density, apsides, lambda at: abs(seen(at)))
-    slides, angles = list[float](), list[float]()
-    angle, phase, bend = angle_of(curve.direction(0.0)), 0.0, curve.curvature
+    slides: list[float] = []
+    angles: list[float] = []
+    angle, before, bend = angle_of(curve.direction(0.0)), 0.0, curve.curvature
+    square = beside * beside
     for at, share in zip(lengths, shares):
-        there, before = seen(at), phase
+        there = seen(at)
         x, y = there.real, there.imag - deviation * share
-        slide = sqrt(x * x + y * y - beside * beside)
+        slide = sqrt(x * x + y * y - square)
         phase = atan2(y * slide + x * beside, x * slide - y * beside)  # of motion against slide
         angle -= remainder(phase - before, FULL_TURN)
+        before = phase
         slides.append(slide)
         angles.append(angle + bend * at)
     return Split(slides, angles, lengths)
@@ -118,8 +122,10 @@ def _is_one_segment(
     if isinstance(curve, Arc) and 2.0 * abs(curve.centre) <= deviation:
         return True
     length = curve.length
-    is_short = length < SHORT * (abs(start) - abs(beside))
-    return is_short and length * density(0.5 * length)[0] < WHOLE
+    if length >= SHORT * (abs(start) - abs(beside)):
+        return False
+    segments, share = density(0.5 * length)
+    return length * segments <= 1.0 and length * segments * sqrt(abs(share)) < WHOLE
 
 
 def _density(
@@ -131,25 +137,27 @@ def _density(
     """
     even, fewest = 0.5 / law.ripple, FEWEST / length
     bulging, flat = 1.0 / (8.0 * BULGE * deviation), 1.0 / (18.0 * BULGE * deviation)
+    beside_square = beside * beside
 
     def density(at: float) -> tuple[float, float]:
         there = seen(0.0 if at < 0.0 else at if at < length else length)
         x, y = there.real, there.imag
         square = x * x + y * y
-        slide_square = square - beside * beside
+        slide_square = square - beside_square
         slide = sqrt(slide_square)
         along, around = (x * slide - y * beside) / square, (y * slide + x * beside) / square
         sliding, turning, growth = x / slide, around / slide, abs(x) / slide_square
         bulge = bulging * (turning * (1.0 + along * sliding) - own)
-        change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
         segments = sqrt(abs(bulge))
         if growth > segments:
             segments = growth
         if fewest > segments:
             segments = fewest
-        cube = flat * growth * abs(change)
-        if cube > segments * segments * segments:
-            segments = cube ** (1.0 / 3.0)
+        if own:  # the curvatures may be equal
+            change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
+            cube = flat * growth * abs(change)
+            if cube > segments * segments * segments:
+                segments = cube ** (1.0 / 3.0)
         smooth = even * growth * around * around
         if smooth > segments:
             segments = max(segments, min(smooth, law.x_hold, law.c_hold * slide))

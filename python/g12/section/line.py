@@ -183,10 +183,7 @@ def split_words(text: str) -> Iterator[tuple[str, str]]:
 
 
 def value_end(text: str, start: int) -> int:
-    """Return the end of the value that begins at ``start``: number, parameter or expression.
-
-    `verify` reads values with a function of its own, so that it detects a fault in this one.
-    """
+    """Return the end of the value that begins at ``start``: number, parameter or expression."""
     at = _end(_SIGNS, text, start)
     if text[at : at + 2] == "#<":
         return _end(_NAME, text, at + 1)

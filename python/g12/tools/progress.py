@@ -5,14 +5,12 @@ import contextlib
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import TypeVar
+from collections.abc import Callable, Iterable, Iterator
 
 TICK = 1.0  # s, on a terminal
 LINE_TICK = 5.0  # s, not on a terminal, where every line remains
 HIDDEN = "\r\033[K"
 
-Item = TypeVar("Item")
 Report = Callable[[str], None]
 
 
@@ -37,13 +35,6 @@ def working(text: str, clock: bool = False) -> Iterator[Report]:
         done.set()
         if ticker.is_alive():
             ticker.join()
-
-
-def counted(items: Sequence[Item], what: str, report: Report) -> Iterator[Item]:
-    """Yield items, reporting each: ``what`` 37 of 300."""
-    for number, item in enumerate(items, start=1):
-        report(f"{what} {number} of {len(items)}")
-        yield item
 
 
 def print_all(lines: Iterable[str]) -> None:

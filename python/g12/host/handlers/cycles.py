@@ -18,8 +18,8 @@ from g12.errors import Refusal
 from g12.host import borrowed, messages
 from g12.host.call_frame import set_locals_at
 from g12.host.interp import Interp, ParsedBlock, kept, millimetres_per_unit, words_in
+from g12.host.interp_state import read_state, tool_of_entry
 from g12.host.machine import MACHINE
-from g12.host.state import read_state, tool_of_entry
 from g12.lengths import ROUNDING_MM
 from g12.request import CLOCKWISE, COUNTERCLOCKWISE, WHOLE, Words
 from g12.section.block_rules import NO_CODE, GGroup

@@ -20,6 +20,7 @@ from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame, run_code
 from g12.host.handlers import aborts
 from g12.host.interp import MOVE_WORDS, Interp, ParsedBlock, words_in
+from g12.host.interp_state import read_state
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.messages import SECTION_BEGAN, asked, report_of
@@ -28,7 +29,6 @@ from g12.host.section_output import SectionOutput
 from g12.host.section_reader import SectionReader, block_of
 from g12.host.section_run import Section
 from g12.host.spindle_c import missing_code
-from g12.host.state import read_state
 from g12.lengths import DEGREES_PER_TURN
 from g12.machine_ini import owns_g12_1, refuse_owned_codes
 from g12.moves.setup import SectionKind, SectionMachine

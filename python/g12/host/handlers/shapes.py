@@ -14,10 +14,10 @@ from g12.host import borrowed, messages
 from g12.host.call_frame import locals_at, set_locals_at
 from g12.host.handlers import sections
 from g12.host.interp import Interp
+from g12.host.interp_state import feed_spindle, read_state
 from g12.host.kinematics_switch import face_in_force
 from g12.host.machine import MACHINE
 from g12.host.section_output import STOP_HERE
-from g12.host.state import feed_spindle, read_state
 from g12.polar.polar_section import POLE_SHARE, Polar
 from g12.section.effects import SectionStart, code_of_handler
 from g12.section.line import BlockLocation

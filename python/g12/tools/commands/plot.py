@@ -87,7 +87,7 @@ def moves_to_draw(program: Path, ini: Ini, options: argparse.Namespace) -> Trace
 
 def judged_texts(judgement: Judgement, scene: Scene) -> Iterator[str]:
     """Yield what ``verify`` says, by kind; a finding that the picture marks is "in red"."""
-    marked = set(map(id, scene.marks.findings))
+    marked = set(map(id, scene.findings))
     for severity in SEVERITIES:
         for each in judgement.of(severity):
             kind = "in red" if id(each) in marked else severity

@@ -24,7 +24,6 @@ from g12.tools.machine.files import write
 from g12.tools.machine.ini import Ini, IniError, read_ini
 from g12.tools.units import name_of_unit
 
-KEPT = "g12/cycles-page.ngc"  # below XDG_STATE_HOME
 NICE = 5  # of the sketches: LinuxCNC's own threads and the screen come first
 INTERPRETER = "g12.tools.cycles_page.interpreter"
 PATIENCE = 15.0  # s, of a button for a sketch
@@ -49,9 +48,8 @@ class Page:
             self.ini = Ini(Path(ini_path), ())
             self.sketch = Sketch(REFUSED, str(problem))
         self.steps: list[Step] = []
-        state = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-        self._kept_path = Path(state) / KEPT
-        self._kept, self._changed = read_kept(self._kept_path), changed
+        self._last: dict[str, Step] = {}  # the step that each form was added as
+        self._changed = changed
         self._sketcher: Any = None
         self._wanted: tuple[Form, str] | None = None  # until it is drawn
         self._wake, self._ended = threading.Condition(), False
@@ -71,7 +69,7 @@ class Page:
     def select(self, form: Form, step: Step | None = None) -> None:
         """Show a form, with its last values or those of a step."""
         self.form, self.entries = form, form.entries
-        step = step or self._kept.get((form.name, self.unit))
+        step = step or self._last.get(form.name)
         self.texts = {
             entry.name: number_text(step.values[entry.name]) if step else self.default(entry)
             for entry in form.entries
@@ -126,10 +124,7 @@ class Page:
             self.steps.append(step)
         else:
             self.steps[at] = step
-        self._kept[step.form.name, step.unit] = step
-        with contextlib.suppress(OSError):  # a home that cannot be written: kept until the end
-            self._kept_path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-            write(self._kept_path, program_text([*self._kept.values()]).encode())
+        self._last[self.form.name] = step
 
     def move(self, at: int, by: int) -> int:
         """Move a step up or down; return its new place."""
@@ -201,11 +196,3 @@ class Page:
             if self._sketcher:
                 self._sketcher.close()
             return Sketch(REFUSED, str(problem)[:LONGEST] or type(problem).__name__)
-
-
-def read_kept(path: Path) -> dict[tuple[str, str], Step]:
-    """Return the last steps, by form and unit, none where a stranger wrote the file."""
-    with contextlib.suppress(OSError, UsageError):
-        steps = read_program(path.read_text(encoding="utf-8", errors="replace"))
-        return {(step.form.name, step.unit): step for step in steps}
-    return {}

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The table of forms: what an operator fills in for each cycle, shape and kind of holes.
 
-It is the data of `forms.toml`; ngcgui's files (`ngcgui`, one for each unit) and the Cycles page
-(`tools/cycles_page`) are made from it.
+It is the data of `forms.toml`; ngcgui's files (`.ci/forms.py`, one for each unit) and the Cycles
+page (`tools/cycles_page`) are made from it.
 """
 
-import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from itertools import combinations
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, NamedTuple
@@ -75,17 +73,6 @@ class Form(NamedTuple):
     heights: Sequence[str] = ("retract", "top")  # of a mill's form: where it ends, begins to cut
 
 
-def block(words: str, *optional: str) -> str:
-    """Return a block with those of its optional words whose first one's entry is not 0."""
-    lines: list[str] = []
-    for number in range(len(optional), -1, -1):
-        for chosen in combinations(optional, number):
-            needed = " AND ".join(f"#<{word[0].lower()}>" for word in chosen)
-            begin = f"{'elseif' if lines else 'if'} [{needed}]" if needed else "else"
-            lines += [f"o<words> {begin}", " ".join([f"  {words}", *chosen])]
-    return "\n".join([*lines, "o<words> endif"])
-
-
 def read_forms() -> tuple[Form, ...]:
     data = tomllib.loads(FILE.read_text(encoding="utf-8"))
     return tuple(_form(data["groups"], **form) for form in data["forms"])
@@ -95,13 +82,11 @@ def _form(
     groups: Mapping[str, Any],
     entries: Sequence[Any],
     change: Mapping[str, Any] = NONE,
-    body: str = "",
     **others: Any,
 ) -> Form:
     written = [each for one in entries for each in (groups[one] if isinstance(one, str) else [one])]
     made = [_entry(*each, change=change.get(each[0], {})) for each in written]
-    body = re.sub("^WORDS (.*)", lambda found: block(*found[1].split(" | ")), body, flags=re.M)
-    return Form(entries=tuple(made), body=body, **others)
+    return Form(entries=tuple(made), **others)
 
 
 def _entry(

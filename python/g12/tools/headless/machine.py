@@ -162,13 +162,12 @@ class Machine:
         self._isolated.close()
 
     def _samples(self) -> Samples:
-        columns = np.fromfile(self.folder / SAMPLES_FILE).reshape(-1, len(self.axes) + 4).T
-        velocity, requested, line, kind = columns[len(self.axes) :]
+        columns = np.fromfile(self.folder / SAMPLES_FILE).reshape(-1, len(self.axes) + 3).T
+        velocity, line, kind = columns[len(self.axes) :]
         return Samples(
             time=np.arange(len(velocity)) * self.ini.servo_period,
             axes=dict(zip(self.axes, columns)),
             velocity=velocity,
-            requested=requested,
             line=line.astype(int),
             kind=kind.astype(int),
         )

@@ -22,7 +22,6 @@ DRAIN = 0.05  # s between reads of it
 THREAD = "servo-thread"
 MOTION_PINS = (
     ("f", "motion.current-vel"),
-    ("f", "motion.requested-vel"),
     ("s", "motion.program-line"),
     ("s", "motion.motion-type"),
 )

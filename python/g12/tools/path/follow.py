@@ -44,12 +44,6 @@ class Followed:
         first, last = np.searchsorted(self.move, (move, move + 1))
         return slice(max(0, first - 1) if last > first else first, last)
 
-    def part_speed(self) -> np.ndarray:
-        """Return the speed along the part, mm/s, of each sample."""
-        if len(self.points) < 2:
-            return np.zeros(len(self.points))
-        return np.linalg.norm(np.gradient(self.points, self.time, axis=0), axis=1)
-
 
 class Worst(NamedTuple):
     """The largest deviation of a run from the moves at feed, mm."""

@@ -16,7 +16,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from shapely.geometry import LineString, MultiLineString, Point
+from shapely.geometry import LineString, Point
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
@@ -24,12 +24,12 @@ from g12.lengths import MM_PER_INCH
 from g12.machine_ini import AXIS_LETTERS, face_joints
 from g12.tools.machine.ini import Ini
 from g12.tools.preview.moves import THIRD_AXIS, Move, Trace
-from g12.tools.units import Unit
 
 CHORD_ERROR = 2e-4  # of the polylines of curves
 LONGEST_ARC_CHORD = math.radians(10)
 DISC_SEGMENTS = 64  # per quarter of a swept disc
 LEAST_CHORDS = 12  # of half a circle
+STRETCH = 32  # chords whose swept area is computed at once
 X, Y, Z, C = 0, 1, 2, 5
 FLAT = 17  # the plane whose arcs keep their level
 INCHES = 1  # length_units of the interpreter
@@ -139,12 +139,6 @@ def last_zero(trace: Trace, axis: int = X) -> float:
     return trace.position[axis] - state[name] * unit if name in state else 0.0
 
 
-def x0_text(part: Part, unit: Unit) -> str:
-    """Return a text with the position of a turning part's X0; "" where it is machine X0."""
-    position = unit.text(part.centre)
-    return f"X0, the spindle's axis, is at machine X{position}" if position != "0" else ""
-
-
 def _spiral_segments(move: Move, chord_error: float) -> int:
     """Return the number of segments of a move across the part while C turns.
 
@@ -240,24 +234,26 @@ def swept(lines: Iterable[np.ndarray], radius: float) -> BaseGeometry:
 
 
 def _swept_line(line: np.ndarray, radius: float) -> BaseGeometry:
-    """Return the area along one line; a ring in two halves: GEOS 3.11 loses its middle.
+    """Return the area along one line.
 
-    A circle is the disc of its outer edge without that of its inner one, which is much quicker.
+    It is the union of short stretches: the time and memory of a buffer grow with the crossings of
+    its own line, and GEOS 3.11 loses the middle of a closed one. A circle is the disc of its outer
+    edge without that of its inner one, which is much quicker.
     """
     changed = np.any(np.abs(np.diff(line, axis=0)) > 1e-9, axis=1)
     line = line[np.concatenate([[True], changed])]
-    half = len(line) // 2
-    if len(line) > 2 and np.abs(line[0] - line[-1]).max() < 1e-9:
+    if len(line) > 2 * LEAST_CHORDS + 1 and np.abs(line[0] - line[-1]).max() < 1e-9:
         middle = line[:-1].mean(axis=0)
         away = np.linalg.norm(line - middle, axis=1)
-        if half > LEAST_CHORDS and np.ptp(away) < 1e-6:
+        if np.ptp(away) < 1e-6:
             edges = max(away[0] - radius, 0.0), away[0] + radius
             inner, outer = (Point(middle).buffer(edge, DISC_SEGMENTS) for edge in edges)
             return outer.difference(inner)
-        shape = MultiLineString([line[: half + 1], line[half:]])
-    else:
-        shape = LineString(line) if len(line) > 1 else Point(line[0])
-    return shape.buffer(radius, DISC_SEGMENTS)
+    if len(line) == 1:
+        return Point(line[0]).buffer(radius, DISC_SEGMENTS)
+    step = min(STRETCH, max(1, len(line) // 2))
+    stretches = (line[first : first + step + 1] for first in range(0, len(line) - 1, step))
+    return unary_union([LineString(each).buffer(radius, DISC_SEGMENTS) for each in stretches])
 
 
 def disc(centre: Sequence[float], radius: float, chord_error: float = CHORD_ERROR) -> BaseGeometry:

@@ -12,15 +12,14 @@ class Samples:
     """The motion recorded at the servo rate, numpy arrays of equal length.
 
     ``time`` in seconds from the first sample; ``axes`` maps ``"X"`` … to commanded positions;
-    ``velocity`` is the speed along the path and ``requested`` the commanded one, machine units per
-    second; ``line`` the program line in motion; ``kind`` 0 for standstill, 1 rapid, 2 feed,
-    3 arc, 4 tool change, 5 probe, 6 rotary unlock.
+    ``velocity`` is the speed along the path, machine units per second; ``line`` the program line in
+    motion; ``kind`` 0 for standstill, 1 rapid, 2 feed, 3 arc, 4 tool change, 5 probe, 6 rotary
+    unlock.
     """
 
     time: np.ndarray
     axes: dict[str, np.ndarray]
     velocity: np.ndarray
-    requested: np.ndarray
     line: np.ndarray
     kind: np.ndarray
 
@@ -30,6 +29,5 @@ class Samples:
     def only(self, chosen: np.ndarray) -> Self:
         """Return the samples of a mask."""
         axes = {letter: values[chosen] for letter, values in self.axes.items()}
-        velocity, requested = self.velocity[chosen], self.requested[chosen]
-        line, kind = self.line[chosen], self.kind[chosen]
-        return type(self)(self.time[chosen], axes, velocity, requested, line, kind)
+        velocity, line, kind = (each[chosen] for each in (self.velocity, self.line, self.kind))
+        return type(self)(self.time[chosen], axes, velocity, line, kind)

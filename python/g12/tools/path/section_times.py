@@ -39,7 +39,7 @@ TRIED_SHARES = 0.8 ** np.arange(10)  # of the face's acceleration: the tried val
 PLANNED, SWITCHING = 0.7, 0.05  # of it along the path; seconds for both switches
 OF_SLIDE = 0.7  # acceleration of X and Y on a machine without kinematics
 TINY = 1e-9  # a smaller slope of an axis along the path, among others, counts as this
-POLE_RADIUS = 1e-6  # mm: there C has no angle
+STRAIGHT = 1e-6  # 1/mm: a smaller curvature is a line's
 Pair = tuple[np.ndarray, np.ndarray]  # of an axis: two values at each point of the path
 
 
@@ -95,21 +95,28 @@ class SectionTimes(NamedTuple):
 
 
 class _Stretch(NamedTuple):
-    """Points (complex) one step apart from one stop to the next, with their feeds.
-
-    ``bend`` is the path's signed curvature there; ``along`` and ``around`` are its direction's
-    components along the radius and around the pole.
-    """
+    """Points (complex) one step apart from one stop to the next, with their feeds."""
 
     points: np.ndarray
     feed: np.ndarray
-    bend: np.ndarray
-    along: np.ndarray
-    around: np.ndarray
 
     @property
     def step(self) -> float:
         return float(np.abs(np.diff(self.points)).mean())
+
+    @property
+    def bend(self) -> np.ndarray:
+        """The path's signed curvature."""
+        heading = np.gradient(self.points, self.step)
+        return (np.gradient(heading, self.step) * heading.conj()).imag
+
+    @property
+    def derivatives(self) -> tuple[Pair, Pair]:
+        """Both derivatives along the path of the slide's position, and of C's angle."""
+        axes = np.abs(self.points), np.unwrap(np.angle(self.points))
+        slopes = [np.gradient(axis, self.step) for axis in axes]
+        slide, c = ((slope, np.gradient(slope, self.step)) for slope in slopes)
+        return slide, c
 
 
 def section_times(legs: Sequence[Leg], axes: LatheAxes) -> SectionTimes:
@@ -146,14 +153,9 @@ def _drawn(run: Sequence[Leg]) -> _Stretch:
     count = int(min(MOST, max(FEWEST, ends[-1] / STEP)))
     lengths = np.linspace(0.0, ends[-1], count + 1)
     owners = np.clip(np.searchsorted(ends, lengths, side="right") - 1, 0, len(run) - 1)
-    legs = [run[owner] for owner in owners]
     shares = (lengths - ends[owners]) / np.diff(ends)[owners]
-    points = np.array([leg.curve.point(share) for leg, share in zip(legs, shares)])
-    heading = np.array([leg.curve.direction(share) for leg, share in zip(legs, shares)])
-    bends = np.array([leg.curve.curvature for leg in run])[owners]
-    feeds = np.array([leg.feed for leg in run])[owners]
-    polar = heading * points.conjugate() / np.maximum(np.abs(points), TINY)
-    return _Stretch(points, feeds, bends, polar.real, polar.imag)
+    points = np.array([run[n].curve.point(share) for n, share in zip(owners, shares)])
+    return _Stretch(points, np.array([leg.feed for leg in run])[owners])
 
 
 def _off_pole(stretch: _Stretch) -> Iterator[_Stretch]:
@@ -175,15 +177,16 @@ def _turn(end: complex, start: complex, axes: LatheAxes) -> float:
 
 def _in_segments(stretch: _Stretch, axes: LatheAxes) -> tuple[np.ndarray, np.ndarray]:
     """Return the speeds in segments, and the acceleration along the path."""
-    radius, along, around = np.abs(stretch.points), np.abs(stretch.along), np.abs(stretch.around)
+    (along, _), (turn, _) = stretch.derivatives
+    radius, slope = np.abs(stretch.points), _size(along)
     (speed, slide), (c_speed, spindle) = axes.slide, axes.c_radians
-    spiral = stretch.around * (1.0 + along**2) / radius
+    spiral = turn * (1.0 + along**2)
     deviation = np.minimum(axes.tolerance, 0.5 * radius)
-    bulge = 8.0 * SEGMENT_BULGE * deviation / np.maximum(np.abs(stretch.bend - spiral), TINY)
+    bulge = 8.0 * SEGMENT_BULGE * deviation / _size(stretch.bend - spiral)
     length = np.minimum(np.sqrt(bulge), len(radius) * stretch.step)
-    length = np.where(around > TINY, np.minimum(length, radius / np.maximum(along, TINY)), length)
-    quick = np.minimum(slide / np.maximum(along, TINY), spindle * radius / np.maximum(around, TINY))
-    most = np.minimum(speed / np.maximum(along, TINY), c_speed * radius / np.maximum(around, TINY))
+    length = np.where(np.abs(turn) > TINY, np.minimum(length, radius / slope), length)
+    quick = np.minimum(slide / slope, spindle / _size(turn))
+    most = np.minimum(speed / slope, c_speed / _size(turn))
     chorded = np.sqrt(STOPPED_IN * quick * length)
     return np.minimum(np.minimum(stretch.feed, most), chorded), quick
 
@@ -198,7 +201,7 @@ def _on_face(
     """Return the seconds with kinematics, with segments where those are quicker."""
     face = axes.face or [OF_SLIDE * axes.slide.acceleration] * 2
     whole = share * math.hypot(*face)
-    most = np.where(stretch.bend, share * min(face), whole)
+    most = np.where(np.abs(stretch.bend) > STRAIGHT, share * min(face), whole)
     followed = np.minimum(stretch.feed, _followed(stretch, axes, most))
     braking = np.where(followed >= chorded, PLANNED * whole, quick)
     return _seconds(stretch, np.maximum(followed, chorded), braking)
@@ -206,16 +209,13 @@ def _on_face(
 
 def _followed(stretch: _Stretch, axes: LatheAxes, most: np.ndarray) -> np.ndarray:
     """Return the highest speed that C and the slide can follow, wherever the planner brakes."""
-    (speed, acceleration), (c_speed, c_acceleration) = axes.slide, axes.c_radians
-    radius = np.abs(stretch.points)
-    slide, c = axis_derivatives(radius, stretch.along, stretch.around, stretch.bend)
-    square = np.minimum(speed / _size(slide[0]), c_speed / _size(c[0])) ** 2
-    square = np.minimum(square, most / _size(stretch.bend))
-    for (first, second), limit in ((c, c_acceleration), (slide, acceleration)):
+    square = most / _size(stretch.bend)
+    for (first, second), (speed, limit) in zip(stretch.derivatives, (axes.slide, axes.c_radians)):
         p, q = np.abs(second) / limit, np.abs(first) / limit
         both = np.maximum(p * p + (q * stretch.bend) ** 2, TINY**2)
         under = p * p - both * (1.0 - (q * most) ** 2)
         bound = (p - np.sqrt(np.maximum(under, 0.0))) / both
+        square = np.minimum(square, (speed / _size(first)) ** 2)
         square = np.where(under >= 0.0, np.minimum(square, np.maximum(bound, 0.0)), square)
         square = np.where(q * most > 1.0 + 1e-6, 0.0, square)
     return np.sqrt(square)
@@ -232,20 +232,6 @@ def _seconds(stretch: _Stretch, speeds: np.ndarray, braking: np.ndarray) -> floa
     return _quickest(np.square(speeds), stretch.step, [(gains, np.zeros(len(gains)))])
 
 
-def axis_derivatives(
-    radius: np.ndarray, along: np.ndarray, around: np.ndarray, bend: np.ndarray | float
-) -> tuple[Pair, Pair]:
-    """Return both derivatives of the slide's position and C's angle, on a path of some curvature.
-
-    ``along`` and ``around`` are its direction's components along the radius and around the pole.
-    At the pole they are nan.
-    """
-    with np.errstate(invalid="ignore", divide="ignore"):
-        radius = np.where(radius < POLE_RADIUS, np.nan, radius)
-        turn = around / radius
-        return (along, around * (turn - bend)), (turn, along * (bend - 2.0 * turn) / radius)
-
-
 def least_seconds(
     points: np.ndarray, speed: float | np.ndarray, slide: Sequence[float], spindle: Sequence[float]
 ) -> float:
@@ -254,15 +240,10 @@ def least_seconds(
     ``speed`` is the programmed one, perhaps one for each point; ``spindle`` is in radians. The
     points are evenly spaced along the path, none of them in the centre.
     """
-    step = float(abs(np.diff(points)).mean())
-    most = np.square(np.broadcast_to(np.asarray(speed, float), points.shape))
+    stretch = _Stretch(points, np.broadcast_to(np.asarray(speed, float), points.shape))
+    step, most = stretch.step, np.square(stretch.feed)
     limits = []
-    for axis, (velocity, acceleration) in (
-        (np.abs(points), slide),
-        (np.unwrap(np.angle(points)), spindle),
-    ):
-        slope = np.gradient(axis, step)
-        bend = np.gradient(slope, step)
+    for (slope, bend), (velocity, acceleration) in zip(stretch.derivatives, (slide, spindle)):
         slope = np.where(np.abs(slope) < TINY, TINY, slope)
         most = np.minimum(most, np.square(velocity / slope))
         limits.append((2.0 * step * acceleration / np.abs(slope), 2.0 * step * bend / slope))

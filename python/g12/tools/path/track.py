@@ -31,7 +31,7 @@ class Limits:
 
 @dataclass(frozen=True)
 class Track:
-    """Moves as one polyline in time, or only those in ``own``; it is made when it is first used.
+    """Moves as one polyline in time; it is made when it is first used.
 
     Every move is at its feed, as far as the axes' speeds allow. ``spindle_speed`` (rev/min) is for
     moves in G95.
@@ -41,23 +41,19 @@ class Track:
     moves: Sequence[Move]
     limits: Limits
     spindle_speed: float = 0.0
-    own: range | None = None
 
     def seconds(self, index: int) -> float:
         """Return the time of a move."""
         return duration(self.moves[index], self.limits, self.spindle_speed)
 
-    @property
-    def _drawn(self) -> range:
-        return range(len(self.moves)) if self.own is None else self.own
-
     @cached_property
     def _vertices(self) -> tuple[np.ndarray, np.ndarray]:
-        lines = [self.part.machine_points(self.moves[index]) for index in self._drawn]
+        lines = [self.part.machine_points(move) for move in self.moves]
         lines[1:] = [line[1:] for line in lines[1:]]
         if not lines:
             return np.zeros((1, len(AXIS_LETTERS))), np.zeros(1, int)
-        return np.concatenate(lines), np.repeat(self._drawn, [len(line) for line in lines])
+        counts = [len(line) for line in lines]
+        return np.concatenate(lines), np.repeat(np.arange(len(lines)), counts)
 
     @property
     def positions(self) -> np.ndarray:
@@ -71,20 +67,18 @@ class Track:
 
     def _along(self, at_ends: Sequence[float]) -> np.ndarray:
         """Return a value at each vertex, from those at the start and at the end of each move."""
-        ends = np.searchsorted(self.move, self._drawn, side="right") - 1
+        ends = np.searchsorted(self.move, range(len(self.moves)), side="right") - 1
         return np.interp(np.arange(len(self.move)), [0, *ends], at_ends)
 
     @cached_property
     def time(self) -> np.ndarray:
         """The seconds since the start."""
-        return self._along(np.cumsum([0.0, *map(self.seconds, self._drawn)]))
+        return self._along(np.cumsum([0.0, *map(self.seconds, range(len(self.moves)))]))
 
     @cached_property
     def offsets(self) -> np.ndarray:
         """The tool length offsets (n, 9) in force, which change along a move with G43."""
-        first = self._drawn.start
-        before = self.moves[first - 1].tool_offset if first else (0.0,) * len(AXIS_LETTERS)
-        at_ends = before, *(self.moves[index].tool_offset for index in self._drawn)
+        at_ends = (0.0,) * len(AXIS_LETTERS), *(move.tool_offset for move in self.moves)
         return np.stack([self._along(values) for values in zip(*at_ends)], axis=1)
 
     @cached_property

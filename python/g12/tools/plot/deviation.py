@@ -4,10 +4,9 @@
 from collections.abc import Iterator
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from g12.tools.path.follow import Worst, worst_of
+from g12.tools.path.follow import Worst
 from g12.tools.path.part import paths
 from g12.tools.plot import style
 from g12.tools.plot.scene import Scene
@@ -25,20 +24,14 @@ def size_of(worst: Worst, unit: Unit) -> str:
     return f"{least}{unit.fine(max(worst.deviation, LEAST_WINDOW))} {unit.name}"
 
 
-def draw_window(figure: Figure, left: float, top: float, scene: Scene) -> None:
+def draw_window(page: Figure, left: float, top: float, scene: Scene, worst: Worst) -> None:
     """Draw the detail view with its upper left corner so many inches to the right and down."""
-    worst = worst_of(scene.real, scene.moves)
-    if worst is not None:
-        _draw(style.add_axes(figure, left, top, DETAIL_SIZE, DETAIL_SIZE), scene, worst)
-
-
-def _draw(axes: Axes, scene: Scene, worst: Worst) -> None:
-    real, moves = scene.real, scene.moves
+    axes, real = style.add_axes(page, left, top, DETAIL_SIZE, DETAIL_SIZE), scene.real
     half = max(HALF_VIEW * worst.deviation, LEAST_WINDOW)
     before, after = real.points[max(0, worst.sample - 1) : worst.sample + 2][[0, -1]]
     pair = clearest_axes(worst.point - worst.nearest, after - before)
     origin = worst.nearest[pair]
-    around = moves[max(0, real.move[worst.sample] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
+    around = scene.moves[max(0, real.move[worst.sample] - NEIGHBOURS) :][: 2 * NEIGHBOURS + 1]
     programmed = [line[:, pair] - origin for line in paths(scene.path.part, around, half / 500)]
     near = real.points[max(0, worst.sample - SAMPLES) : worst.sample + SAMPLES]
     sampled = near[:, pair] - origin

@@ -10,17 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 from shapely.affinity import scale as scaled
 from shapely.geometry.base import BaseGeometry
 from shapely.ops import unary_union
 
 from g12.tools.material.material import NOTHING, Material, Removed
-from g12.tools.path.follow import worst_of
 from g12.tools.path.part import paths
 from g12.tools.plot import style
-from g12.tools.plot.deviation import draw_window
 from g12.tools.plot.scene import Scene
 from g12.tools.plot.style import Shade
 from g12.tools.verify.model.solid import pieces
@@ -33,6 +30,7 @@ MANY_LEVELS, BANDS = 100, 24
 MOST_ARROWS = 80
 NEAR_RAPIDS = 0.5  # of the view: rapids that end within this distance are shown whole
 MANY = 20_000  # moves
+STROKE = 1000  # points that matplotlib draws at once: its memory grows with them
 LONG = 0.12  # of the view's smaller side: shorter moves get no arrow
 VIEW_MARGIN = 0.05  # of the view's greater side
 PLUNGE, CUTTER = 3.5, 8.0  # points
@@ -73,7 +71,9 @@ class SceneView(NamedTuple):
 
 
 def floors_of(scene: Scene) -> list[Floor]:
-    """Return the floors that are milled or drilled, from the top down."""
+    """Return the floors that are milled or drilled, from the top down; none of a turned part."""
+    if scene.is_turned:
+        return []
     return [Floor(z, area, shade_at(scene, z)) for z, area in floors_left(swept_by(scene))]
 
 
@@ -138,13 +138,13 @@ def bounds_of(scene: Scene, floors: Sequence[Floor]) -> tuple[np.ndarray, np.nda
     shown = scene.fed or range(len(scene.moves))
     points = np.concatenate([scene.path.points[scene.path.vertices(index)] for index in shown])
     low, high = points.min(axis=0), points.max(axis=0)
-    uncut = (each.values["shape"] for each in scene.marks.uncut)
+    uncut = (each.values["shape"] for each in scene.uncut)
     for shape in (*(floor.area for floor in floors), *uncut):
         bounds = shape.bounds
         low[:2], high[:2] = np.minimum(low[:2], bounds[:2]), np.maximum(high[:2], bounds[2:])
     high[2] = max(high[2], top_of(scene))
-    stock = scene.marks.stock
-    if stock:
+    stock = scene.stock
+    if stock and not scene.program.surface:
         bounds, deep = stock.shape.bounds, stock.bottom
         low = np.minimum(low, (*bounds[:2], low[2] if deep is None else deep))
         high = np.maximum(high, (*bounds[2:], stock.top))
@@ -169,7 +169,7 @@ def with_near_rapids(
 
 def top_of(scene: Scene) -> float:
     """Return the top of the part: Z0 if the tool passes it downward, else where the feed begins."""
-    z0, levels = scene.marks.z0, scene.ends[:, :, 2]
+    z0, levels = scene.program.z0, scene.ends[:, :, 2]
     cutting = levels[scene.fed] if scene.fed else levels
     return z0 if cutting.min() < z0 < levels.max() else float(cutting.max())
 
@@ -190,22 +190,22 @@ def first_shown(scene: Scene) -> int:
 
 
 def draw_plan(view: SceneView, floors: Sequence[Floor]) -> None:
-    marks = view.scene.marks
-    draw_stock(view, marks.stock.shape if marks.stock else None)
+    scene = view.scene
+    draw_stock(view, scene.stock and scene.stock.shape)
     for order, floor in enumerate(floors):
         area = view.area(floor.area)
         style.fill(view.axes, area, floor.shade.floor, floor.edge, 1 + order / 100)
     draw_paths(view)
     draw_plunges(view)
     draw_arrows(view)
-    for each in marks.uncut:
+    for each in scene.uncut:
         style.hatch(view.axes, view.area(each.values["shape"]))
     draw_signs(view)
 
 
 def draw_signs(view: SceneView) -> None:
     """Draw signs at the findings that are neither a rapid nor uncut material."""
-    for finding in view.scene.marks.signs:
+    for finding in view.scene.signs:
         style.draw_sign(view.axes, view.shown(finding.place))
 
 
@@ -227,11 +227,10 @@ def draw_paths(view: SceneView) -> None:
     style.draw(view.axes, view.lines(fed), shades, 2.6 if is_run else width)
     if is_run:
         draw_real(view)
-    hit = view.lines(found.values["path"] for found in scene.marks.rapids)
-    style.draw(view.axes, hit, style.CRASH, 3.0, 3.8)
-    for found, line in zip(scene.marks.rapids, hit):
-        if is_point(found.values["path"][:, view.pair]):
-            style.draw_hit(view.axes, line[0])
+    style.draw(view.axes, view.lines(scene.hits), style.CRASH, 3.0, 3.8)
+    for hit in scene.hits:
+        if is_point(hit[:, view.pair]):
+            style.draw_hit(view.axes, view.shown(hit[0]))
 
 
 def is_point(line: np.ndarray) -> bool:
@@ -272,7 +271,8 @@ def fed_paths(scene: Scene) -> tuple[list[np.ndarray], list]:
     lines: list[np.ndarray] = []
     colours: list[object] = []
     for shade, own in groupby(scene.fed, colour):
-        lines += paths(part, [scene.moves[index] for index in own], PICTURE_CHORD)
+        for line in paths(part, [scene.moves[index] for index in own], PICTURE_CHORD):
+            lines += (line[at : at + STROKE + 1] for at in range(0, len(line) - 1, STROKE))
         colours += [shade] * (len(lines) - len(colours))
     return lines, colours
 
@@ -309,38 +309,12 @@ def elements(scene: Scene) -> list[np.ndarray]:
     return blocks
 
 
-def mark_worst(view: SceneView) -> None:
-    """Circle the largest deviation of the run."""
-    worst = worst_of(view.scene.real, view.scene.moves)
-    if worst is not None:
-        at = view.shown(worst.point)
-        view.axes.plot(*at, "o", color=style.WORST, markersize=8, fillstyle="none", zorder=6)
-
-
 # ------------------------------------------------------------ the legend
 
 
-def finish(
-    page: Figure,
-    views: Sequence[SceneView],
-    entries: Sequence,
-    legend: tuple[float, float, int],
-    window: tuple[float, float],
-) -> Figure:
-    """Return a page with its legend, and after a run with the detail of its largest deviation.
-
-    Both have their upper left corner so many inches to the right and down; a legend has columns.
-    """
-    style.draw_legend(page, entries, *legend)
-    scene = views[0].scene
-    if scene.real is not None:
-        for view in views:
-            mark_worst(view)
-        draw_window(page, *window, scene)
-    return page
-
-
 def legend_entries(scene: Scene, floors: Sequence[Floor]) -> list:
+    if scene.is_turned:
+        return [style.stroke(shade_at(scene, 0.0).line, "cut"), *motion_entries(scene)]
     letter = scene.path.part.letters[2]
     listed = [
         style.swatch(floor.shade.floor, floor.edge, f"swept at {letter}{scene.unit.text(floor.z)}")
@@ -363,10 +337,8 @@ def cutter_text(scene: Scene, tool: int) -> str:
 def motion_entries(scene: Scene) -> list:
     """Return the legend's entries of the stock, of rapids and of the actual motion."""
     listed = []
-    if scene.marks.stock:
-        stock = scene.marks.stock.stock
-        text = f"{'bar' if stock.diameter else 'stock'} {stock.text}"
-        listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, text))
+    if scene.stock and not scene.is_turned:
+        listed.append(style.swatch(style.STOCK, style.STOCK_EDGE, scene.stock.name))
     if scene.radial:
         listed.append(style.stroke(style.MUTED, "toolpath in the side"))
     if scene.turned:
@@ -382,15 +354,15 @@ def motion_entries(scene: Scene) -> list:
 
 def warning_entries(scene: Scene) -> list:
     listed, part = [], scene.path.part
-    end_on = [is_point(found.values["path"][:, :2]) for found in scene.marks.rapids]
+    end_on = [is_point(hit[:, :2]) for hit in scene.hits]
     has_side_view = not part.turning and part.letters[2] == "Z"
     if any(end_on):
         listed.append(style.hit("rapid straight down into material"))
-    if scene.marks.rapids and (has_side_view or not all(end_on)):
+    if scene.hits and (has_side_view or not all(end_on)):
         listed.append(style.stroke(style.CRASH, "rapid through material", 3.0))
-    if scene.marks.uncut:
+    if scene.uncut:
         listed.append(style.uncut_entry("uncut material"))
-    lines = dict.fromkeys(scene.user_line(each.line, each.file) for each in scene.marks.signs)
+    lines = dict.fromkeys(scene.user_line(each.line, each.file) for each in scene.signs)
     if lines:
         listed.append(style.sign(f"finding in line {', '.join(map(str, lines))}"))
     return listed

@@ -73,6 +73,7 @@ DPI = 150
 TITLE, SUBTITLE = 0.89, 0.61  # inches above the views
 SUBTITLE_WIDTH = 140  # characters
 MARGIN = 0.2  # inches around the picture
+WIDE, HIGH, LEAST = 7.0, 5.6, 1.2  # inches: a view to scale
 CENTRE_LINE = {"color": MUTED, "linewidth": 0.5, "dashes": (12, 3, 2, 3), "zorder": 1.9}
 SAVE = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
@@ -104,6 +105,23 @@ def add_axes(page: Figure, left: float, top: float, width: float, height: float)
     axes = page.add_axes([left, -top - height, width, height])
     axes.spines["top"].set_visible(False)
     axes.spines["right"].set_visible(False)
+    return axes
+
+
+def add_view(
+    page: Figure,
+    low: np.ndarray,
+    high: np.ndarray,
+    unit: Unit,
+    names: Sequence[str],
+    top: float = 0.0,
+) -> Axes:
+    """Return axes that show a portion of the part (mm) to scale, as large as fits."""
+    size = high - low
+    across, up = np.maximum(size * (np.array([WIDE, HIGH]) / size).min(), LEAST)
+    axes = add_axes(page, 0, top, across, up)
+    frame(axes, low, high, unit, names)
+    axes.set_aspect("equal", adjustable="datalim")
     return axes
 
 

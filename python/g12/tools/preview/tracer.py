@@ -64,7 +64,7 @@ class Tracer:
     ``folder`` is its scratch directory. With ``reports`` the package's planners report their cuts,
     for ``Trace.cuts``, and events ``clamp M10`` show the codes of C's clamp that are subs.
     ``printed`` is the output of the interpreter and the machine's modules while loading.
-    ``diameters`` and ``lengths`` are LinuxCNC's values of the tool table: tool number to mm.
+    ``diameters`` are those of LinuxCNC's tool table: tool number to mm.
     """
 
     def __init__(

@@ -21,7 +21,6 @@ from g12.tools.regress.recording_text import Recording
 from g12.tools.units import Unit, counted_as
 
 CHORD_ERROR, FINEST_CHORD_ERROR = 0.005, 2e-5
-LARGEST_VIEW, LEAST_VIEW = np.array([7.0, 5.6]), np.array([3.0, 1.4])  # across and up
 BESIDE, ROWS = 0.35, 1.6  # the legend's distance from the view, its height
 GAP_VIEW_SIZE = 2.0  # sides of the detail view of the largest gap
 REACH, LEAST_REACH = 4.0, 1e-3  # half the view's side: in gaps, in mm
@@ -46,18 +45,13 @@ def draw_overlay(was: Recording, now: Recording, found: Sequence[Difference], pa
     pair = view_of(gap, found, high - low)
     margin = MARGIN_SHARE * max(*(high - low), LEAST_EXTENT)
     low, high = low[pair] - margin, high[pair] + margin
-    scale = (LARGEST_VIEW / (high - low)).min()
-    more = np.maximum(0.0, LEAST_VIEW / scale - (high - low)) / 2
-    low, high = low - more, high + more
-    across, up = (high - low) * scale
     title = now.facts["program"].rpartition(" ")[0]
     text = f"{counted_as(len(found), 'difference')}: {found[0].text}"
     page = style.new_page(title, text)
-    axes = style.add_axes(page, 0, 0, across, up)
     letters = ("towards C0", "towards C90", "Z") if part.turning else "XYZ"
-    style.frame(axes, low, high, unit, [letters[axis] for axis in pair])
+    axes = style.add_view(page, low, high, unit, [letters[axis] for axis in pair])
     draw_paths(axes, drawn, pair, unit)
-    left = across + BESIDE
+    left = axes.get_position().x1 + BESIDE
     style.draw_legend(page, legend(drawn, gap, unit), left, 0)
     if gap:
         ring = {"color": style.WORST, "markersize": 9, "fillstyle": "none"}

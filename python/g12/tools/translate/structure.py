@@ -51,8 +51,7 @@ class Structure:
 
 
 def structure_of(blocks: Sequence[ForeignBlock], control: Control) -> Structure:
-    blocks = _without_leader(blocks)
-    structure = Structure(blocks[: _end_of_tape(blocks)])
+    structure = Structure(_on_tape(blocks))
     heads = _program_heads(structure.blocks)
     main = _start_of_main(structure, heads, control)
     for index, number in heads.items():
@@ -165,33 +164,19 @@ def _add_local_programs(structure: Structure, heads: dict[int, int], control: Co
         structure.add_entry(local_call[1], numbered[local_call])
 
 
-def _end_of_tape(blocks: Sequence[ForeignBlock]) -> int:
-    start = _opening_of_tape(blocks)
-    started = start > 0
-    for index, block in enumerate(blocks[start:], start):
-        if block.kind == "tape" and started:
-            return index + 1
-        started = started or bool(block.words) or block.kind not in TEXT
-    return len(blocks)
-
-
-def _opening_of_tape(blocks: Sequence[ForeignBlock]) -> int:
-    """Return the index after the first ``%``, 0 if more than a program's name is before it."""
+def _on_tape(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
+    """Return the blocks up to the last ``%``; a program's name before the first as a comment."""
     tapes = [index for index, block in enumerate(blocks) if block.kind == "tape"]
-    first = tapes[0] if tapes else -1
-    plain = all(b.kind == "words" and not b.problem for b in blocks[:first])
-    words = [word for block in blocks[:first] for word in block.words]
-    return first + 1 if plain and all(word.letter == "O" for word in words) else 0
-
-
-def _without_leader(blocks: Sequence[ForeignBlock]) -> list[ForeignBlock]:
-    """Write a program's name before the first ``%`` as a comment."""
-    start = _opening_of_tape(blocks)
+    leader = blocks[: tapes[0]] if tapes else []
+    words = [word for block in leader for word in block.words]
+    is_name = all(b.kind == "words" and not b.problem for b in leader)
+    if not (is_name and all(word.letter == "O" for word in words)):
+        return list(blocks[: tapes[0] + 1])
     named = [
-        b._replace(words=(), comments=(*(w.text for w in b.words), *b.comments))
-        for b in blocks[:start]
+        b._replace(words=(), comments=(*(w.text for w in b.words), *b.comments)) for b in leader
     ]
-    return [*named, *blocks[start:]]
+    end = tapes[1] + 1 if len(tapes) > 1 else len(blocks)
+    return [*named, *blocks[len(leader) : end]]
 
 
 def _pair_loops(structure: Structure) -> None:

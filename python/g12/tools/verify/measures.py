@@ -9,14 +9,14 @@ import math
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import numpy as np
+
 from g12.cut_report import CutElement, HolesCut
 from g12.geometry.curve import Arc, Curve, Line
 from g12.machine_ini import AXIS_LETTERS
 from g12.tools.machine.ini import Ini
 from g12.tools.path.part import C, X
 from g12.tools.path.section_times import Leg, SectionTimes, lathe_axes, section_times
-from g12.tools.path.slowest import pace_of
-from g12.tools.path.track import Track
 from g12.tools.verify.judge import Judgement
 from g12.tools.verify.model.cut import Cut
 from g12.tools.verify.model.deviation import allowed_off, circles_of, off_circles
@@ -43,26 +43,21 @@ def measures(cut: Cut, judgement: Judgement) -> dict[str, Any]:
         "cutter": 2 * (cut.cutter or max(map(cut.offset, cut.elements), default=0.0)) or None,
         "deviation": judgement.deviations[cut.index].size,
         "allowed": allowed_off(cut, program, judgement.tolerance),
-        **_pace(cut, judgement),
+        **_times(cut, program),
         **own[kind_of(cut)](cut, program),
     }
 
 
-def _pace(cut: Cut, judgement: Judgement) -> dict[str, Any]:
-    program = judgement.program
+def _times(cut: Cut, program: TracedProgram) -> dict[str, Any]:
     if cut.at >= cut.end:
         return {}
-    part, speed = program.part_at(cut.surface, cut.at), program.trace.modes.speed
-    path = Track(part, program.moves, program.limits, speed, cut.moves)
-    pace = pace_of(cut.moves, program.fed(cut), path, program.real)
-    taps = cut.is_tap  # no trace has the time of a synchronized move
-    return {
-        "seconds": None if taps else pace.seconds,
-        "seconds_programmed": None if taps else pace.expected,
-        "lowest_feed": pace.lowest,
-        "lowest_feed_line": judgement.user_line(*program.where(pace.move)),
-        "lowest_feed_at": program.words(pace.move, pace.point, cut.surface),
-    }
+    if cut.is_tap:  # no trace has the time of a synchronized move
+        return {"seconds": None, "seconds_programmed": None}
+    programmed = seconds = sum(map(program.path.seconds, cut.moves))
+    if program.real:
+        times = program.real.time[np.isin(program.real.move, cut.moves)]
+        seconds = float(times[-1] - times[0]) if len(times) else 0.0
+    return {"seconds": seconds, "seconds_programmed": programmed}
 
 
 # ------------------------------------------------------------ kinds of cuts

@@ -59,7 +59,6 @@ ROWS: tuple[Row, ...] = (
     ("depth", "{depth:mm}"),
     ("deviation", "{deviation:fine} ({allowed:fine} allowed)"),
     ("segments", "{segments}, {shortest:mm} to {longest:length} long"),
-    ("lowest feed", "{lowest_feed:feed} at {lowest_feed_at:xyz} (line {lowest_feed_line})"),
     ("speed", "{turn} {c_speed:1} degrees/s at most, limit {c_limit:1}"),
     ("time", "{real_seconds:1} s, {seconds_programmed:1} s at the programmed feeds"),
     ("time", "{seconds_programmed:1} s at the programmed feeds"),

@@ -19,7 +19,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from g12.tools.errors import UsageError
 from g12.tools.translate.blocks.expressions import OWN
@@ -48,48 +48,33 @@ RANGE = re.compile(r"([GM])([0-9]{1,3})-([GM])([0-9]{1,3})")
 
 KEYS = tomllib.loads(Path(__file__).with_name("keys.toml").read_text(encoding="utf-8"))
 TOP, TABLES = KEYS["top"], KEYS["tables"]
+CODE_TABLES = frozenset(("g_codes", "m_codes"))
 REMARKS = frozenset(("sources", "readings"))  # for who reads the file
 MAX_NUMBER = 1e9
 
 
-class Rule(NamedTuple):
-    """What a value must be, and the end of the sentence if it is not."""
-
-    accepts: Callable[[Any], object]
-    sentence: str
-
-
-RULES = {
-    "text": Rule(lambda value: isinstance(value, str), "a text"),
-    "texts": Rule(
-        lambda value: isinstance(value, list) and all(isinstance(one, str) for one in value),
-        "a list of texts",
-    ),
-    "code": Rule(lambda value: isinstance(value, (str, list, dict)), "a text"),  # see `_rows_of`
-    "flag": Rule(lambda value: isinstance(value, bool), "true or false"),
-    "number": Rule(
+TYPES: dict[str, tuple[Callable[[Any], object], str]] = {
+    "text": (lambda value: isinstance(value, str), "a text"),
+    "texts": (lambda value: isinstance(value, list), "a list of texts"),
+    "flag": (lambda value: isinstance(value, bool), "true or false"),
+    "number": (
         lambda value: type(value) in (int, float) and 0 < value <= MAX_NUMBER,
         f"a number above 0, {MAX_NUMBER:g} at most",
     ),
 }
 
 
-def _rule_of(given: Any) -> Rule:
-    """Return a rule of ``keys.toml``."""
-    if isinstance(given, str):
-        return RULES[given]
-    if "is" in given:
-        return RULES[given["is"]]
-    if "one_of" in given:
-        return Rule(lambda value: value in given["one_of"], f"one of {', '.join(given['one_of'])}")
-    is_list = "each_like" in given
-    pattern, kind = given["each_like" if is_list else "like"], "texts" if is_list else "text"
-
-    def accepts(value: Any) -> bool:
-        texts = value if is_list else [value]
-        return bool(RULES[kind].accepts(value)) and all(re.fullmatch(pattern, t) for t in texts)
-
-    return Rule(accepts, given["must"])
+def _broken_rule(rule: Any, value: Any) -> str:
+    """Return what a value must be by a rule of ``keys.toml``, "" if it is that."""
+    if isinstance(rule, str):
+        accepts, must = TYPES[rule]
+        return "" if accepts(value) else must
+    if "one_of" in rule:
+        return "" if value in rule["one_of"] else f"one of {', '.join(rule['one_of'])}"
+    is_list = isinstance(value, list)
+    texts = value if is_list else [value]
+    is_like = all(isinstance(one, str) and re.fullmatch(rule["like"], one) for one in texts)
+    return "" if is_like and is_list == rule.get("each", False) else rule["must"]
 
 
 OWNED = frozenset(  # M codes of LinuxCNC itself that a builder's code of that number is not
@@ -183,7 +168,7 @@ def read_control(name: str) -> Control:
         **{"title": path.stem, **given},
         meanings={**data["g_codes"], **data["m_codes"]},
         c_axis_on=frozenset(code for code, as_ in data["m_codes"].items() if as_ == "C axis on"),
-        tables={name: data[name] for name in TABLES if name in data and name[1:] != "_codes"},
+        tables={name: data[name] for name in TABLES if name in data},
     )
 
 
@@ -230,34 +215,29 @@ class _Checked:
     def data(self, data: dict) -> dict:
         """Return the data with every list and range of codes written out."""
         for key, value in data.items():
-            if key in TABLES:
-                self._table(key, value)
-            elif key in TOP:
-                self._value(key, value, _rule_of(TOP[key]))
-            else:
+            if key in TOP:
+                self._check(key, value, TOP[key])
+            elif key not in TABLES and key not in CODE_TABLES:
                 self._refuse(key, f"{key} is no key of a control")
-        for letter in "gm":
-            name = f"{letter}_codes"
-            if name in data:
-                data[name] = self._codes(letter.upper(), data[name])
-        return data
+            elif not isinstance(value, dict):
+                self._refuse(key, f"{key} is a table: [{key}]")
+            elif key in TABLES:
+                self._check_table(key, value)
+        codes = {key: self._codes(key[0].upper(), data[key]) for key in CODE_TABLES & data.keys()}
+        return {**data, **codes}
 
-    def _table(self, name: str, table: dict) -> None:
+    def _check_table(self, name: str, table: dict) -> None:
         rules = TABLES[name]
-        if not isinstance(table, dict):
-            self._refuse(name, f"{name} is a table: [{name}]")
         for key, value in table.items():
-            if "keys" in rules:
-                named = re.fullmatch(rules["keys"], key)
-                self._value(key, value, _rule_of(rules), bool(named))
-            elif key in rules:
-                self._value(key, value, _rule_of(rules[key]))
-            else:
+            if "keys" in rules and not re.fullmatch(rules["keys"], key):
+                self._refuse(key, f"{key} = {value!r} must be {rules['must']}")
+            elif "keys" not in rules and key not in rules:
                 self._refuse(key, f"{key} is no key of [{name}]: {', '.join(rules)}")
+            self._check(key, value, rules if "keys" in rules else rules[key])
 
-    def _value(self, key: str, value: Any, rule: Rule, named: bool = True) -> None:
-        if not (named and rule.accepts(value)):
-            self._refuse(key, f"{key} = {value!r} must be {rule.sentence}")
+    def _check(self, key: str, value: Any, rule: Any) -> None:
+        if must := _broken_rule(rule, value):
+            self._refuse(key, f"{key} = {value!r} must be {must}")
 
     def _codes(self, letter: str, table: dict) -> dict[str, str]:
         """Return the meaning of every code; a code that is named twice is refused."""
@@ -279,7 +259,7 @@ class _Checked:
                 self._refuse(
                     key, f'a code with a point is written in quotes: "{key}.{next(iter(value))}"'
                 )
-            if listed != isinstance(value, list):
+            if not isinstance(value, list if listed else str):
                 self._refuse(key, f"{key} must be a {'list of codes' if listed else 'text'}")
             if not listed:
                 yield key, key, value

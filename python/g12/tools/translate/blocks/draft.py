@@ -69,9 +69,7 @@ class Draft:
 
     @property
     def ends(self) -> bool:
-        """Whether the program ends with the block, by M2, M30 or an alarm."""
-        if self.block.kind == "stop" and self.block.label == "3000":
-            return True
+        """Whether the program ends with the block."""
         return not ENDS.isdisjoint(self.m_codes())
 
     def letters(self) -> set[str]:

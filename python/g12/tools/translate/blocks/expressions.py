@@ -4,7 +4,7 @@
 What differs from LinuxCNC and is written anew or refused:
 
 - FIX and FUP go towards and away from zero there, down and up here: written with ABS and a sign.
-- MOD has the sign of what is divided there, none here: written with ABS and a sign.
+- MOD has the sign of what is divided there, none here: refused.
 - AND, OR and XOR work on bits there and on truth here: only between bracketed comparisons.
 - #0, the empty variable, has no counterpart.
 """
@@ -24,12 +24,16 @@ COMPARING = frozenset(("EQ", "NE", "GT", "GE", "LT", "LE"))
 JOINING = frozenset(("AND", "OR", "XOR"))
 DEEPEST_BRACKETS = 8  # brackets within brackets
 LOCAL_VARIABLES = range(1, 31)  # of one call
-MOST_PLACES = 99  # that an index adds to the number of a variable
 COMMON = (range(100, 200), range(500, 1000))
 OTHER_MEANING = (
     "means something else on LinuxCNC: variables are #1 to #30, #100 to #199 and #500 to #999"
 )
 POSITION_VARIABLES = {5041: 5420, 5042: 5421, 5043: 5422}  # of the tool, X Y Z
+WITHOUT_COUNTERPART = {
+    0: "the empty variable: LinuxCNC has none: give each argument in G65, without the question",
+    3000: "an alarm: write M0 with a message, (MSG, …)",
+    3006: "a stop with a message: write M0 (MSG, …)",
+}
 NONE: frozenset[int] = frozenset()
 
 
@@ -51,14 +55,6 @@ def bracketed_from(text: str, start: int) -> Expression:
     if text[start : start + 1] != "[":
         raise NotTranslated(f"[ is missing before {excerpt(text[start:]) or 'the end'}")
     return _brackets(text, start, 0)
-
-
-def whole_expression(text: str, start: int) -> Expression:
-    """Return what is on the right of ``=``, which needs no brackets there."""
-    found = expression_from(text, start)
-    if found.end < len(text):
-        raise NotTranslated(f"{excerpt(text[found.end :])} is no part of an expression")
-    return found
 
 
 def expression_from(text: str, start: int, depth: int = 0) -> Expression:
@@ -103,12 +99,7 @@ def _unsigned(text: str, at: int, depth: int) -> Expression:
 
 def _variable(text: str, at: int, depth: int) -> Expression:
     if text.startswith("[", at + 1):
-        index = _brackets(text, at + 1, depth)
-        for number in UNSIGNED.findall(index.text):
-            if float(number) > MOST_PLACES and not _is_kept(float(number)):
-                rule = f"{number} {OTHER_MEANING}; write the value in its place"
-                raise NotTranslated(f"#{excerpt(index.text)}: #{rule}")
-        return _value(index, f"#{index.text}")
+        raise NotTranslated(f"{excerpt(text[at:])}: write the variable by its number, or its value")
     digits = PARAMETER_NAME.match(text, at)
     if not digits:
         raise NotTranslated(f"{excerpt(text[at:])} is no variable: # and a number")
@@ -121,11 +112,8 @@ def variable_number(digits: str) -> int:
     if digits.startswith(OWN):
         return int(digits[1:])
     number = int(digits[:9])
-    if number == 0:
-        raise NotTranslated(
-            "#0, the empty variable: LinuxCNC has none: give each argument in G65, and take the "
-            "question out"
-        )
+    if number in WITHOUT_COUNTERPART:
+        raise NotTranslated(f"#{number}, {WITHOUT_COUNTERPART[number]}")
     if not _is_kept(number) and number not in POSITION_VARIABLES:
         say = f'say under [variables] what it is, {digits[:9]} = "…"'
         raise NotTranslated(f"#{digits[:9]} {OTHER_MEANING}; {say}")
@@ -154,19 +142,15 @@ def _function(name: str, text: str, at: int, depth: int) -> Expression:
     if name != "ATAN":
         return _value(argument, f"{LONGER_NAMES.get(name, name)}{argument.text}")
     if not text.startswith("/[", argument.end):
-        return _value(argument, f"ATAN{argument.text}/[1]")
+        raise NotTranslated("ATAN needs two values, ATAN[…]/[…]: write /[1] behind it")
     below = _brackets(text, argument.end + 1, depth)
     read = argument.read | below.read
     return Expression(f"ATAN{argument.text}/{below.text}", read, False, below.end)
 
 
 def _joined(parts: list[Expression], operators: list[str]) -> Expression:
-    text = " ".join([parts[0].text, *(f"{o} {p.text}" for o, p in zip(operators, parts[1:]))])
-    if operators == ["MOD"]:
-        a, b = (part.text for part in parts)
-        text = f"ABS[{a}] MOD {b} * [1 - 2 * [[{a}] LT 0]]"
     return Expression(
-        text,
+        " ".join([parts[0].text, *(f"{o} {p.text}" for o, p in zip(operators, parts[1:]))]),
         NONE.union(*(part.read for part in parts)),
         not (COMPARING | JOINING).isdisjoint(operators),
         parts[-1].end,
@@ -181,7 +165,7 @@ def _check_operators(parts: list[Expression], operators: list[str]) -> None:
     ):
         name = sorted(joining)[0]
         raise NotTranslated(f"{name} is translated between comparisons in brackets only")
-    if "MOD" in operators and len(operators) > 1:
-        raise NotTranslated("MOD beside other operators: put brackets around it and its values")
+    if "MOD" in operators:
+        raise NotTranslated("MOD has another sign on LinuxCNC: write a - b * FIX[a / b]")
     if sum(operator in COMPARING for operator in operators) > 1:
         raise NotTranslated("two comparisons in a row: put brackets around each")

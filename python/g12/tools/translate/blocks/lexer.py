@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import lru_cache
 from types import MappingProxyType
 from typing import NamedTuple
@@ -22,7 +22,6 @@ from g12.tools.translate.blocks.expressions import (
     expression_from,
     value_from,
     variable_number,
-    whole_expression,
 )
 
 PLAIN_WORDS = re.compile(r"(?:[A-Z][-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))*")
@@ -43,7 +42,6 @@ CALLED_PROGRAM = re.compile(r"O([0-9]{1,8})(?:Q([0-9]{1,4}))?")
 NO_JUMPS = "LinuxCNC has no jumps: write IF […] before each block, or WHILE […] DO and END"
 ASSIGNMENT = re.compile(f"#({OWN}?[0-9]+)=")
 VARIABLE = re.compile("#([0-9]{1,9})")
-STOP_MACROS = ("3000", "3006")  # an alarm, a stop with a message
 OBEYED_COMMENT = re.compile(
     r"\s*(MSG|DEBUG|PRINT|LOG\w*|PROBE\w*|PY\w*|ABORT|AXIS|PREVIEW)\s*,", re.I
 )
@@ -121,8 +119,8 @@ class ForeignWord(NamedTuple):
 class ForeignBlock(NamedTuple):
     """One block of a program, or a statement in its place.
 
-    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, ``if`` and ``endif``
-    around the blocks that a condition rules, or ``stop``.
+    ``kind`` is ``words``, ``tape`` (a ``%``), ``assign``, ``while``, ``end``, or ``if`` and
+    ``endif`` around the blocks that a condition rules.
     """
 
     line: int  # from 1
@@ -186,9 +184,8 @@ def blocks_of(
             sentence = str(problem).replace(OWN, "") + (f"; {REMARKS}" if number else "")
             motion = tuple(ForeignWord("G", code) for code in MOTION.findall(part))
             blocks = [ForeignBlock(line, words=motion, problem=sentence)]
-        if number == 0:  # a stop has them as its message
-            at = next((at for at, block in enumerate(blocks) if block.kind == "stop"), 0)
-            blocks[at] = blocks[at]._replace(comments=blocks[at].comments + comments)
+        if number == 0:
+            blocks[0] = blocks[0]._replace(comments=blocks[0].comments + comments)
         yield from blocks
 
 
@@ -290,19 +287,17 @@ def _statement(line: int, text: str) -> list[ForeignBlock]:
     if statement:
         block, *ruled = STATEMENT_READERS[statement[0]](line, rest[statement.end() :])
     elif match := ASSIGNMENT.match(rest):
-        block, ruled = _assignment(line, match, whole_expression), []
+        block, ruled = _assignment(line, match), []
+        if end := rest[block.expression.end :]:
+            raise NotTranslated(f"{excerpt(end)} is no part of an expression")
     else:
         block, ruled = ForeignBlock(line, words=_words(rest)), []
     return [block._replace(words=words + block.words), *ruled]
 
 
-def _assignment(
-    line: int, match: re.Match[str], read_value: Callable[[str, int], Expression]
-) -> ForeignBlock:
-    if match[1] in STOP_MACROS:
-        return ForeignBlock(line, "stop", label=match[1])
+def _assignment(line: int, match: re.Match[str]) -> ForeignBlock:
     variable = variable_number(match[1])
-    value = read_value(match.string, match.end())
+    value = expression_from(match.string, match.end())
     return ForeignBlock(line, "assign", variable=variable, expression=value)
 
 
@@ -317,13 +312,13 @@ def _if(line: int, text: str) -> list[ForeignBlock]:
 def _ruled(line: int, text: str) -> Iterator[ForeignBlock]:
     """Yield the blocks after a condition: an assignment, words, or both."""
     match = ASSIGNMENT.match(text)
-    if match and match[1] not in STOP_MACROS:
-        assignment = _assignment(line, match, expression_from)
+    if match:
+        assignment = _assignment(line, match)
         yield assignment
         text = text[assignment.expression.end :]
     if text:
         block, *_ = _parsed(line, text)
-        if block.kind not in ("words", "stop") or block.skipped:
+        if block.kind != "words" or block.skipped:
             raise NotTranslated("after IF […] only #… = … and words are translated")
         yield block
 

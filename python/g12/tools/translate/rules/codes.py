@@ -11,7 +11,6 @@ from g12.tools.translate.blocks.lexer import ForeignWord
 from g12.tools.translate.blocks.modal import (
     AS_PROGRAMMED,
     GROUP_OF,
-    MOTIONS,
     REFERENCES,
     UNKNOWN,
 )
@@ -23,7 +22,6 @@ INSIDE = {"on": "UH", "cylinder": "UWH"}  # what polar mode and a cylinder have 
 BLOCK_LETTERS = frozenset("NGMFSTDHIJKLPQR$")
 MACHINES_OWN = REFERENCES | {"G53"}
 SECTION_ENDS = {"polar on": "on", "polar off": "off"}
-ORIGIN_MEANINGS = ("offset by program", "speed limit or origin")
 
 
 def keep_as_comments(draft: Draft) -> None:
@@ -39,7 +37,7 @@ def keep_as_comments(draft: Draft) -> None:
 
 def map_codes(draft: Draft) -> None:
     """Replace every code, keep it, hand it to its rule, or refuse it."""
-    _part_builders_codes(draft)
+    _refuse_two_of_builders(draft)
     named: Mapping[str, Any] = draft.control.tables.get("words", {})
     live = _speed_by_p(draft)
     words: list[ForeignWord] = []
@@ -82,12 +80,10 @@ def live_spindle(draft: Draft, code: ForeignWord) -> str:
     return f"${live}" if live != "0" else ""
 
 
-def _part_builders_codes(draft: Draft) -> None:
-    """Write all builder's codes but the last on lines before: LinuxCNC takes one in a block."""
-    found = [w for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
-    for word in found[:-1]:
-        draft.before += [one.text for one in mapped(draft, word)]
-        draft.drop([word])
+def _refuse_two_of_builders(draft: Draft) -> None:
+    codes = [w.code for w in draft.words if w.code[:1] == "M" and is_own(draft, w)]
+    if len(codes) > 1:
+        raise NotTranslated(f"{codes[0]} and {codes[1]} in one block: give one a block of its own")
 
 
 def is_own(draft: Draft, word: ForeignWord) -> bool:
@@ -163,7 +159,7 @@ def axes_at_zero(draft: Draft) -> None:
     """Keep words of an axis that the machine lacks as comments: it is always at their 0.
 
     CAM writes them for an axis that a job does not use. A block of nothing else does nothing: G28
-    would move each axis without them, a drilling cycle would not be repeated.
+    would move each axis without them.
     """
     control, increments = draft.control, draft.increments() if draft.control.is_lathe else []
     lacking = set(control.at_zero) - set(control.axes)
@@ -171,29 +167,13 @@ def axes_at_zero(draft: Draft) -> None:
     zeros = [w for w in words if PARTNERS.get(w.letter, w.letter) in lacking and w.is_zero]
     alone = bool(zeros) and len(zeros) == len(words)
     in_section = draft.state.polar != "off" or {"polar on", "cylinder"} & draft.meanings.keys()
-    if in_section or (alone and _repeats_cycle(draft)):
+    if in_section:
         return
     draft.drop(zeros)
-    if alone:
-        _drop_codes_of_axes(draft)
-    draft.comments += [word.text for word in zeros]
-
-
-def _repeats_cycle(draft: Draft) -> bool:
-    ended = "cancel cycle" in draft.meanings or not MOTIONS.isdisjoint(draft.codes())
-    return bool(draft.state.cycle) and not ended
-
-
-def _drop_codes_of_axes(draft: Draft) -> None:
-    """Keep the codes as comments that would have nothing to act on, or another axis."""
-    codes = draft.take_codes(MACHINES_OWN | {"G52"})
-    draft.comments += codes
+    codes = draft.take_codes(MACHINES_OWN | {"G52"}) if alone else []
     if not REFERENCES.isdisjoint(codes):
         cancel_length(draft)
-    for meaning in ORIGIN_MEANINGS:
-        if meaning in draft.meanings and draft.letters().isdisjoint("RS"):
-            words = [draft.meanings.pop(meaning), *draft.take_each("LP")]
-            draft.comments.append(" ".join(word.text for word in words))
+    draft.comments += [*codes, *(word.text for word in zeros)]
 
 
 def radius_or_diameter(draft: Draft, code: ForeignWord) -> None:

@@ -130,14 +130,6 @@ def _closing(draft: Draft, structure: Structure) -> None:
     _labelled(draft, f"o<{kind}_{start}> end{kind}")
 
 
-def _stop(draft: Draft, structure: Structure) -> None:
-    """Write #3000, an alarm, or #3006, a stop, with the comment as its text."""
-    message = ", ".join(draft.comments) or "stopped by the program"
-    draft.comments = []
-    text = f"M0 (MSG, {message})" if draft.block.label == "3006" else f"(ABORT, {message})"
-    draft.words = [*draft.block.words, line_as_word(text)]
-
-
 def _labelled(draft: Draft, text: str) -> None:
     """Write an O-word; a block number before it becomes a comment."""
     draft.comments = [*(word.text for word in draft.block.words), *draft.comments]
@@ -156,7 +148,6 @@ STATEMENTS = {
     "end": _closing,
     "if": _opening,
     "endif": _closing,
-    "stop": _stop,
 }
 
 

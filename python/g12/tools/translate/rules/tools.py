@@ -10,7 +10,7 @@ import re
 from g12.tools.translate.blocks.draft import AXIS_NUMBERS, Draft, word_of
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.blocks.lexer import ForeignWord
-from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, REFERENCES, UNKNOWN, UNSURE
+from g12.tools.translate.blocks.modal import CONSUMERS, MOTIONS, REFERENCES, UNKNOWN
 from g12.tools.translate.blocks.positions import is_unmoved
 from g12.tools.translate.rules.codes import live_spindle
 from g12.tools.translate.rules.polar import SECTION_NAMES
@@ -124,8 +124,9 @@ def tool_and_offsets(draft: Draft) -> None:
             draft.change(next_tool=word.value.lstrip("0") or "0")
         if "M6" in draft.m_codes():
             draft.change(tool=draft.state.next_tool)
-    if draft.start.compensation != "G40":
-        _compensated_again(draft)
+    again = COMPENSATION_ON.intersection(draft.codes()) and draft.start.compensation != "G40"
+    if again and draft.start.polar == "off" and not draft.start.delayed:
+        raise NotTranslated("G41 or G42 is on here already: take it out, or write G40 before it")
 
 
 def _turret_word(draft: Draft) -> None:
@@ -263,23 +264,8 @@ def _radius_offset(draft: Draft) -> None:
         draft.words += [ForeignWord("D", value)] if value else []
 
 
-def _compensated_again(draft: Draft) -> None:
-    """Write a G41 that is on already as a comment: LinuxCNC refuses it."""
-    on = next((word for word in draft.words if word.code[:3] in COMPENSATION_ON), None)
-    before = draft.start
-    if not on or before.polar != "off" or before.delayed or draft.control.onto:
-        return
-    if before.compensation not in (on.code[:3], UNSURE):
-        return
-    words = [on, *(w for w in draft.words if w.letter == "D")]
-    draft.drop(words)
-    if before.compensation == UNSURE or before.radius != draft.state.radius:
-        raise NotTranslated(f"{on.code} may be on here already, or with another D: G40 before it")
-    draft.comments.append(on.code)
-
-
 def _compensation(draft: Draft, word: ForeignWord | None) -> None:
-    """Give G41 and G42 the D in force; D0 is a radius of 0, whatever tool is loaded."""
+    """Give G41 and G42 the D in force."""
     if draft.state.plane == "G19":
         raise NotTranslated(
             "G41 or G42 in G19: LinuxCNC compensates in G17 and G18 only: let CAM write the path "
@@ -289,9 +275,6 @@ def _compensation(draft: Draft, word: ForeignWord | None) -> None:
     if value == UNKNOWN:
         raise NotTranslated("G41 or G42 without D, and no D before it")
     if re.fullmatch("0+", value):
-        draft.words = [
-            w._replace(value=f"{w.code[1:]}.1") if w.code in COMPENSATION_ON else w
-            for w in draft.words
-        ]
+        raise NotTranslated("G41 or G42 with D0, a radius of 0: take G41 and G42 out")
     if not word:
         draft.words.append(ForeignWord("D", value))

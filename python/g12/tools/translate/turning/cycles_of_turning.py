@@ -218,12 +218,13 @@ def pecking(draft: Draft, meaning: str) -> None:
     end = take_end(draft, start)
     x_step = take_number(draft, "I") or take_increments(draft, "P") or 0.0
     z_step = take_number(draft, "K") or take_increments(draft, "Q") or 0.0
-    shift = take_number(draft, "R") or take_increments(draft, "D") or 0.0
+    if take_number(draft, "R") or take_number(draft, "D"):
+        raise NotTranslated("a shift at the bottom of a peck, R or D: take it out, for clear pecks")
     along_x = meaning.endswith("X")
     peck, step = (x_step, z_step) if along_x else (z_step, x_step)
     there = complex(end.get("Z", start.real), end.get("X", start.imag))
     retract = _kept_value(draft, meaning, "retract")
-    given = Pecking(there, abs(peck), abs(step), retract, shift, along_x)
+    given = Pecking(there, abs(peck), abs(step), retract, along_x)
     _write_moves(draft, pecks(start, given), start)
 
 

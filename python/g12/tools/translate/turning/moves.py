@@ -147,14 +147,13 @@ def single_pass(start: complex, end: complex, taper: float, along_x: bool) -> li
 class Pecking(NamedTuple):
     """What G74 or G75 is given: where it ends, a peck, the step to the next peck, the retract.
 
-    ``shift`` is by how much the tool goes aside at the bottom; ``along_x`` is G75.
+    ``along_x`` is G75.
     """
 
     end: complex
     peck: float
     step: float
     retract: float
-    shift: float
     along_x: bool
 
 
@@ -166,7 +165,7 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
     limited(abs(depth) / peck, "pecks")
     point = lambda along, aside: start + _turned(complex(along, aside), given.along_x)  # noqa: E731
     away, moves = copysign(1.0, -depth), []
-    for number, aside in enumerate(offsets):
+    for aside in offsets:
         moves.append(rapid_to(point(0.0, aside)))
         done = 0.0
         while abs(depth) - done > SAME:
@@ -174,9 +173,6 @@ def pecks(start: complex, given: Pecking) -> list[CycleMove]:
             moves.append(feed_to(point(-away * done, aside)))
             if abs(depth) - done > SAME:
                 moves.append(rapid_to(point(-away * max(done - given.retract, 0.0), aside)))
-        if given.shift and number:
-            aside -= copysign(given.shift, offsets[-1])
-            moves.append(rapid_to(point(depth, aside)))
         moves.append(rapid_to(point(0.0, aside)))
     return [*moves, rapid_to(start)]
 

@@ -10,11 +10,11 @@ The contour may go up and down across the cuts (type II), but never back along t
 into the coordinates of the cuts, along + depth * 1j: they run to smaller ``along``, levels go down.
 """
 
-from cmath import phase, rect
 from collections.abc import Callable, Sequence
-from math import floor, pi, sqrt
+from math import floor, sqrt
 from typing import NamedTuple
 
+from g12.geometry.curve import Arc, sweep_between
 from g12.tools.translate.blocks.errors import NotTranslated
 from g12.tools.translate.turning.moves import (
     SAME,
@@ -124,15 +124,11 @@ def _turning_points(move: CycleMove) -> list[complex]:
     """Return a move's ends, and where an arc reverses in a coordinate."""
     if move.centre is None:
         return [move.start, move.end]
-    centre, sense = move.centre, 1 if move.code == "G3" else -1
-    begin = phase(move.start - centre)
-    sweep = (phase(move.end - centre) - begin) * sense % (2 * pi)
-    sweep = sweep if sweep > SAME else 2 * pi
-    quarters = [(quarter * pi / 2 - begin) * sense % (2 * pi) for quarter in range(4)]
-    radius = abs(move.start - centre)
-    between = sorted(angle for angle in quarters if SAME < angle < sweep - SAME)
-    points = (centre + rect(radius, begin + sense * angle) for angle in between)
-    return [move.start, *points, move.end]
+    turn = 1 if move.code == "G3" else -1
+    arc = Arc(move.start, move.centre, sweep_between(move.start, move.end, move.centre, turn))
+    shares = sorted(arc.share_towards(arc.centre + axis) for axis in (1, 1j, -1, -1j))
+    between = [arc.point(share) for share in shares if SAME < share < 1 - SAME]
+    return [move.start, *between, move.end]
 
 
 def _along_at(a: complex, b: complex, centre: complex | None) -> Callable[[float], float]:
