@@ -5,6 +5,7 @@ import os
 import subprocess
 import tempfile
 import threading
+from pathlib import Path
 
 import pytest
 
@@ -43,6 +44,30 @@ def exit_code_of_nothing():
 
 def test_what_others_remove_from_tmp_does_not_matter(busy_tmp):
     assert [exit_code_of_nothing() for _ in range(8)] == [(0, "")] * 8
+
+
+@pytest.mark.skipif(not has_namespaces(), reason="a container is the isolation itself")
+def test_linuxcncs_own_files_in_tmp_are_those_of_one_run():
+    with tempfile.NamedTemporaryFile(prefix="linuxcnc.", dir="/tmp") as file:
+        isolated, name = Isolated(), Path(file.name)
+        look = f"test -e {name} || echo none; test -e {isolated.folder} && touch {name}.own"
+        isolated.launch(["sh", "-c", look], {})
+        said = isolated.wait(300), isolated.log()
+        isolated.close()
+        assert said == (0, "none\n")
+        assert not Path(f"{name}.own").exists()
+
+
+def test_a_machine_whose_folder_is_tmp_itself_has_an_ini_of_its_own():
+    with tempfile.NamedTemporaryFile("w+", dir="/tmp", suffix=".ini") as file:
+        file.write("outside\n")
+        file.flush()
+        isolated, name = Isolated(), Path(file.name)
+        isolated.launch(["cat", file.name, file.name], {Path("/tmp"): {name.name: "inside\n"}})
+        said = isolated.wait(300), isolated.log()
+        isolated.close()
+        assert said == (0, "inside\n" * 2)
+        assert name.read_text() == "outside\n"
 
 
 def test_where_the_system_makes_namespaces_so_do_we():

@@ -130,9 +130,7 @@ def test_a_run_is_waited_for_as_long_as_its_program_needs(block, override, secon
     ("met", "text", "line"),
     [
         ("Bad character ',' used", "Bad character ',' used", 7),
-        ("Multiple i words on one line", "Multiple i words on one line", 7),
         ("Bad character ',' used", "joint 0 following error", 0),
-        ("G13 line 7: K1 needs Q as well", "G13 line 7: K1 needs Q as well", 0),
         ("G13 line 3 of sub.ngc: K1 needs Q", "G13 line 3 of sub.ngc: K1 needs Q", 0),
     ],
 )

@@ -84,25 +84,34 @@ class Shop:
         """Return the words of a command, and the damaged file that it gets."""
         return getattr(self, ATTACK + kind)(chance)
 
-    def _made(self, chance: Random, name: str, content: bytes) -> Path:
+    def _made(self, chance: Random, name: str | Path, content: bytes) -> Path:
         path = self.folder / name
         path.write_bytes(damaged(chance, content))
         return path
 
-    def _read(self, chance: Random, program: Path, *more: str) -> list[str]:
+    def _read(self, chance: Random, program: Path, *more: str, ini: Path | None = None) -> list:
         """Return a command that reads a program."""
-        command = chance.choice(["trace", "verify", "plot", "regress"])
-        picture = ["-o", str(self.folder / "part.svg")] if command == "plot" else []
-        if command == "regress":
-            shutil.rmtree(self.folder / "new", ignore_errors=True)
-            words = ["record", str(program), "-d", str(self.folder / "new")]
-            return ["regress", *words, "--ini", str(self.ini), *more]
-        return [command, str(program), "--ini", str(self.ini), *more, *picture]
+        shutil.rmtree(self.folder / "new", ignore_errors=True)
+        read = [str(program), "--ini", str(ini or self.ini), *more]
+        picture, recordings = str(self.folder / "part.svg"), str(self.folder / "new")
+        return chance.choice([
+            ["trace", *read],
+            ["verify", *read],
+            ["plot", *read, "-o", picture],
+            ["regress", "record", *read, "-d", recordings],
+        ])  # fmt: skip
 
-    def _set_up(self, chance: Random, ini: Path, *features: str) -> list[str]:
-        """Return a command that reads a config."""
-        dry = [str(ini), "--with", *features, "--dry-run"]
-        return chance.choice([["check", str(ini)], ["install", *dry], ["uninstall", str(ini)]])
+    def _use(self, chance: Random, ini: Path) -> list[str]:
+        """Return a command that reads a config, or a program on its machine."""
+        dry = [str(ini), "--with", "circle-mill", "programs-haas-mill", "--dry-run"]
+        on_it = self._read(chance, self.program, ini=ini)
+        config = [["check", str(ini)], ["install", *dry], ["uninstall", str(ini)]]
+        return chance.choice([on_it, chance.choice(config)])
+
+    def _machine(self, text: str) -> Path:
+        ini = self.sim / "with_bad.ini"
+        ini.write_text(text)
+        return ini
 
     def attack_program(self, chance):
         program = self._made(chance, "bad.ngc", chance.choice(NATIVE).read_bytes())
@@ -124,48 +133,29 @@ class Shop:
         return self._read(chance, program), program
 
     def attack_ini(self, chance):
-        ini = self.sim / "bad.ini"
-        ini.write_bytes(damaged(chance, self.ini.read_bytes()))
-        reads = self._read(chance, self.program)
-        reads[reads.index("--ini") + 1] = str(ini)
+        ini = self._made(chance, self.sim / "bad.ini", self.ini.read_bytes())
         translate = ["translate", "--control", "haas-mill", "--ini", str(ini), str(FOREIGN[0])]
-        words = self._set_up(chance, ini, "circle-mill", "programs-haas-mill")
-        return chance.choice([reads, translate, words]), ini
+        return chance.choice([translate, self._use(chance, ini)]), ini
 
     def attack_include(self, chance):
         head, header, rest = self.ini.read_text().partition("[KINS]")
-        part = self.sim / "bad.inc"
-        part.write_bytes(damaged(chance, f"{header}{rest}".encode()))
-        ini = self.sim / "with_bad.ini"
-        ini.write_text(f"{head}#INCLUDE bad.inc\n")
-        reads = self._read(chance, self.program)
-        reads[reads.index("--ini") + 1] = str(ini)
-        return chance.choice([reads, self._set_up(chance, ini, "circle-mill")]), part
+        part = self._made(chance, self.sim / "bad.inc", f"{header}{rest}".encode())
+        return self._use(chance, self._machine(f"{head}#INCLUDE bad.inc\n")), part
 
     def attack_table(self, chance):
         table = self._made(chance, "bad.tbl", self.table.read_bytes())
-        ini = self.sim / "with_bad.ini"
-        text = "\n".join([f"[EMCIO]\nTOOL_TABLE = {table}", self.ini.read_text()])
-        ini.write_text(text)
-        own = self._read(chance, self.program)
-        own[own.index("--ini") + 1] = str(ini)
+        ini = self._machine(f"[EMCIO]\nTOOL_TABLE = {table}\n{self.ini.read_text()}")
         given = self._read(chance, self.program, "--tools", str(table))
-        return chance.choice([own, given, self._set_up(chance, ini, "circle-mill")]), table
+        return chance.choice([given, self._use(chance, ini)]), table
 
     def attack_var(self, chance):
         var = self._made(chance, "bad.var", VAR)
-        ini = self.sim / "with_bad.ini"
-        text = self.ini.read_text().replace(
-            "PARAMETER_FILE = mill_mm.var", f"PARAMETER_FILE = {var}"
-        )
-        ini.write_text(text)
-        own = self._read(chance, self.program)
-        own[own.index("--ini") + 1] = str(ini)
-        return chance.choice([self._read(chance, self.program, "--var", str(var)), own]), var
+        ini = self._machine(self.ini.read_text().replace("= mill_mm.var", f"= {var}"))
+        given = self._read(chance, self.program, "--var", str(var))
+        return chance.choice([given, self._use(chance, ini)]), var
 
     def attack_hal(self, chance):
-        hal = self.lathe.parent / "bad.hal"
-        hal.write_bytes(damaged(chance, TURNING_HAL.encode()))
+        hal = self._made(chance, self.lathe.parent / "bad.hal", TURNING_HAL.encode())
         ini = self.lathe.parent / "with_bad.ini"
         ini.write_text(TURNING.replace("motion.hal", "bad.hal"))
         words = ["install", str(ini), "--with", "polar", "spindle-c", "--pins", str(self.pins)]

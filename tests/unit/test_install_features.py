@@ -245,24 +245,6 @@ def test_kinematics_and_spindle_go_in_in_each_order_and_out(tmp_path, text, step
         assert ini_now.get("DISPLAY", "GEOMETRY") in (None, "CXYZ!")
 
 
-def test_what_the_kinematics_write(tmp_path):
-    ini = lathe_in(tmp_path)
-    put_in(ini, "polar", "polar-kinematics")
-    text = ini.read_text()
-    for lines in (
-        "# was: KINEMATICS = trivkins coordinates=xzc kinstype=B\n"
-        "KINEMATICS = polar_xzc coordinates=XZC\n# <<<",
-        "# was: COORDINATES =   X Z C\nCOORDINATES = X Y Z C\n# <<<",
-        "# was: MIN_LIMIT = -5.0\nMIN_LIMIT = -200\n# <<<",
-        "# was: MAX_ACCELERATION = 1000\nMAX_ACCELERATION = 700\n# <<<",
-        "[AXIS_Y]\nMIN_LIMIT = -200\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACCELERATION = 700\n",
-        "HALFILE = g12/configs/kinematics/polar_kinematics.hal\n# <<<",
-        "[G12]\nPOLAR_KINEMATICS = 1\n",
-    ):
-        assert lines in text
-    assert "[JOINT_0]\nMIN_LIMIT = -5\nMAX_LIMIT = 200\nMAX_VELOCITY = 100\nMAX_ACC" in text
-
-
 def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     ini = lathe_in(tmp_path)
     put_in(ini, "spindle-c", pins=pins_of(tmp_path))
@@ -270,11 +252,7 @@ def test_what_a_spindle_that_becomes_c_gets(tmp_path):
     for lines in (
         "HALFILE = g12/configs/include/spindle_c.hal\n"
         "HALCMD = unlinkp drive.velocity\nHALCMD = net spindle-c-velocity => drive.velocity\n",
-        "HALCMD = net spindle-c-brake => drive.brake\n"
-        "HALCMD = loadusr sh g12/configs/include/spindle_c_limits.sh\n",
-        "[SPINDLE_C]\nJOINT = 2\nTURNS = turns\nRPS = rps\nINDEX = index\n"
-        "REACHED = spindle-c-always\nENABLED = sc-enabled\n",
-        "COMMAND = c\n",
+        "RPS = rps\nINDEX = index\nREACHED = spindle-c-always\nENABLED = sc-enabled\n",
         "VELOCITY_SCALE = 60\nPOSITION_SCALE = 1\n",
     ):
         assert lines in text

@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Start a command on a system without namespaces; run by ``namespaces`` as a program.
+"""Start a command, and end it with all its processes; run by ``namespaces`` as a program.
 
-The container that forbids them is the isolation. One LinuxCNC runs at a time: others of the same
-user wait for their turn, and a foreign LinuxCNC is an error, not disturbed. A private directory
-is a copy in a tree of links that mirrors the real one. The job is that of ``namespaces_init``, and
-``turn``, the open folder whose lock marks the turn. Of the files in ``covers`` only programs are
-supported.
+All ends when standard input is closed, also by the end of the process that opened it. The job is a
+line of JSON on standard input: ``command``, ``environment``, and ``remove``, directories to be
+removed in that case.
+
+On a system without namespaces the container that forbids them is the isolation. One LinuxCNC runs
+at a time: others of the same user wait for their turn, and a foreign LinuxCNC is an error, not
+disturbed. The job has ``turn``, the open folder whose lock marks the turn, ``copies``, a map of
+directory to the texts that replace files in it, and ``covers``, a map of program to the one that
+replaces it. A private directory is a copy in a tree of links that mirrors the real one.
 """
 
 import contextlib
+import ctypes
 import glob
 import json
 import os
@@ -18,19 +23,7 @@ import shutil
 import signal
 import socket
 import sys
-import tempfile
 import time
-
-from namespaces_init import (
-    PRIVATE_IN_TMP,
-    REFUSED,
-    IsolationError,
-    copy_file,
-    libc,
-    raise_if_failed,
-    realtime_environment,
-    write_text,
-)
 
 PR_SET_CHILD_SUBREAPER, PR_SET_NO_NEW_PRIVS = 36, 38
 IPC_RMID = 0
@@ -39,6 +32,18 @@ LINUXCNC_PORT = 5005  # of its server: whoever reaches it commands the machine
 LINUXCNC = re.compile(r"milltask|linuxcncsvr|rtapi")  # names of LinuxCNC's processes
 SEGMENT = re.compile(rb"(\d+) +/SYSV([0-9a-f]{8}) \(deleted\)$", re.MULTILINE)  # number, key
 CLEAN_UP = 15.0  # s that LinuxCNC may take for it
+REFUSED = 125  # exit code: this LinuxCNC cannot be started here
+
+libc = ctypes.CDLL(None, use_errno=True)
+
+
+class IsolationError(OSError):
+    """The command cannot be kept apart from others."""
+
+
+def raise_if_failed(result: int, action: str) -> None:
+    if result:
+        raise IsolationError(f"{action}: {os.strerror(ctypes.get_errno())}")
 
 
 def running() -> list[str]:
@@ -73,11 +78,13 @@ def mirrored(directory: str, files: dict[str, str], tree: str) -> str:
     for entry in os.scandir(real):
         target = os.path.join(copy, entry.name)
         if entry.is_file() and entry.name not in files:
-            copy_file(entry.path, target)
+            if os.access(entry.path, os.R_OK):
+                shutil.copy(entry.path, target)
         elif entry.name not in files:
             os.symlink(entry.path, target)
     for name, text in files.items():
-        write_text(os.path.join(copy, name), text)
+        with open(os.path.join(copy, name), "w", errors="surrogateescape") as file:
+            file.write(text)
     return copy
 
 
@@ -90,7 +97,7 @@ def link_entries(real: str, copy: str, besides: str) -> None:
 
 def moved(command: list[str], job: dict) -> list[str]:
     """Return the command with paths in the copied directories moved to the tree."""
-    tree = os.path.join(job["scratch"], "tree")
+    tree = os.path.join(job["remove"][0], "tree")
     for directory, files in job["copies"].items():
         copy = mirrored(directory, files, tree)
         put_in_front(job["covers"], os.path.join(copy, "bin"))
@@ -143,10 +150,10 @@ def children(process: int) -> list[int]:
     return found
 
 
-def exit_code_of(child: int, descriptor: int) -> int:
+def exit_code_of(child: int, descriptor: int, patience: float) -> int:
     """Let the command end, as it does when its screen ends, or end it; return its exit code."""
     for number in (signal.SIGTERM, signal.SIGKILL):
-        if not select.select([descriptor], [], [], CLEAN_UP)[0]:
+        if not select.select([descriptor], [], [], patience)[0]:
             os.kill(child, number)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
 
@@ -161,8 +168,6 @@ def end_all() -> None:
                 os.waitpid(number, 0)
             except OSError:
                 time.sleep(0.1)  # LinuxCNC's realtime part may be root's: it ends by itself
-    with contextlib.suppress(OSError):  # none, or an old one of another user
-        os.unlink(LINUXCNC_LOCK)
 
 
 def free(memory: dict[int, str]) -> None:
@@ -174,36 +179,46 @@ def free(memory: dict[int, str]) -> None:
             libc.semctl(number, 0, IPC_RMID)
 
 
-def run(command: list[str], environment: dict[str, str]) -> int:
-    """Run the command until it ends or standard input closes; return its exit code."""
-    before = system_v("shm")
-    child = os.posix_spawnp(command[0], command, environment)
+def run(job: dict, patience: float = 0.0) -> tuple[int, dict[int, str]]:
+    """Run the command until it ends or standard input closes, and end what it has started.
+
+    Return its exit code and the shared memory in use at its end. ``patience`` in seconds is for an
+    end by itself.
+    """
+    child = os.posix_spawnp(job["command"][0], job["command"], job["environment"])
     descriptor = os.pidfd_open(child)
     select.select([descriptor, sys.stdin], [], [])
     memory = own_shared_memory()
-    try:
-        return exit_code_of(child, descriptor)
-    finally:
-        memory |= own_shared_memory()
-        end_all()
-        free({number: key for number, key in memory.items() if number not in before})
+    code = exit_code_of(child, descriptor, patience)
+    memory |= own_shared_memory()
+    end_all()
+    return code, memory
+
+
+def run_contained(job: dict) -> int:
+    """Run LinuxCNC without namespaces, and remove what it leaves in the system."""
+    os.set_inheritable(job["turn"], False)  # the lock is held until this process ends
+    refuse_beside_another()
+    if os.geteuid():  # a setuid rtapi_app would lack root's right to the user's shared memory
+        raise_if_failed(libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "staying an ordinary user")
+    before = system_v("shm")
+    with socket.socket() as port:
+        with contextlib.suppress(OSError):  # taken already
+            port.bind(("", LINUXCNC_PORT))  # LinuxCNC goes on without it
+        code, memory = run({**job, "command": moved(job["command"], job)}, CLEAN_UP)
+    with contextlib.suppress(OSError):  # none, or an old one of another user
+        os.unlink(LINUXCNC_LOCK)
+    free({number: key for number, key in memory.items() if number not in before})
+    return code
 
 
 def main() -> int:
     job = json.loads(sys.stdin.readline())
-    os.set_inheritable(job["turn"], False)  # the lock is held until this process ends
-    refuse_beside_another()
     raise_if_failed(libc.prctl(PR_SET_CHILD_SUBREAPER, 1), "taking in orphans")
-    if os.geteuid():  # a setuid rtapi_app would lack root's right to the user's shared memory
-        raise_if_failed(libc.prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0), "staying an ordinary user")
-    temporary = {"prefix": PRIVATE_IN_TMP, "dir": "/tmp", "ignore_cleanup_errors": True}
-    with tempfile.TemporaryDirectory(**temporary) as folder, socket.socket() as port:
-        with contextlib.suppress(OSError):  # taken already
-            port.bind(("", LINUXCNC_PORT))  # LinuxCNC goes on without it
-        environment = job["environment"] | realtime_environment(folder)
-        code = run(moved(job["command"], job), environment)
+    code = run_contained(job) if "turn" in job else run(job)[0]
     if select.select([sys.stdin], [], [], 0)[0]:  # closed: the starting process has ended
-        shutil.rmtree(job["scratch"], ignore_errors=True)
+        for folder in job["remove"]:
+            shutil.rmtree(folder, ignore_errors=True)
     return code & 0xFF
 
 
