@@ -134,11 +134,6 @@ class ProgramLines:
         self.line = line + 1
         return lines[line]
 
-    def has_letter(self, line: int, letters: str) -> bool:
-        """Return whether one of the letters is on a line of the section's own file."""
-        own = not isinstance(line, LineOfFile)
-        return own and not set(letters).isdisjoint(self.home.lines[line - 1].upper())
-
     def parse(self, text: str | None = None) -> None:
         """Let the interpreter parse the line taken, or ``text`` instead."""
         self.interp.sequence_number = self.line

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable, Generator, Iterator
 from enum import Enum
 
-from g12.compensation.contour import Contour
+from g12.compensation.contour import Contour, PlaneMove
 from g12.errors import Refusal
 from g12.host import borrowed, kinematics_switch, messages
 from g12.host.call_frame import CallFrame
@@ -292,8 +292,12 @@ class Section:
         leaving = self.kind.beyond_travel(plan.steps)
         if leaving:
             line, beyond = leaving
-            lengths = self.kind.words.turn_is_length
-            by_c = beyond.axis == "X" and lengths and self.program.has_letter(line, "CHY")
+            by_c = beyond.axis == "X" and self.kind.words.turn_is_length and self._is_by_c(line)
             raise self.reader.location._replace(line=line).refuse(
                 f"{beyond.rule}{': C and H are lengths here, not degrees' * by_c}"
             )
+
+    def _is_by_c(self, line: int) -> bool:
+        """Return whether a move of a line ends farther along C than along X."""
+        moves = (each for each in self.reader.contour.elements if isinstance(each, PlaneMove))
+        return any(abs(move.end.imag) > abs(move.end.real) for move in moves if move.line == line)

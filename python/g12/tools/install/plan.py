@@ -60,7 +60,7 @@ def make_plan(
     config: Config, names: Sequence[str], pins: spindle_c.Pins | None = None, options: str = ""
 ) -> IniText:
     """Return a config's text, edited so that it has the features."""
-    plan, copy = InstallPlan(config, names, options), config.folder / COPY
+    plan, copy = InstallPlan(config, names, options), config.ini.directory / COPY
     if copy.exists() and not package_copy.is_copy(copy):
         text = f"{copy} is there already, and is no copy of the package that install made"
         raise refuse("folder", text, "rename that folder")
@@ -87,7 +87,7 @@ def make_plan(
         if lines:
             config.text.add(section, lines, plan.words)
     for path in config.text.changes():
-        if not path.resolve().is_relative_to(config.folder.resolve()):
+        if not path.resolve().is_relative_to(config.ini.directory.resolve()):
             raise refuse("outside", f"{path} would have to change, which is outside the folder of "
                          f"{config.text.path.name}", "copy it into that folder")  # fmt: skip
     return config.text

@@ -69,8 +69,7 @@ def owned_codes(config: Config) -> Iterator[ConfigFinding]:
         if code.remap.code in config.owned:
             yield problem(
                 "owned",
-                f"{code.line.location}: {code.remap.code} is LinuxCNC's own code: its REMAP is "
-                "ignored",
+                f"{code.line.location}: {code.remap.code} is LinuxCNC's own: its REMAP is ignored",
                 cures.get(code.feature, "give the feature another code in its REMAP line"),
             )
 
@@ -90,9 +89,10 @@ def wrong_subs(config: Config) -> Iterator[ConfigFinding]:
             "add the package's folder ngc to SUBROUTINE_PATH in [RS274NGC] "
             f"(the first such line counts, and its first {MOST_FOLDERS} folders); {MEND}",
         )
-    for folder in sorted({files[0].parent for files in subs.values() if files} - {config.folder}):
+    found = list(filter(None, subs.values()))
+    for folder in sorted({first.parent for first, *_ in found} - {config.ini.directory}):
         yield from odd_folder(folder)
-    for first, *others in filter(None, subs.values()):
+    for first, *others in found:
         if any(first.read_bytes() != other.read_bytes() for other in others):
             yield problem(
                 "shadowed",
@@ -176,10 +176,9 @@ def wrong_values(config: Config) -> Iterator[ConfigFinding]:
     """Find settings that are a start-up error."""
     try:
         check_section(config.ini.lines)
-        settings = settings_from_lines(config.ini.lines)
         remaps = (code.remap for code in config.remaps)
         codes = m_codes_of(config.ini.get, remaps, config.ini.directory)
-        wrong = settings.unknown_clamp_code(codes)
+        wrong = settings_from_lines(config.ini.lines).unknown_clamp_code(codes)
     except Refusal as refusal:
         wrong = refusal.message
     if wrong:
@@ -229,7 +228,7 @@ def filter_findings(config: Config) -> Iterator[ConfigFinding]:
 
 
 def changed_copy(config: Config) -> Iterator[ConfigFinding]:
-    copy = config.folder / COPY
+    copy = config.ini.directory / COPY
     changed = dict(sorted(package_copy.changed(copy).items()))
     missing = [name for name, digest in changed.items() if not digest]
     if missing:

@@ -82,10 +82,6 @@ class Config:
     owned: frozenset[str] = frozenset()
     failure: str | None = None
 
-    @property
-    def folder(self) -> Path:
-        return self.ini.directory
-
     @cached_property
     def settings(self) -> Settings | None:
         """The settings of section [G12], None where one is wrong."""
