@@ -79,7 +79,8 @@ PROGRAMS = [
      "the X axis would go to 355.6 mm, beyond its limit 300 mm (G20 is active)"),
     (section("G1 X30", "C360"), 7, "the X axis would go to 302.141163 mm, beyond its limit 300 mm:"
      " C and H are lengths here, not degrees"),
-    (section("G1 X30", "X310 C5"), 7, "the X axis would go to 310.04032 mm, beyond its limit 300 mm"),
+    (section("G1 X30", "X310 C5"), 7,
+     "the X axis would go to 310.04032 mm, beyond its limit 300 mm"),
     ([line for line in section("G1 G41 X12") if line != "T1 M6"], 5,
      "G41 needs a tool in the spindle: its radius is compensated"),
 ]  # fmt: skip
