@@ -125,7 +125,7 @@ def changes_of(samples):
     return np.flatnonzero(steps > 0) + 1, np.flatnonzero(steps < 0) + 1
 
 
-def jumps(samples, changes, around=50):
+def jumps(samples, changes, around=20):
     """Return the greatest steps of C's command, feedback (degrees a sample) and error (degrees).
 
     They are those within ``around`` samples of the changes.
