@@ -63,7 +63,7 @@ def test_nothing_jumps_at_a_change(lathe):
     slow = np.abs(np.diff(samples.axes["T"])) < 2e-3
     assert np.abs(ahead[slow]).max() <= 1  # the ramp begins where the spindle stands
     assert all(turn_to_c(samples, at) <= 0.55 for at in on)
-    standing = np.concatenate([on + 50, off - 1])  # C0 is the index, whatever has happened since
+    standing = np.concatenate([on + 20, off - 1])  # C0 is the index, whatever has happened since
     beside = (samples.axes["T"] - samples.axes["C"] / 360)[standing]
     assert np.abs(beside - np.round(beside)).max() * 360 <= MOST
 
