@@ -61,6 +61,7 @@ def test_empty_lines_blanks_and_lower_case_do_not_matter():
         (["N1(4)X0X1Y0Z-1W.1R1C2F20$"], "line 1: X stands twice"),
         (["N1(4)X0Y0Z-1W.1I.1R1C2F20$"], "line 1: W and I are the same entry: give one of them"),
         (["N1(4)X0Y0Z-1I/.1R1C2F20$"], "line 1: I/ cannot be incremental"),
+        (["N1(4)X0Y0Z-1W.1R1H3F20$"], "line 1: H3 must be one of 0, 1, 2"),
         (["N1(4)Y0Z-1W.1R1C2F20$"], "line 1: X is missing"),
         ([EXAMPLE, "N1(4)X0Y0Z-1R1$"], "line 2: C is missing"),
         (["N1(4)X0Y0Z-1R1C2F20$"], "line 1: W is missing, and no event before has it"),
@@ -84,11 +85,15 @@ LEAVES_OUT = "would be left out: -9999 in the call means no entry"
 @pytest.mark.parametrize(
     ("entries", "rule"),
     [
+        ("G3", "G3 must be one of 0, 7"),
+        ("D1.5", "D1.5 must be one of 0, 1, 2, 3"),
         ("L0", "L0 must be greater than 0"),
         ("L/-.02", "L-0.02 must be greater than 0"),
-        ("X-9999", f"X {LEAVES_OUT}"),
-        ("Z/-9999.1", f"Z {LEAVES_OUT}"),
-        ("K1" + "0" * 400, "the call of the event has 512 characters, the most is 254"),
+        *((f"{letter}0", f"{letter}0 must be greater than 0") for letter in "RKJPFV"),
+        ("X-9999", f"X-9999 {LEAVES_OUT}"),
+        ("Z/-9999.1", f"Z-9999 {LEAVES_OUT}"),
+        ("Z/1000000", "Z1000000.1 is beyond 1000000"),
+        ("K1" + "0" * 400, "Kinf is beyond 1000000"),
     ],
 )
 def test_an_entry_that_could_only_fail_on_the_machine_is_refused(entries, rule):

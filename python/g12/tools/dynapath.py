@@ -7,9 +7,9 @@ becomes one ``o<circle_mill> call``; W, O and F are modal and carried from event
 with auxiliary axes W and C writes I for W and H for C.
 
 Rules: every line is empty or an event of type 4; no entry twice, by either of its letters; X, Y,
-Z, R, C in every event, W and F in it or an earlier one; only X, Y, Z, L can be incremental; L above
-0, for the call has L/ below; no value that the call would take for an entry left out; no call
-longer than a block of LinuxCNC can be. What else a value must be is the rule of the call.
+Z, R, C in every event, W and F in it or an earlier one; only X, Y, Z, L can be incremental; G 0
+or 7, D from 0 to 3, C from 0 to 2; L, R, K, J, P, F, V above 0; no value beyond any machine or that
+the call would take for an entry left out; no call longer than a block of LinuxCNC can be.
 """
 
 import re
@@ -17,9 +17,16 @@ from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from typing import NamedTuple
 
-from g12.cycles.circle_mill import EVENT_ENTRIES
+from g12.cycles.circle_mill import (
+    EVENT_ENTRIES,
+    PERIMETER_CYCLE,
+    POCKET_CYCLE,
+    ROUGH_FINISH_ARCS,
+    TOOL_SIDES,
+)
 from g12.errors import LONGEST_BLOCK, Refusal, number
-from g12.request import LEFT_OUT
+from g12.lengths import LARGEST
+from g12.request import CLOCKWISE, LEFT_OUT
 
 EVENT = re.compile(r"N(?P<number>\d+)\((?P<type>\w+)\)(?P<entries>.*)\$", re.ASCII)
 ENTRY = re.compile(
@@ -31,6 +38,12 @@ REQUIRED = "XYZRC"
 MODAL = "WOF"
 NEEDED = "WF"  # of them, in the first event
 INCREMENTAL = "XYZL"
+POSITIVE = "LRKJPFV"
+ALLOWED_VALUES = {
+    "G": (PERIMETER_CYCLE, POCKET_CYCLE),
+    "D": range(len(ROUGH_FINISH_ARCS)),
+    "C": range(len(TOOL_SIDES[CLOCKWISE])),
+}
 UNIT_PREFIXES = {"inch": "G20 ", "mm": "G21 ", None: ""}
 
 
@@ -109,12 +122,24 @@ def broken_rules(entries: Mapping[str, WrittenEntry]) -> Iterator[str]:
     missing = (letter for letter in NEEDED if letter not in entries)
     yield from (f"{letter} is missing, and no event before has it" for letter in missing)
     for letter, entry in entries.items():
-        if entry.incremental and letter not in INCREMENTAL:
-            yield f"{entry.letter}/ cannot be incremental"
-        if letter == "L" and entry.value <= 0:
-            yield f"L{number(float(entry.value))} must be greater than 0"
-        if value_in_call(letter, entries) == LEFT_OUT and not from_the_tool(letter, entry):
-            yield f"{entry.letter} would be left out: {number(LEFT_OUT)} in the call means no entry"
+        yield from broken_by_entry(letter, entry)
+        value = float(value_in_call(letter, entries))
+        written = f"{entry.letter}{number(value)}"
+        if abs(value) > LARGEST:
+            yield f"{written} is beyond {number(LARGEST)}"
+        if value == LEFT_OUT and not from_the_tool(letter, entry):
+            yield f"{written} would be left out: {number(LEFT_OUT)} in the call means no entry"
+
+
+def broken_by_entry(letter: str, entry: WrittenEntry) -> Iterator[str]:
+    """Yield the rules that an entry breaks by itself."""
+    value, written = float(entry.value), f"{entry.letter}{number(float(entry.value))}"
+    if entry.incremental and letter not in INCREMENTAL:
+        yield f"{entry.letter}/ cannot be incremental"
+    if letter in ALLOWED_VALUES and entry.value not in ALLOWED_VALUES[letter]:
+        yield f"{written} must be one of {', '.join(map(str, ALLOWED_VALUES[letter]))}"
+    if letter in POSITIVE and not value > 0:
+        yield f"{written} must be greater than 0"
 
 
 def value_in_call(letter: str, entries: Mapping[str, WrittenEntry]) -> Decimal:
