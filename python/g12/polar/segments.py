@@ -153,7 +153,7 @@ def _density(
             segments = growth
         if fewest > segments:
             segments = fewest
-        if own:  # the curvatures may be equal
+        if own or beside:  # the curvatures may be equal
             change = (3.0 * along * along - 1.0) * own - 2.0 * along * turning * (along + sliding)
             cube = flat * growth * abs(change)
             if cube > segments * segments * segments:
