@@ -34,9 +34,10 @@ BWRAP = ["bwrap", "--die-with-parent", "--unshare-ipc", "--unshare-pid", "--unsh
 BWRAP += ["--dev-bind", "/", "/", "--proc", "/proc", "--perms", "1777", "--tmpfs", "/tmp"]
 BWRAP += ["--dev-bind", "/tmp", "/tmp/.outside"]
 # The private /tmp has links to what is outside, but for LinuxCNC's own files: its lock is one.
-FILL_TMP = (
-    'cd /tmp; ln -s .outside/* .outside/.[!.]* . 2>/dev/null; rm -f linuxcnc.*; cd "$0"; exec "$@"'
-)
+FILL_TMP = """cd /tmp
+find .outside -mindepth 1 -maxdepth 1 ! -name 'linuxcnc.*' -exec ln -s -t . {} + 2>/dev/null
+cd "$0" && exec "$@"
+"""
 LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
 TRANSIENT_USERS = range(61184, 65520)  # of no user and of no service for good, says systemd
 TURNS = "/tmp/g12-turns-{}"  # without namespaces: a user's folder, whose lock marks the turn
