@@ -2,7 +2,7 @@
 """The first and the fourth question: does a rapid go through the part, is the tool left in it."""
 
 import math
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 
 import numpy as np
 
@@ -140,12 +140,10 @@ def _rapid(
 
 
 def judge_in_part(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
-    last, runs = len(program.moves) - 1, False
-    for event in program.trace.events:
-        code = event.text.split()[0]
-        if code in KINDS and 0 < event.at <= last + (code != "M5"):
-            yield from _event(code, event, runs, program, solids)
-        runs = code in RUNS or (runs and code != "M5")
+    last = len(program.moves) - 1
+    for code, event, starts in _changes(program.trace.events):
+        if 0 < event.at <= last + (code != "M5"):
+            yield from _event(code, event, starts, program, solids)
     if last >= 0:
         tips = in_part(last, program, solids, plain=True)
         yield from (Finding(END, program.end_line, {}, tip) for tip in tips)
@@ -172,15 +170,29 @@ def in_part(
             yield tip
 
 
+def _changes(events: Sequence[Event]) -> Iterator[tuple[str, Event, bool]]:
+    """Yield tool changes, starts and stops of the spindle; whether it starts from a standstill.
+
+    Not a stop by M6, nor one of a boring cycle, which starts it again in the same block.
+    """
+    stopped = {event.line for event in events if event.text == "M5"}
+    others = [event for event in events if event.text.startswith(("tool ", *RUNS))]
+    lines, places = {event.line for event in others}, {event.at for event in others}
+    runs = False
+    for event in events:
+        code = event.text.split()[0]
+        starts = code in RUNS and not runs and event.line not in stopped
+        runs = code in RUNS or (runs and code != "M5")
+        if code in KINDS and not (code == "M5" and (event.line in lines or event.at in places)):
+            yield code, event, starts
+
+
 def _event(
-    code: str, event: Event, runs: bool, program: TracedProgram, solids: Solids
+    code: str, event: Event, starts: bool, program: TracedProgram, solids: Solids
 ) -> Iterator[Finding]:
-    """Yield a tool change, a stop of the spindle or a start with the tip in the part."""
-    lifted = code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0)
-    if lifted or (code == "M5" and _is_followed(event, program)):
+    """Yield a tool change, a stop of the spindle or a start from a standstill in the part."""
+    if code == "tool" and program.ini.number("EMCIO", "TOOL_CHANGE_QUILL_UP", 0):
         return
-    in_cycle = any(e.line == event.line and e.text == "M5" for e in program.trace.events)
-    starts = code in RUNS and not runs and not in_cycle
     for tip in in_part(event.at - 1, program, solids, plain=code == "tool"):
         held = starts and _is_held(tip, event.at - 1, program, solids)
         yield Finding(HELD if held else KINDS[code], event.line, {"code": code}, tip)
@@ -192,12 +204,6 @@ def _is_held(tip: np.ndarray, index: int, program: TracedProgram, solids: Solids
     around = disc(tip[:2], stretch.radius + NEAR)
     found = (solids.standing(around, tip[2], side, index + 1) for side in stretch.sides)
     return any(each.area > 0.0 for each in found)
-
-
-def _is_followed(event: Event, program: TracedProgram) -> bool:
-    """Return whether M6 stops the spindle, or a boring cycle starts it again in the same block."""
-    others = (e for e in program.trace.events if e.line == event.line or e.at == event.at)
-    return any(e.text.startswith(("tool ", "M3", "M4")) for e in others)
 
 
 def plunges(program: TracedProgram, solids: Solids) -> Iterator[Finding]:
