@@ -158,6 +158,17 @@ def test_a_pocket_in_a_sub_of_another_file_is_judged(name, body, call, with_sub)
     assert proof.findings == []
 
 
+@pytest.mark.parametrize(
+    ("name", "begin", "call", "end"),
+    [("out", "o<out> sub", "o<out> call", "o<out> endsub"), ("78", "O78", "M98 P0078", "M99")],
+)
+def test_a_rapid_in_a_sub_of_another_file_is_told_in_the_line_of_the_call(
+    name, begin, call, end, with_sub
+):
+    proof = with_sub(name, [begin, *[""] * 9, "G0 X90", end], *MILL, P[0], "G0 Z-1", call, "Z9")
+    assert proof.codes == "rapid 7"
+
+
 def test_a_section_in_a_sub_of_another_file_is_judged(with_sub):
     body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "Z-1", "C5", "Z2", "G13.1", "o<flat> endsub"]
     calls = ["o<flat> call [20]", "G0 X60 C0", "o<flat> call [15]"]

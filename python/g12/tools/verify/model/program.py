@@ -50,6 +50,7 @@ TAPS = {"33.1", "74", "84"}
 ENDS = re.compile(r"M0*(2|30)(?!\d)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
+M98, PROGRAM_BEGIN = re.compile(r"M98\s*P\s*0*(\d+)"), re.compile(r"^\s*O\s*0*(\d+)\s*$", re.M)
 
 
 class Stretch(NamedTuple):
@@ -290,6 +291,7 @@ class TracedProgram:
         """Whether the program calls a sub in a file of its own."""
         text = "\n".join(self.texts)
         called = {*SUB_CALL.findall(text)} - {*SUB_BEGIN.findall(text)}
+        called |= {*M98.findall(text)} - {*PROGRAM_BEGIN.findall(text)}
         return bool(called or any(cut.file for cut in self.cuts))
 
     @cached_property
