@@ -214,6 +214,23 @@ def test_holes_with_the_live_tool(lathe):
     assert line.max() > 0
 
 
+def test_an_abort_in_a_hole_leaves_the_spindle_as_c_and_the_modes(lathe):
+    holes = "o<face_holes> call [3] [30] [20] [-9999] [4] [2] [120] [0] [0] [0]"
+    start = [*FIRST, "T1 M6", "M254", "G7 G0 X80 Z5 C0"]
+    lathe.open_text(["%", *start, *[holes] * 200, "%"])  # LinuxCNC is still reading holes
+    lathe.start()
+    lathe.wait_for(lambda status: status.position[2] < 0)
+    lathe.abort()
+    held = lathe.stat()
+    assert held.position[2] > -4 and lathe.is_c() and lathe.errors() == []
+    lathe.mdi("G4 P0")
+    modes = lathe.stat().modes
+    assert {"G7", "G64", "G90", "G94"} <= set(modes.gcodes) and modes.blending[0] == 0.01
+    for block in ("G0 Z5", holes.replace("[120]", "[6000]"), "M255"):
+        lathe.mdi(block)
+    assert lathe.errors() == [] and not lathe.is_c()
+
+
 def test_the_manuals_program_switches_c_on_by_m35():
     with SpindleLathe(SIM / "lathe_spindle_c_inch.ini") as machine:
         machine.feed_override(4.0)  # it cuts at 5 inches a minute

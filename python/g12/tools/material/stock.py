@@ -3,9 +3,8 @@
 
 A bar turns about the spindle's centre, its face is the program's Z0. A block's top is the
 program's Z0, and the program's X0 Y0 is its middle, unless the text has its corner: its least X and
-Y, or X, Y and Z. Its sides are along
-the program's X and Y. A bore is in the middle of every pocket. Lengths are millimetres in machine
-coordinates, except in texts.
+Y, or X, Y and Z. Its sides are along the program's X and Y. A bore is in the middle of every
+pocket. Lengths are millimetres in machine coordinates, except in texts.
 """
 
 import re
