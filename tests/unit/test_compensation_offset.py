@@ -3,18 +3,24 @@
 
 import random
 
+import numpy as np
 import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
 
 from g12.compensation.centre_path import tool_path
 from g12.compensation.contour import Contour
 from g12.errors import LONGEST_MESSAGE, Refusal
 from g12.section.effects import Action
+from support.contour_geometry import distance, shape_of
 from support.random_contours import (
     TOLERANCE,
     as_shapely,
     contour_of,
     drawn,
+    open_path,
     outline,
+    points_of,
     stands,
 )
 
@@ -105,3 +111,30 @@ def test_too_tight_names_both_lines(blocks, message):
         joined(*blocks)
     assert refused.value.message == f"G12.1 {message}"
     assert len(refused.value.message) < LONGEST_MESSAGE
+
+
+@settings(max_examples=150)
+@given(st.randoms(use_true_random=False))
+def test_any_contour_is_cut_at_the_tools_radius_or_refused(draw):
+    part = open_path(draw)
+    assume(part)
+    contour = contour_of(part)
+    try:
+        made = along_part(contour)
+    except Refusal as refusal:
+        assert refusal.message.startswith("G12.1 line ")
+        return
+    for move in made:
+        own = part.shapes[move.line - 3 : move.line - 1]  # nearly straight ones are cut as one
+        off = [abs(shape.distance(points_of(move)) - part.radius) for shape in own]
+        at_radius = np.min(off, axis=0).max() <= TOLERANCE
+        assert at_radius or is_cut_deeper_elsewhere(own, move, made, part.radius)
+
+
+def is_cut_deeper_elsewhere(walls, move, made, radius):
+    """Tell whether each point that a move gouges is cut deeper by another portion: a spiral."""
+    others = [shape_of(each.curve) for each in made if abs(each.line - move.line) > 1]
+    points = np.concatenate([points_of(wall) for wall in walls])
+    away = shape_of(move.curve).distance(points)
+    gouged = away < radius - TOLERANCE
+    return gouged.any() and others and (distance(points, others) < away)[gouged].all()

@@ -53,6 +53,27 @@ def test_a_plunge_is_a_right_angle_up_and_down(depth, share, stop):
     assert stops([*down, line(30, 5, 30, 5.1)], share * ROUNDING)[:2] == [stop, stop]
 
 
+ALONG_X, ALONG_C = [line(20, 0, 30, 0), (40, 0)], [line(30, -5, 30, 0), (30, 10)]
+
+
+@pytest.mark.parametrize(("level", "on"), [ALONG_X, ALONG_C])
+@pytest.mark.parametrize("rise", [0.5, -1.0, 3.0])
+@pytest.mark.parametrize(("share", "stop"), [(0.99, True), (1.01, False)])
+def test_a_slope_has_its_angle_and_its_axes_in_space(level, on, rise, share, stop):
+    """X, Z and C are as quick as each other here: the steeper of both parts takes all of it."""
+    slope = line(30, 0, *on, h0=2.0, h1=2.0 + 10.0 * rise)
+    bend, steep = math.atan(rise), max(1.0, abs(rise)) / math.hypot(1.0, rise)
+    rounding = share * abs(math.sin(bend / 2)) * 10.0**2 / 2000.0
+    far_x, far_c = 2 * on[0] - 30, 2 * on[1]
+    onwards = line(on[0], on[1], far_x, far_c, h0=slope.h1, h1=slope.h1 + 10.0 * rise)
+    up = [level._replace(h0=2.0, h1=2.0), slope, onwards]
+    assert stops(up, rounding / steep)[0] is stop
+    on = level.start
+    beyond = line(on.real, on.imag, 2 * on.real - 30, 2 * on.imag, 2.0, 2.0)
+    down = [*(move.portion(1.0, 0.0) for move in up[::-1]), beyond]
+    assert stops(down, rounding * steep)[1] is stop
+
+
 # F words.
 
 LEAST = 0.001

@@ -12,6 +12,7 @@ from g12.compensation.contour import Plunge
 from g12.geometry.curve import Arc
 from g12.polar.face import FaceLimits, MoveDemands, blending_halves
 from g12.polar.quickest import quickest
+from g12.section.effects import Action
 from support import planned_moves
 from support.face_moves import LIMITS, arc, arcs, line, lines, motion
 
@@ -125,3 +126,35 @@ def test_all_of_the_path_is_made_and_followed(path, limits):
     for move, share in zip(made, shares):
         assert not share or MoveDemands(move, limits).can_be_followed(share)
         assert share or move.feed in [one.feed for one in path]
+
+
+def test_in_front_of_the_pole_and_after_it_a_line_is_on_the_face():
+    path, stopping, shares = made_of([line((-90, 0.5), (90, 0.5), feed=3000.0)], QUICK, stop=True)
+    there, *beside, back = shares
+    assert there == back > 0.0 in beside
+    assert stopping == [*[False] * (len(path) - 1), True]
+    in_segments = [part for part, share in zip(path, shares) if not share]
+    assert [part.feed for part in in_segments] == [3000.0]
+    assert in_segments[0].length < 40
+    for before, after in zip(path, path[1:]):
+        assert before.end == pytest.approx(after.start)
+
+
+SHORT = line((1e-4, -1), (1e-4, 1), feed=1000.0)
+
+
+MARK = Action(2, "M8", None)
+
+
+@pytest.mark.parametrize(("seconds", "worth"), [(0.0995, False), (0.1005, True)])
+def test_a_tenth_of_a_second_is_worth_the_way_to_the_face(seconds, worth):
+    far = line((40, 0), (40, 10 * seconds), feed=600.0)
+    *_, shares = made_of([SHORT, far, MARK, SHORT], QUICK)
+    assert [*map(bool, shares)] == [False, worth, worth, False]
+
+
+def test_where_c_is_too_slow_the_feed_is_what_it_can_follow():
+    path, _, shares = made_of([circle(10, 20, 2000.0)], SLOW)
+    feeds = [part.feed for part, share in zip(path, shares) if share]
+    assert 2000.0 == max(feeds) > min(feeds)
+    assert abs(path[-1].end) == pytest.approx(30.0)

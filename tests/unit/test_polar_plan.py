@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
+from g12.compensation.contour import Contour
 from g12.errors import Refusal
 from g12.machine_ini import Axis
 from g12.moves.setup import SectionMachine
@@ -176,3 +177,14 @@ def test_where_no_section_begins(found, rule):
 def test_kinematics_are_refused_on_a_machine_without_them():
     with pytest.raises(Refusal, match=r"needs \[KINS\] KINEMATICS = polar_xzc"):
         section(Settings(polar_kinematics=True))
+
+
+def test_segments_that_keep_x_stay_within_the_tolerance():
+    """Two circles, one after the other: without a stop segments are as far off as they may be."""
+    centre, size = 30.8521 - 0.1765j, abs(5.3802 - 0.1765j)
+    contour = Contour(25.4718, 0.0, 0.0)
+    for line in (1, 2):
+        contour.arc(1, 25.4718, 0.0, i=5.3802, j=-0.1765, at=line, feed=300.0)
+    made = cuts(contour, polar().plan(contour))
+    assert any(cut.radius[0] == cut.radius[1] for cut in made)
+    assert abs(abs(path(made) - centre) - size).max() < TOLERANCE

@@ -87,6 +87,36 @@ SHIFTED = MM._replace(
 )
 
 
+AXES = {"X": (-100.0, 300.0), "Y": (-200.0, 200.0), "Z": (-50.0, 60.0)}
+
+
+INCHES = MM._replace(inch=True)  # on a machine in mm
+
+
+METRIC = MM._replace(machine_mm=MM_PER_INCH)  # the other way round
+
+
+@pytest.mark.parametrize(
+    ("centre", "radius", "heights", "state", "rule"),
+    [
+        ((0, 0, 0), 5, (2, -51, -3), MM, "Z axis would go to -51 mm, beyond its limit -50 mm"),
+        ((0, 0, 0), 5, (2, 61, -3), MM, "Z axis would go to 61 mm, beyond its limit 60 mm"),
+        ((30, 7, 2), 111, (), SHIFTED, "Y axis would go to 201 mm, beyond its limit 200 mm"),
+        ((14, 0, 0), 1, (), INCHES,
+         "X axis would go to 381 mm, beyond its limit 300 mm (G20 is active)"),
+        ((7645, 0, 0), 1, (), METRIC,
+         "X axis would go to 301.023622 in, beyond its limit 300 in (G21 is active)"),
+    ],
+)  # fmt: skip
+def test_a_circle_that_leaves_the_limits_is_refused(centre, radius, heights, state, rule):
+    block = Words("G12", {}, state._replace(travel=AXES))
+    assert reported(block.check_travel, centre, radius, heights) == f"G12: the {rule}"
+
+
+def test_offsets_rotation_and_tool_are_those_of_the_machine():
+    assert SHIFTED.point_on_machine((30.0, 7.0, 2.0)) == pytest.approx((100 - 7, 50 + 40, 21))
+
+
 @pytest.mark.parametrize(("plane", "along"), [("G17", (0, 1)), ("G18", (2, 0)), ("G19", (1, 2))])
 @pytest.mark.parametrize("rotation", [0, 30, 200])
 def test_the_limits_are_those_of_every_point_of_the_circle(plane, along, rotation):
