@@ -255,3 +255,19 @@ def test_how_far_the_axes_go_to_holes():
 def test_pecks(peck, expected):
     numbers = numbers_of("face_holes", peck=peck)
     assert taken(numbers, "pecks", "step", "full", "clear") == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("entries", "outside"),
+    [
+        (dict(sides=3, across_flats=30, stock_diameter=44), 22 + 3 + 1),
+        (dict(sides=2, across_flats=20, stock_diameter=30), 15 + 3 + 1),
+        (dict(corner_radius=2), 20 + 3 + 1),
+        # the first round of a small triangle in a large bar is 4.25 less deep than the stock
+        (dict(sides=3, across_flats=16, stock_diameter=50), 16 + (25 + 3 - 4.25) - 8),
+    ],
+)
+def test_rounds_begin_clear_of_the_stock_and_of_every_corner(entries, outside):
+    """Corners that would lie beyond the stock are not there."""
+    made = planned("polar_polygon", **entries)
+    assert made.locals["outside"] == made.extent.x[1] == pytest.approx(outside)
