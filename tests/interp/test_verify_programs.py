@@ -160,7 +160,7 @@ def test_a_pocket_in_a_sub_of_another_file_is_judged(name, body, call, with_sub)
 
 @pytest.mark.parametrize(
     ("name", "begin", "call", "end"),
-    [("out", "o<out> sub", "o<out> call", "o<out> endsub"), ("78", "O78", "M98 P0078", "M99")],
+    [("out", "o<out> sub", "o<out> call", "o<out> endsub"), ("78", "O78", "M98 L1 P0078", "M99")],
 )
 def test_a_rapid_in_a_sub_of_another_file_is_told_in_the_line_of_the_call(
     name, begin, call, end, with_sub

@@ -50,7 +50,8 @@ TAPS = {"33.1", "74", "84"}
 ENDS = re.compile(r"M0*(2|30)(?!\d)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
-M98, PROGRAM_BEGIN = re.compile(r"M98\s*P\s*0*(\d+)"), re.compile(r"^\s*O\s*0*(\d+)\s*$", re.M)
+M98 = re.compile(r"^(?=.*M\s*98(?!\d)).*P\s*0*(\d+)", re.MULTILINE)  # words in any order
+PROGRAM_BEGIN = re.compile(r"^\s*O\s*0*(\d+)\s*$", re.MULTILINE)
 
 
 class Stretch(NamedTuple):
