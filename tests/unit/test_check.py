@@ -137,14 +137,6 @@ def test_one_thing_that_is_wrong_is_one_finding(found, text, facts, kind, says):
     assert says in "".join(f"{finding.text}\n{finding.cure}" for finding in findings)
 
 
-def test_only_the_first_ten_folders_count(found, tmp_path):
-    for number in range(10):
-        (tmp_path / f"f{number}").mkdir()
-    ten = ":".join(f"f{number}" for number in range(10))
-    assert kinds(found(GOOD.replace("= ngc\n", f"= {ten}:ngc\n"))) == ["no-sub"]
-    assert kinds(found(GOOD.replace("= ngc\n", f"= nowhere:{ten[3:]}:ngc\n"))) == []
-
-
 def test_linuxcncs_own_word_only_where_nothing_else_explains_it(found):
     said = "toplevel here\n'x' is no function - 10:REMAP = M6\nBad character 'g' used\n"
     (failure,) = found(GOOD, failure=said)
@@ -229,13 +221,6 @@ def test_a_mistake_on_a_lathe(lathe, good, bad, kind, says):
     lathe.write_text(text.replace(good, bad, 1))
     findings = [finding for finding in found_of(lathe) if finding.kind == kind]
     assert any(says in finding.text + finding.cure for finding in findings)
-
-
-def test_motion_that_is_loaded_with_one_spindle_has_none_for_a_live_tool(lathe):
-    hal_file = lathe.parent / "motion.hal"
-    hal_file.write_text(hal_file.read_text().replace("num_spindles=[TRAJ]SPINDLES ", ""))
-    (finding,) = found_of(lathe)
-    assert "SPINDLES is 2 and motion is loaded with 1" in finding.text
 
 
 def test_a_module_that_is_missing_or_older(lathe, module):

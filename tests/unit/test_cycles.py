@@ -47,7 +47,6 @@ def plan(name, words="", found=None, *arguments, **changed):
     return planner(Words(code, words_of(event, needed, words), context), *arguments)
 
 
-NO_PLANE = "is missing: the first reference plane, which no earlier event has commanded"
 NO_FINISH = "there is no finish pass with the tool centre on the circle"
 SIDE = "is missing: 0 tool centre on the circle, 1 left, 2 right of it"
 WITH_D, NO_D = "tool radius 10, D2", "no D"
@@ -251,11 +250,6 @@ def test_material_left_is_a_message(words, helix, message):
         Words("G12", words_of(words, "D1"), HAAS)
     )
     assert made.message == (message and f"G12: {message}")
-
-
-def test_without_a_cutter_nothing_is_left_and_a_depth_above_is_up_in_g91_too():
-    assert plan("haas", "I.3 K1.5 Q.3 Z-1 D0").message is None
-    assert "is up from the tool" in plan("haas", "I.3 Z.5 D1", incremental=True).message
 
 
 # ---------------------------------------------------------------- a helix of too many turns

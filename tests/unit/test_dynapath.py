@@ -25,14 +25,6 @@ def calls(*lines):
     return [re.findall(r"\[(.*?)\]", block) for block in program[1:-1]]
 
 
-def test_one_event_is_one_call():
-    program = program_from_events(EXAMPLE + "\n")
-    assert program.splitlines()[1] == (
-        "N1800 o<circle_mill> call [7] [1.5] [2] [-0.5] [0.1] [0.5] [1.5] [0] [2]"
-        " [0.2] [0.3] [0.02] [5] [20] [15]"
-    )
-
-
 def test_w_o_and_f_are_carried_from_event_to_event():
     first, second, third = calls(
         "N1(4)X0Y0Z-1W.1R1C2F20P5O.5$", "N2(4)X5Y0Z/-1R1C2$", "N3(4)X9Y0Z/-1W.2R1C2F30$"
@@ -42,13 +34,6 @@ def test_w_o_and_f_are_carried_from_event_to_event():
     assert (third[3], third[4], third[13]) == ("-0.8", "0.2", "30")
     assert second[5] == third[5] == "0.5" and second[12] == "-9999"
     assert calls("N1(4)X0Y0Z-1W.1R1C2F20$")[0][5] == "-9999"
-
-
-def test_empty_lines_blanks_and_lower_case_do_not_matter():
-    spaced = EXAMPLE.lower().replace("x", " x ")
-    assert calls("", spaced, "  ", EXAMPLE.replace("N1800", "N1810") + EXAMPLE) == calls(
-        *[EXAMPLE] * 3
-    )
 
 
 @pytest.mark.parametrize(

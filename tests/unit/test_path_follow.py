@@ -57,18 +57,6 @@ def test_an_arc_is_followed_exactly_not_by_its_chords():
     assert np.allclose(inner, 0.003, atol=1e-9)
 
 
-def test_a_path_that_crosses_and_repeats_itself_is_followed_in_order():
-    hand = Hand().rapid(x=10)
-    for _ in range(3):
-        hand.arc(1, 0, 0)
-    real = run_of(hand.line(x=-10).line(y=10).line(x=0, y=-10), count=20000)
-    assert (np.diff(real.move) >= 0).all()
-    assert set(real.move) == set(range(7))
-    assert real.deviation.max() < 1e-3
-    spent = np.bincount(real.move)[1:4]
-    assert spent.min() > 0.9 * spent.max()  # each of the three circles has its share
-
-
 def test_a_sharp_corner_that_is_cut_short_is_followed_by_the_lines():
     hand = Hand().line(x=40).next_block().line(x=0, y=4)
     places = np.linspace(0, 3, 3001)

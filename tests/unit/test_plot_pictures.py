@@ -9,7 +9,6 @@ import pytest
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from shapely.geometry import Point
-from shapely.ops import unary_union
 
 from g12.tools.errors import UsageError
 from g12.tools.machine.ini import Ini
@@ -150,14 +149,6 @@ def test_a_tool_without_a_diameter_is_only_its_centre(tool):
     assert plan_view.cutter_text(shown, tool) == f"{name}: tool centre only"
 
 
-def test_an_upright_circle_removes_what_a_flat_cutter_sweeps():
-    """It is one of radius 20 in the ZX plane about X0 Z0."""
-    floors = floors_of(Hand().rapid(z=0).line(x=20).arc(1, 0, 0, plane=18).rapid(x=5))
-    side = unary_union([removed_to(floor, 30.0) for floor in floors])
-    assert side.bounds == pytest.approx((-23, -20, 23, 30), abs=plan_view.THIN)
-    assert side.contains(Point(22.9, 5)) and not side.contains(Point(19, -14))
-
-
 def test_the_history_begins_where_the_first_rapid_ends_and_c_obeys_its_limit():
     hand = Hand(feed=100000).rapid(x=10, z=2).line(c=360).line(c=0)
     history = history_of(scene(hand, LATHE))
@@ -165,14 +156,6 @@ def test_the_history_begins_where_the_first_rapid_ends_and_c_obeys_its_limit():
     assert history.c_speed.max() == pytest.approx(360) and not history.rapid[1:].any()
     assert history.time[-1] == pytest.approx(2.0)
     assert history.feed[-1] == pytest.approx(2 * np.pi * 10 * 60, rel=1e-3)
-
-
-def test_the_view_holds_all_that_is_cut_but_not_far_rapids():
-    low, high = plan_view.bounds_of(scene(pocket().rapid(x=900)), floors_of(pocket()))
-    assert low[0] < 37 and high[0] > 63 and high[0] < 100
-    assert low[2] < -4 and high[2] > 5
-    low, high = plan_view.bounds_of(scene(pocket().rapid(x=70)), floors_of(pocket()))
-    assert high[0] > 70 and low[0] < 37
 
 
 def uncut(centre):
@@ -251,13 +234,6 @@ def test_the_top_of_the_part_is_z0_if_the_tool_goes_through_it():
     shown.program.z0 = -1.5
     assert plan_view.top_of(shown) == -1.5
     assert plan_view.top_of(scene(Hand().rapid(z=-1).line(z=-3).line(x=5))) == -1.0
-
-
-def test_plunges_are_found_once_and_on_the_face_where_the_part_is():
-    assert plan_view.plunges_of(scene(pocket())) == [((50.0, 0.0), 1)]
-    hand = Hand().rapid(z=2).rapid(x=20, c=90).line(z=-3)
-    (((x, y), tool),) = plan_view.plunges_of(scene(hand, LATHE))
-    assert (x, y, tool) == (pytest.approx(0, abs=1e-6), pytest.approx(20), 1)
 
 
 def test_segments_of_one_block_are_one_element_of_the_face():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is said while long work goes on, on a terminal and elsewhere."""
 
-import re
 import threading
 import time
 
@@ -31,23 +30,6 @@ def test_long_work_is_told_of(terminal, between, capsys, monkeypatch):
     said = [text for text in dict.fromkeys(err.split(between)) if text]
     assert said == ["reading", "measuring"]
     assert err.endswith(between)
-
-
-@pytest.mark.parametrize("tick", [0.05, 5.0])
-def test_what_takes_long_for_sure_is_told_at_once_and_once(capsys, monkeypatch, tick):
-    monkeypatch.setattr(progress, "LINE_TICK", tick)
-    with progress.working("running", clock=True):
-        told = until_told(capsys, "running\n")
-        time.sleep(0.2)
-    assert told + capsys.readouterr().err == "running\n"
-
-
-def test_on_a_terminal_it_is_told_for_how_long(capsys, monkeypatch):
-    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
-    monkeypatch.setattr(progress, "TICK", 0.05)
-    with progress.working("running", clock=True):
-        err = until_told(capsys, " s")
-    assert re.search(rf"{re.escape(progress.HIDDEN)}running \d+ s", err)
 
 
 def test_short_work_and_what_an_error_ended_are_not(capsys, monkeypatch):

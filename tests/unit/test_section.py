@@ -103,13 +103,6 @@ def test_what_is_no_motion(given, text):
     assert action_text(block(**given), split_line("", POLAR_WORDS)) == text
 
 
-def test_the_spindle_word_goes_along_with_a_code():
-    assert action_text(block(m={7: 3}, S=5.0), split_line("M3 S5 $-1", POLAR_WORDS)) == "M3S5$-1"
-    assert action_text(block(g={1: 10}, X=1.0), split_line("G1 X1 $0", POLAR_WORDS)) == ""
-    for code in (70, 71, 72, 73):  # saved modes are the section's own
-        assert action_text(block(m={7: code, 8: 8}), split_line(f"m{code}m8", POLAR_WORDS)) == "M8"
-
-
 def test_a_remapped_m_code_has_its_own_words_beside_it_and_nothing_else():
     assert m_code_alone(block(m={10: 410}, P=3.0), 410)
     assert not m_code_alone(block(m={10: 410}, X=3.0), 410)
@@ -282,11 +275,6 @@ def codes(code, *lines):
 def test_every_code_of_the_handler_ends_a_section_and_the_partner_is_named():
     found = codes("G12.3", *PAIR, *OTHER)
     assert (found.on, found.off, found.off_code) == ({121, 123}, {131, 133}, "G13.3")
-
-
-def test_without_any_off_code_it_is_one_more():
-    found = codes("G12.1", PAIR[0])
-    assert (found.off, found.off_code) == ({131}, "G13.1")
 
 
 def test_m_codes_to_subs_and_to_python():

@@ -63,12 +63,6 @@ def test_the_circle_as_in_runs():
         assert found.kinematics / found.least == pytest.approx(measured, rel=0.05)
 
 
-def test_a_lathe_without_z_has_times_too():
-    ini = read_machine_ini(SIM / f"{LATHE}.ini").replaced({"TRAJ": {"COORDINATES": "X C"}})
-    legs = [Leg(curve, 2000 / 60) for curve in CIRCLE]
-    assert section_times(legs, lathe_axes(ini)) == times_of(CIRCLE, 2000)
-
-
 def test_at_the_pole_c_turns_in_place():
     feed, turned = 300, 0.5 + 0.1  # seconds: 180 degrees at 360 degrees/s, 3600 degrees/s²
     way = [Line(-20 + 0j, 0j), Line(0j, 20 + 0j)]

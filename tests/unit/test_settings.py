@@ -4,22 +4,7 @@
 import pytest
 
 from g12.errors import Refusal
-from g12.settings import Settings, settings_from_ini, settings_from_lines
-
-
-def test_without_a_section_every_default_holds(tmp_path):
-    ini = tmp_path / "machine.ini"
-    ini.write_text("[EMC]\nMACHINE = x\n")
-    assert settings_from_ini(ini) == settings_from_ini(None) == Settings()
-
-
-def test_a_section_is_read_with_what_its_file_includes(tmp_path):
-    ini = tmp_path / "machine.ini"
-    ini.write_text("[EMC]\n#INCLUDE more/codes.inc\nHALFILE = x.hal\n#INCLUDE missing.inc\n")
-    (tmp_path / "more").mkdir()
-    (tmp_path / "more" / "codes.inc").write_text("[G12]\n; a comment\n#INCLUDE deeper.inc\n[HAL]\n")
-    (tmp_path / "more" / "deeper.inc").write_text("CLEARING = Spiral\n")
-    assert settings_from_ini(ini).clearing == "spiral"
+from g12.settings import settings_from_ini, settings_from_lines
 
 
 def test_files_that_include_each_other_come_to_an_end(tmp_path):

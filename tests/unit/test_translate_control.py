@@ -18,11 +18,6 @@ def control(tmp_path):
     return read
 
 
-def test_a_comment_can_take_words_with_it(control):
-    own = control('[m_codes]\ncomment = ["M60-M62 P Q"]\nM77 = "comment R"\n')
-    assert [own.meanings[code] for code in ("M61", "M77")] == ["comment P Q", "comment R"]
-
-
 @pytest.mark.parametrize(
     ("text", "line", "rule"),
     [
@@ -65,11 +60,6 @@ def test_a_control_that_is_nowhere():
         read_control("hass-mill")
     with pytest.raises(ControlError, match=r"nowhere\.toml"):
         read_control("nowhere.toml")
-
-
-def test_the_extensions_of_a_controls_programs(control):
-    assert control("").extensions == ("nc",)
-    assert control("extensions = 'min ssb'\n").extensions == ("min", "ssb")
 
 
 def test_a_control_that_is_based_on_itself(tmp_path):

@@ -68,13 +68,6 @@ def test_a_motion_ends_a_drilling_cycle_as_g80_does():
     ]
 
 
-def test_a_rapid_needs_no_feed_that_a_loop_leaves_open():
-    loop = "#1=0\nWHILE [#1 LT 2] DO1\nG1 Z-1. F9.\nX[9.+#1] F99.\n#1=#1+1\nEND1\n"
-    assert lines(f"{HEAD}{CUT}{loop}G0 Z20.\nG91 G28 Z0.\nM30\n")[-2] == "G91 G28 Z0."
-    found = refused(f"{HEAD}{CUT}{loop}G0 Z20.\nG1 Z-1.\n")
-    assert "the feed here is not the same on every way" in found.sentence
-
-
 def test_a_call_and_a_loop_begin_a_section_before_them():
     called = lines(f"{HEAD}M98 P5\nG0 Z20.\nM30\nO5\n{CUT}G0 Z3.\nM99\n")
     assert called.index("G12.1") < called.index("M98 P5") < called.index("G13.1")

@@ -476,10 +476,6 @@ def test_a_hole_is_drilled_with_c_clamped_by_its_builders_codes(name, clamp):
     assert [line.split()[0] for line in written if line[:1] == "M"] == [close, release, "M30"]
 
 
-def test_p_names_a_spindle_beside_m3_only():
-    assert "M98 P12" in lines_after(control_of("doosan-lathe"), "M98 P12\nM30\nO12\nM99")
-
-
 @pytest.mark.parametrize(
     ("ini", "expected"),
     [
@@ -517,11 +513,6 @@ def test_a_position_of_g28_that_was_never_set_is_reported(machine_of, tmp_path):
 
 
 # ---------------------------------------------------------------- the order of programs
-
-
-def test_m97_calls_a_block_of_its_own_program():
-    text = "O1\nG20 G90 G0 X0\nM98 P2\nM97 P100\nM30\nN100 X1.\nM99\nO2\nM99\nN100 X5.\nM99\n"
-    assert "N100 X1. (line 6)" in lines(HAAS, text)
 
 
 def test_programs_are_not_compared_each_with_each():
