@@ -21,8 +21,12 @@ def kept_display():
     def display():
         if not shutil.which("Xvfb"):
             pytest.skip("Xvfb is not installed")
+        command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x900x24", "-nolisten", "tcp"]
+        # A program in namespaces has no shared memory with the server: the number of its segment
+        # is that of a stranger's there, or of none.
+        command += ["-extension", "MIT-SHM"]
         with subprocess.Popen(
-            ["Xvfb", "-displayfd", "1", "-screen", "0", "1280x900x24", "-nolisten", "tcp"],
+            command,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
             text=True,
