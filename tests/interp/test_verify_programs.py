@@ -169,6 +169,12 @@ def test_a_rapid_in_a_sub_of_another_file_is_told_in_the_line_of_the_call(
     assert proof.codes == "rapid 7"
 
 
+def test_a_rapid_in_a_sub_of_m98_in_the_same_file_is_told_in_its_own_line(tmp_path):
+    calls = [P[0], "G0 Z-1", "M98 L1 P0078", "Z9", "M2"]
+    proof = prove_lines(tmp_path, [*MILL, *calls, "N8 O78", "G0 X90", "M99"], "mill_mm")
+    assert proof.codes == "rapid 11"
+
+
 def test_a_section_in_a_sub_of_another_file_is_judged(with_sub):
     body = ["o<flat> sub", "G12.1", "G1 X#1 F500", "Z-1", "C5", "Z2", "G13.1", "o<flat> endsub"]
     calls = ["o<flat> call [20]", "G0 X60 C0", "o<flat> call [15]"]

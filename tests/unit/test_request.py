@@ -88,11 +88,7 @@ SHIFTED = MM._replace(
 
 
 AXES = {"X": (-100.0, 300.0), "Y": (-200.0, 200.0), "Z": (-50.0, 60.0)}
-
-
 INCHES = MM._replace(inch=True)  # on a machine in mm
-
-
 METRIC = MM._replace(machine_mm=MM_PER_INCH)  # the other way round
 
 

@@ -51,7 +51,7 @@ ENDS = re.compile(r"M0*(2|30)(?!\d)")
 COMMENT = re.compile(r"\(.*?\)|;.*")
 SUB_CALL, SUB_BEGIN = (re.compile(rf"O\s*<?(\w+)>?\s*{word}") for word in ("CALL", "SUB"))
 M98 = re.compile(r"^(?=.*M\s*98(?!\d)).*P\s*0*(\d+)", re.MULTILINE)  # words in any order
-PROGRAM_BEGIN = re.compile(r"^\s*O\s*0*(\d+)\s*$", re.MULTILINE)
+PROGRAM_BEGIN = re.compile(r"^\s*(?:N\d+\s*)?O\s*0*(\d+)\s*$", re.MULTILINE)
 
 
 class Stretch(NamedTuple):
@@ -291,9 +291,9 @@ class TracedProgram:
     def calls_files(self) -> bool:
         """Whether the program calls a sub in a file of its own."""
         text = "\n".join(self.texts)
-        called = {*SUB_CALL.findall(text)} - {*SUB_BEGIN.findall(text)}
-        called |= {*M98.findall(text)} - {*PROGRAM_BEGIN.findall(text)}
-        return bool(called or any(cut.file for cut in self.cuts))
+        called = {*SUB_CALL.findall(text), *M98.findall(text)}
+        begun = {*SUB_BEGIN.findall(text), *PROGRAM_BEGIN.findall(text)}
+        return bool(called - begun or any(cut.file for cut in self.cuts))
 
     @cached_property
     def sides(self) -> list[set[float] | None]:
