@@ -48,13 +48,16 @@ def test_what_others_remove_from_tmp_does_not_matter(busy_tmp):
 
 @pytest.mark.skipif(not has_namespaces(), reason="a container is the isolation itself")
 def test_linuxcncs_own_files_in_tmp_are_those_of_one_run():
-    with tempfile.NamedTemporaryFile(prefix="linuxcnc.", dir="/tmp") as file:
+    with (
+        tempfile.NamedTemporaryFile(prefix="linuxcnc.", dir="/tmp") as file,
+        tempfile.TemporaryDirectory(prefix="linuxcnc.", dir="/tmp") as clone,
+    ):
         isolated, name = Isolated(), Path(file.name)
-        look = f"test -e {name} || echo none; test -e {isolated.folder} && touch {name}.own"
+        look = f"test -e {name} || echo none; test -d {clone} && touch {name}.own && ls {name}.own"
         isolated.launch(["sh", "-c", look], {})
         said = isolated.wait(300), isolated.log()
         isolated.close()
-        assert said == (0, "none\n")
+        assert said == (0, f"none\n{name}.own\n")
         assert not Path(f"{name}.own").exists()
 
 

@@ -33,9 +33,10 @@ SUPERVISOR = Path(__file__).with_name("supervisor.py")
 BWRAP = ["bwrap", "--die-with-parent", "--unshare-ipc", "--unshare-pid", "--unshare-net"]
 BWRAP += ["--dev-bind", "/", "/", "--proc", "/proc", "--perms", "1777", "--tmpfs", "/tmp"]
 BWRAP += ["--dev-bind", "/tmp", "/tmp/.outside"]
-# The private /tmp has links to what is outside, but for LinuxCNC's own files: its lock is one.
+# The private /tmp has links to what is outside, but for LinuxCNC's own files, as its lock.
 FILL_TMP = """cd /tmp
-find .outside -mindepth 1 -maxdepth 1 ! -name 'linuxcnc.*' -exec ln -s -t . {} + 2>/dev/null
+find .outside -mindepth 1 -maxdepth 1 ! '(' -name 'linuxcnc.*' ! -type d ')' \\
+    -exec ln -s -t . {} + 2>/dev/null
 cd "$0" && exec "$@"
 """
 LARGEST_COPY = 1 << 20  # bytes; larger files are shared with the real directory
