@@ -16,7 +16,7 @@ from g12.tools.headless.namespaces import OneAtATime
 from support.processes import kill_session, start_in_terminal
 from support.sim_machines import ROOT
 
-NEED_LINUXCNC = ("faults", "interp", "sim")
+NEED_LINUXCNC = ("interp", "sim")
 
 SOAKED = "SOAK_SEED" in os.environ  # other examples each time
 settings.register_profile("g12", deadline=None, derandomize=not SOAKED, database=None)
